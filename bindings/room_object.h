@@ -48,6 +48,11 @@ struct RoomObject {
   protocol::WorldState state;  ///< last sent to pages
 };
 
+/// The state of a Python `RoomRecording`.
+struct RoomRecordingObject {
+  std::unique_ptr<net::Recording> recording;  ///< null once it has ended
+};
+
 void bind_room(nb::module_& module);
 
 }  // namespace iota::bindings

@@ -4,6 +4,7 @@
 #include "net/static_files.h"
 #include "net/stream.h"
 #include "net/token.h"
+#include "net/updates.h"
 
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,10 +41,8 @@ constexpr auto header_time = 5s;    // for a request, on a new connection or aft
 constexpr auto answer_time = 20s;   // for the client to receive an answer
 constexpr auto silence_time = 30s;  // without even an answer to a ping
 constexpr auto close_time = 1s;     // for the client's part of a close
-constexpr auto keyframe_time = 1s;
 constexpr std::size_t max_connections = 512;
 constexpr std::size_t max_strangers = 128;  // of connections that are not welcomed; a client with the token needs few
-constexpr std::uint8_t body_kind = entity_kind<protocol::BodyEntity>();
 
 /// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It uses
 /// only the WebSocket of this server, which 'self' does not include in every browser. Pages of others may frame it
@@ -184,8 +182,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     close_when_sent(websocket::close_code::policy_error, "refused");
   }
 
-  /// Sends as much as fits: messages first, then entities, then poses, encoded only now so that they are the newest. So
-  /// a pose always belongs to the last body that was sent for its slot.
+  /// Sends as much as fits: messages first, then entities, then poses.
   void pump() {
     if (!is_open_ || is_writing_ || is_close_started_) return;
     if (!queue_.empty()) {
@@ -194,24 +191,9 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     }
     if (is_closing_) return start_close();
     if (client_ == 0) return;
-    if (entity_frames_.empty() && sent_entities_ != hub_->entities().version()) {
-      const std::vector<Frame>& frames = hub_->entities().frames_since(sent_entities_);
-      entity_frames_.assign(frames.begin(), frames.end());
-      sent_entities_ = hub_->entities().version();
-    }
-    if (!entity_frames_.empty()) {
-      outgoing_ = std::move(entity_frames_.front());
-      entity_frames_.pop_front();
-      return write(asio::buffer(*outgoing_));
-    }
-    if (sent_pose_ == hub_->pose_number()) return;
-    if (sent_pose_ != 0) context_.counters.frames_dropped += hub_->pose_number() - sent_pose_ - 1;
-    sent_pose_ = hub_->pose_number();
-    const auto now = std::chrono::steady_clock::now();
-    delta_.encode(hub_->poses(), hub_->entities().generations(body_kind), now - keyframe_sent_ >= keyframe_time,
-                  pose_bytes_);
-    if (delta_.last_was_keyframe()) keyframe_sent_ = now;
-    write(asio::buffer(pose_bytes_));
+    const auto bytes = updates_.next(*hub_);
+    context_.counters.frames_dropped += updates_.take_skipped();
+    if (bytes) write(asio::buffer(bytes->data(), bytes->size()));
   }
 
   void write(asio::const_buffer bytes) {
@@ -259,14 +241,9 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   asio::steady_timer timer_;
   beast::flat_buffer buffer_;
   OutQueue queue_;
-  std::deque<Frame> entity_frames_;
-  std::uint64_t sent_entities_ = 0;  ///< version sent to the client
+  Updates updates_;
   Frame outgoing_;
-  std::vector<std::uint8_t> pose_bytes_;
-  PoseDelta delta_;
   std::uint32_t client_ = 0;  ///< 0 until welcomed
-  std::uint64_t sent_pose_ = 0;
-  std::chrono::steady_clock::time_point keyframe_sent_;
   websocket::close_reason close_reason_;
   bool is_open_ = false, is_writing_ = false, is_closing_ = false, is_close_started_ = false;
 };

@@ -173,6 +173,7 @@ void Hub::deliver() {
   if (!has_newer_poses) return;
   poses_.update(delivered_);
   for (auto& [number, client] : clients_) client.link->world_changed();
+  for (const auto& link : watchers_) link->world_changed();
 }
 
 void Hub::end() {
@@ -191,12 +192,9 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
     return {0, "the world is full: " + std::to_string(max_clients_) + " clients are connected"};
   }
   const std::uint32_t number = next_client_++;
-  link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, number}), {});
-  for (const auto& [key, frame] : latest_) link.send(frame, key);
   clients_[number] = {.link = &link, .name = hello.name, .role = hello.role, .selected = {}, .holds = {}};
   ++counters_.clients;
-  link.send(make_frame(all_clients()), clients_key);
-  for (const auto& [title, frame] : kept_notices_) link.send(frame, {});
+  greet(link, number);
   tell_clients();
   InputEvent event;
   event.kind = InputEvent::Kind::join;
@@ -215,6 +213,23 @@ void Hub::leave(std::uint32_t client) {
   tell_clients();
   InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
   push_input(std::move(event));
+}
+
+void Hub::watch(std::shared_ptr<ClientLink> link) {
+  greet(*link, 0);
+  if (pose_number_ != 0) link->world_changed();
+  watchers_.push_back(std::move(link));
+}
+
+void Hub::unwatch(const ClientLink& link) {
+  std::erase_if(watchers_, [&](const auto& watcher) { return watcher.get() == &link; });
+}
+
+void Hub::greet(ClientLink& link, std::uint32_t client) const {
+  link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, client}), {});
+  for (const auto& [key, frame] : latest_) link.send(frame, key);
+  link.send(make_frame(all_clients()), clients_key);
+  for (const auto& [title, frame] : kept_notices_) link.send(frame, {});
 }
 
 void Hub::receive(std::uint32_t client, std::span<const std::uint8_t> bytes) {
@@ -254,6 +269,7 @@ bool Hub::may_reset(std::uint32_t client) {
 
 void Hub::broadcast(const Frame& frame, std::string_view key) {
   for (auto& [number, client] : clients_) client.link->send(frame, key);
+  for (const auto& link : watchers_) link->send(frame, key);
 }
 
 protocol::Clients Hub::all_clients() const {

@@ -77,6 +77,9 @@ class Hub {
   /// Welcomes the client on `link` and replays the scene to it; returns its number, or 0 and the reason of a refusal.
   std::pair<std::uint32_t, std::string> join(ClientLink& link, const protocol::Hello& hello);
   void leave(std::uint32_t client);
+  /// Tells `link` what viewers are told, from the present state on. It is no client: nobody sees it.
+  void watch(std::shared_ptr<ClientLink> link);
+  void unwatch(const ClientLink& link);
   /// Sends messages that were delayed by a frame's time.
   void frame();
   /// Handles a frame of a welcomed client. Invalid frames are answered by a notice.
@@ -107,6 +110,8 @@ class Hub {
 
   bool post(Edit edit);
   void broadcast(const Frame& frame, std::string_view key = {});
+  /// The present state, except entities and poses. client: its number, 0 for none.
+  void greet(ClientLink& link, std::uint32_t client) const;
   protocol::Clients all_clients() const;
   /// Sends the list of clients with the next frame, as many may join, leave and select at once.
   void tell_clients();
@@ -155,6 +160,7 @@ class Hub {
 
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;
+  std::vector<std::shared_ptr<ClientLink>> watchers_;
   std::uint32_t next_client_ = 1;
   std::vector<std::pair<std::string, Frame>> latest_;  ///< in the order in which keys were first set
   std::vector<std::pair<std::string, Frame>> kept_notices_;

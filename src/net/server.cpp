@@ -3,6 +3,7 @@
 
 #include "net/connection.h"
 #include "net/hub.h"
+#include "net/recorder.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -319,6 +320,22 @@ void Room::effect(std::string_view kind, const Vec3f& position, float volume) {
 
 void Room::pulse(std::uint32_t client, const protocol::Pulse& pulse) { deliver_if(hub_->pulse(client, pulse)); }
 
+std::unique_ptr<Recording> Room::record(double pose_time) {
+  auto recorder = std::make_shared<Recorder>(*hub_, std::chrono::duration<double>(pose_time));
+  link_->post([hub = hub_, recorder] { hub->watch(recorder); });
+  auto end = [hub = hub_, link = link_, recorder = recorder.get()] {
+    link->post([hub, recorder] { hub->unwatch(*recorder); });
+  };
+  return std::unique_ptr<Recording>(new Recording(std::move(recorder), std::move(end)));
+}
+
 std::vector<InputEvent> Room::take_input() { return hub_->take_input(); }
+
+Recording::Recording(std::shared_ptr<Recorder> recorder, std::function<void()> end)
+    : recorder_(std::move(recorder)), end_(std::move(end)) {}
+
+Recording::~Recording() { end_(); }
+
+std::vector<RecordedMessage> Recording::take() { return recorder_->take(); }
 
 }  // namespace iota::net

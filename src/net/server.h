@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -83,6 +84,32 @@ struct ServerStatistics {
 };
 
 class Hub;
+class Recorder;
+
+/// A message that viewers were sent. time: s, from the start of the recording.
+struct RecordedMessage {
+  double time = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Keeps what the viewers of a world are sent, from the state at its start on, until it is destroyed. What is for one
+/// client is not in it.
+class Recording {
+ public:
+  ~Recording();
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  /// The messages since the last call, from any thread. If they are not taken for long, poses are left out.
+  std::vector<RecordedMessage> take();
+
+ private:
+  friend class Room;
+  Recording(std::shared_ptr<Recorder> recorder, std::function<void()> end);
+
+  std::shared_ptr<Recorder> recorder_;
+  std::function<void()> end_;
+};
 
 /// One world on a server. All members may be called from any thread; none waits for a client. Calls after the end of
 /// the server have no effect.
@@ -117,6 +144,9 @@ class Room {
   /// A haptic pulse in the hands of one user. Throws std::invalid_argument for numbers that are not finite,
   /// std::length_error for a hand above 32 bytes.
   void pulse(std::uint32_t client, const protocol::Pulse& pulse);
+
+  /// Records what viewers are sent. pose_time: between two recorded poses, s.
+  std::unique_ptr<Recording> record(double pose_time);
 
   /// Events since the last call, in order of arrival. Successive moves of one grip are merged.
   /// A `leave` ends the client's holds and selection: no grab_end precedes it.

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import random
 import subprocess
 import sys
 import textwrap
@@ -21,10 +22,19 @@ SPEED, BREAK = 1.5, 0.5  # m/s; s, when the ball loses its tail
 def test_a_stream_is_read_as_it_was_written_and_refused_otherwise() -> None:
     frames = [(0.0, b"one"), (0.5, b""), (0.5, bytes(range(256))), (2.25, b"last")]
     packed = pack(frames)
-    assert unpack(packed) == frames and pack(frames) == packed
-    for bad in (b"", b"something else", packed[: len(packed) // 2], b"\x1f\x8b" + bytes(20)):
+    assert unpack(packed) == (frames, True) and pack(frames) == packed
+    for bad in (b"", b"something else", packed[:20], b"\x1f\x8b" + bytes(20)):
         with pytest.raises(Failed):
             unpack(bad)
+
+
+def test_a_stream_that_is_cut_is_read_up_to_its_last_whole_message() -> None:
+    frames = [(0.1 * number, bytes(random.Random(number).randbytes(500))) for number in range(20)]
+    packed = pack(frames)
+    for end in range(len(packed) // 4, len(packed), 97):
+        messages, is_complete = unpack(packed[:end])
+        assert messages == frames[: len(messages)] and not is_complete
+        assert len(messages) >= 20 * end // len(packed) - 3
 
 
 def iota(*arguments: str | Path) -> subprocess.CompletedProcess[str]:

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { Playback, readFrames, type Frame } from "../src/player/recording.ts";
-import { MessageType } from "../src/protocol/generated.ts";
+import { encodePoses, MessageType } from "../src/protocol/generated.ts";
 
 /** A frame of a type, with a number that tells it from others. */
 function frame(time: number, type: number, number: number): Frame {
   return { time, data: Uint8Array.of(type, number).buffer };
 }
 
+/** Poses whose step is that number. */
+function poses(time: number, step: number, keyframe: boolean): Frame {
+  const empty = { bodies: [], farBodies: [], sparks: [], holds: [] };
+  const data = encodePoses({
+    type: "poses", step, time, structureVersion: 1, keyframe, kinetic: 0, potential: 0, gap: 0, boxMin: [0, 0, 0], boxMax: [1, 1, 1], ...empty,
+  });
+  return { time, data };
+}
+
 const frames = [
-  frame(0, MessageType.welcome, 1), frame(0, MessageType.poses, 2), frame(1, MessageType.poses, 3), frame(1, MessageType.effect, 4),
-  frame(2, MessageType.entitiesSet, 5), frame(2, MessageType.poses, 6), frame(3, MessageType.poses, 7),
+  frame(0, MessageType.welcome, 1), poses(0, 2, true), poses(1, 3, false), frame(1, MessageType.effect, 4),
+  frame(2, MessageType.entitiesSet, 5), poses(2, 6, true), poses(2.2, 7, false), poses(2.4, 8, false), poses(3, 9, false),
 ];
 
 function play(): { playback: Playback; told: number[] } {
@@ -48,7 +57,7 @@ describe("a recording", () => {
     expect(told.splice(0)).toEqual([]);
     playback.playing = true;
     playback.pass(5);
-    expect(told.splice(0)).toEqual([5, 6, 7]);
+    expect(told.splice(0)).toEqual([5, 6, 7, 8, 9]);
     playback.pass(0.1);
     expect(told.splice(0)).toEqual([1, 2]);
     expect(playback.position).toBe(0);
@@ -57,9 +66,9 @@ describe("a recording", () => {
   it("goes to any time by what holds then, without what happened on the way", () => {
     const { playback, told } = play();
     playback.seek(2.5);
-    expect(told.splice(0)).toEqual([1, 2, 5, 6]);
+    expect(told.splice(0), "the last keyframe, and what moved since").toEqual([1, 2, 5, 6, 7, 8]);
     playback.repeat();
-    expect(told.splice(0)).toEqual([6]);
+    expect(told.splice(0)).toEqual([8]);
     playback.seek(0.5);
     expect(told.splice(0)).toEqual([1, 2]);
     playback.pass(0.6);

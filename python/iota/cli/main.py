@@ -75,6 +75,9 @@ def make_parser() -> Parser:
     way.add_argument("--watch", action="store_true", help="run the file again whenever it is saved")
     way.add_argument("--prompt", action="store_true", help="a Python prompt on the running world")
     way.add_argument("--terminal", action="store_true", help="show it in this terminal, without a page")
+    running.add_argument(
+        "--record", type=Path, metavar="FILE.iota", help="write what pages show, with what users do, for iota play"
+    )
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.add_argument(
         "--lan", action="store_true", help="let phones, headsets and other computers in, by https; shows a QR code"
@@ -120,7 +123,7 @@ def make_parser() -> Parser:
     profiling.set_defaults(function=profile.profile)
 
     playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")
-    playing.add_argument("file", type=Path, metavar="FILE.iota", help="made by iota record -o FILE.iota")
+    playing.add_argument("file", type=Path, metavar="FILE.iota", help="made by iota record -o or iota run --record")
     playing.add_argument("-o", "--output", type=Path, metavar="FILE.html", help="name of the page")
     playing.add_argument("--no-open", action="store_true", help="do not open it in a browser")
     playing.set_defaults(function=play.play)

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota play`: shows a recording of `iota record -o FILE.iota` in a page that needs no server."""
+"""`iota play`: shows a recording of `iota record -o FILE.iota` or `iota run --record FILE.iota` in a page that needs no server."""
 
 from __future__ import annotations
 
 import argparse
+import sys
 import tempfile
 import webbrowser
 from pathlib import Path
 
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
-from iota.film import Failed, player, unpack
+from iota.film import Failed, pack, player, unpack
 from iota.saving import replacing
 
 
@@ -21,16 +22,18 @@ def play(arguments: argparse.Namespace) -> None:
     if target.suffix != ".html":
         raise Failure(f"{target} must end in .html")
     try:
-        packed = source.read_bytes()
-        unpack(packed)  # raises unless it is complete
+        file = source.read_bytes()
+        messages, is_complete = unpack(file)
         with replacing(target) as fresh:
-            fresh.write_text(player(packed, source.stem), encoding="utf-8")
+            fresh.write_text(player(file if is_complete else pack(messages), source.stem), encoding="utf-8")
     except Failed as failed:
         raise Failure(f"{source} cannot be played: {failed}") from None
     except PageMissingError as error:
         raise Failure(str(error)) from None
     except OSError as error:
         raise Failure(str(error) if error.filename is None else f"{source}: {error.strerror}") from None
+    if not is_complete:
+        print(f"iota: {source} ends early: its first {messages[-1][0]:.1f} s are played", file=sys.stderr)
     print(target)
     if not arguments.no_open:
         webbrowser.open(target.resolve().as_uri())

@@ -22,6 +22,7 @@ from iota._core import kept_token, renew_token
 from iota.cli import prompt
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
+from iota.film.files import Failed, check_name
 from iota.terminal import TerminalView
 from iota.world import World
 from iota.world.callbacks import print_error
@@ -47,12 +48,20 @@ def run(arguments: argparse.Namespace) -> None:
         open=not arguments.no_open and not arguments.headless and can_show_a_page(),
         headless=arguments.headless,
         lan=lan(arguments),
+        record=arguments.record,
         kept=arguments.keep,
         drive=prompt.drive if arguments.prompt else None,
         view=TerminalView() if arguments.terminal else None,
     )
     if arguments.prompt and arguments.seconds is not None:
         raise Failure("--prompt runs a world until the prompt ends, so it takes no --seconds")
+    if arguments.record is not None:
+        if arguments.headless or arguments.terminal:
+            raise Failure(f"--record needs a page. Try: iota record {arguments.what} -o {arguments.record}")
+        try:
+            check_name(arguments.record, [".iota"])
+        except Failed as failed:
+            raise Failure(str(failed)) from None
     start = find(arguments.what)
     with use(options), plain_failures(arguments.port):
         start(arguments.links)

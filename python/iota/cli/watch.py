@@ -31,6 +31,8 @@ def watch(arguments: argparse.Namespace) -> None:
     path = Path(arguments.what)
     if not path.is_file():
         raise Failure(f"--watch needs a file, and there is no {arguments.what}")
+    if arguments.record is not None:
+        raise Failure("--record keeps one run, and --watch begins others: use one of them")
     run.parse(path)
     arguments.port = free_port() if arguments.port == 0 else arguments.port
     with TemporaryDirectory(prefix="iota-watch-") as folder:

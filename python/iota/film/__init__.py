@@ -3,6 +3,6 @@
 
 from iota.film.files import Failed
 from iota.film.record import Film, record
-from iota.film.stream import player, unpack
+from iota.film.stream import pack, player, unpack
 
-__all__ = ["Failed", "Film", "player", "record", "unpack"]
+__all__ = ["Failed", "Film", "pack", "player", "record", "unpack"]

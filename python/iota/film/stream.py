@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The server's messages to a page, with times: saved in a file, or embedded in a page that plays them without a server.
-
-A file is gzip over the line "iota stream 1" and, for each frame, its time (s, f64), length (u32) and bytes, little-endian.
-"""
+"""The server's messages to a page, with times: saved in a file, or embedded in a page that plays them without a server."""
 
 from __future__ import annotations
 
@@ -16,8 +13,8 @@ from pathlib import Path
 
 from iota.film.files import Failed
 from iota.world.page import page_folder
+from iota.world.recording import GZIP, MAGIC, packed
 
-MAGIC = b"iota stream 1\n"
 PAGE = """<!doctype html>
 <html lang="en">
 <head>
@@ -37,33 +34,34 @@ PAGE = """<!doctype html>
 """
 
 
-def pack(frames: Iterable[tuple[float, bytes]]) -> bytes:
-    """A file of frames, each with its time, s."""
-    records = [struct.pack("<dI", time, len(data)) + data for time, data in frames]
-    return gzip.compress(MAGIC + b"".join(records), mtime=0)
+def pack(messages: Iterable[tuple[float, bytes]]) -> bytes:
+    """A file of messages, each with its time, s. See iota.world.recording for its format."""
+    return gzip.compress(MAGIC + b"".join(map(packed, messages)), mtime=0)
 
 
-def unpack(packed: bytes) -> list[tuple[float, bytes]]:
-    """The frames of a file. Raises Failed for a file of another format."""
+def unpack(file: bytes) -> tuple[list[tuple[float, bytes]], bool]:
+    """The messages of a file, and whether it is complete: the recording of a killed process ends after its last whole
+    message. Raises Failed for a file of another format."""
+    unpacker = zlib.decompressobj(GZIP)
     try:
-        data = gzip.decompress(packed)
-    except (OSError, EOFError, zlib.error) as error:
-        raise Failed(f"it is not a recording, or truncated: {error}") from None
+        data = unpacker.decompress(file)
+    except zlib.error as error:
+        raise Failed(f"it is not a recording, or damaged: {error}") from None
     if not data.startswith(MAGIC):
         raise Failed("it is not a recording of iota")
-    frames, at = [], len(MAGIC)
-    while at < len(data):
-        if at + 12 > len(data):
-            raise Failed("it is truncated")
+    messages, at = [], len(MAGIC)
+    while at + 12 <= len(data):
         time, length = struct.unpack_from("<dI", data, at)
         if at + 12 + length > len(data):
-            raise Failed("it is truncated")
-        frames.append((time, data[at + 12 : at + 12 + length]))
+            break
+        messages.append((time, data[at + 12 : at + 12 + length]))
         at += 12 + length
-    return frames
+    if not messages:
+        raise Failed("it has no complete message")
+    return messages, unpacker.eof and at == len(data)
 
 
-def player(packed: bytes, title: str) -> str:
+def player(file: bytes, title: str) -> str:
     """A self-contained page that plays a file. Raises PageMissingError if the page is not built."""
     folder = page_folder()
 
@@ -74,12 +72,12 @@ def player(packed: bytes, title: str) -> str:
         title=html.escape(title),
         style=read("player/player.css", "style"),
         licenses=read("licenses.txt", "script"),
-        recording=base64.b64encode(packed).decode(),
+        recording=base64.b64encode(file).decode(),
         script=read("player/player.js", "script"),
     )
 
 
-def write_stream(path: Path, frames: Iterable[tuple[float, bytes]], title: str) -> None:
+def write_stream(path: Path, messages: Iterable[tuple[float, bytes]], title: str) -> None:
     """The file itself, or the page that plays it, by its ending: .iota or .html."""
-    packed = pack(frames)
-    path.write_bytes(packed if path.suffix == ".iota" else player(packed, title).encode())
+    file = pack(messages)
+    path.write_bytes(file if path.suffix == ".iota" else player(file, title).encode())

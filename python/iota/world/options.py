@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 @dataclass
 class RunOptions:
     """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`.
-    kept: a file for the state in which a world ends and the next one begins, see `iota.world.keeping`. names: of the
-    module whose build() made the World. `ran`, `summary`: set by the World that ran."""
+    record: a file for what pages show, see `World.record`. kept: a file for the state in which a world ends and the next
+    one begins, see `iota.world.keeping`. names: of the module whose build() made the World. `ran`, `summary`: set by the
+    World that ran."""
 
     port: int | None = None
     seconds: float | None = None
@@ -28,6 +29,7 @@ class RunOptions:
     lan: Lan | None = None
     drive: Callable[[Any], None] | None = None
     view: View | None = None
+    record: Path | None = None
     kept: Path | None = None
     names: dict[str, Any] | None = None
     ran: bool = False

@@ -21,7 +21,7 @@ from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
 from iota.world.asking import Asking
-from iota.world.callbacks import Guard, Hook, add_once
+from iota.world.callbacks import Guard, Hook, add_once, print_on_terminal
 from iota.world.client_modules import add_module
 from iota.world.clients import Client
 from iota.world.clock import Clock
@@ -32,6 +32,7 @@ from iota.world.inputs import Inputs
 from iota.world.interacting import Interacting
 from iota.world.lan import Lan
 from iota.world.publisher import Publisher
+from iota.world.recording import Recording
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.skins import Skin
@@ -88,6 +89,7 @@ class World(Interacting, Asking):
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
         self._state.clients.take_picture = self._take_picture
         self._publisher: Publisher | None = None
+        self._recordings: list[Recording] = []
         self._runner: int | None = None
         self._background: threading.Thread | None = None
         self._stopping = False
@@ -221,13 +223,39 @@ class World(Interacting, Asking):
     def client_module(self, file: str | Path) -> None:
         """Lets pages load a JavaScript module (.js or .mjs, at most 4 MiB), before the world is served. A relative path is
         searched in the folder of the running script. The module finds the page in `iota`, which web/README.md
-        describes. Whoever can reach the server can read it. Raises FileNotFoundError, ValueError for other files.
+        describes. Only pages that know the token can read it. Raises FileNotFoundError, ValueError for other files.
 
         world.client_module("halo.js")
         """
         if self._publisher is not None:
             raise RuntimeError("pages load modules when they open: call client_module before the world is served")
         add_module(self._state.client_modules, Path(file))
+
+    def record(self, file: str | Path) -> Recording:
+        """Writes what pages show, with all that users do, to a file while the world is served, until `stop` of the result,
+        its with block, or the world ends; `iota play` shows it. The file ends in .iota. If the process is killed, it plays
+        up to then. If the disk is full, a card tells so and the world goes on. Raises ValueError for another ending,
+        OSError for a file that cannot be written.
+
+        with world.record("lesson.iota"):
+            world.run()
+        """
+        path = Path(file)
+        if path.suffix != ".iota":
+            raise ValueError(f"a recording must end in .iota, not {path.name!r}")
+
+        def fail(text: str) -> None:
+            print_on_terminal(f"iota: {text}\n")
+            self._inputs.call(lambda: self._state.notices.send("The recording ended", text, level="warning", keep=True))
+
+        try:
+            recording = Recording(path, fail)
+        except OSError as error:
+            raise OSError(f"{path} cannot be written: {error.strerror or error}") from None
+        self._recordings.append(recording)
+        if self._publisher is not None:
+            recording.begin(self._publisher.room)
+        return recording
 
     # --- clients ---------------------------------------------------------------------------------------------
 
@@ -359,10 +387,10 @@ class World(Interacting, Asking):
         options.summary = summary
         return summary
 
-    def start(self, port: int = 8080, server: Server | None = None, id: str = "default") -> str:
+    def start(self, port: int | None = None, server: Server | None = None, id: str = "default") -> str:
         """Runs in the background, for notebooks and prompts; returns the page's address. A cell of a notebook that ends in
-        the world shows its page. Use `call` to access the system meanwhile and `stop` to end it. server, id: see
-        `serve`."""
+        the world shows its page. Use `call` to access the system meanwhile and `stop` to end it. port: None for 8080, or
+        a free one if that is taken, as by the world of a cell that is run again. server, id: see `serve`."""
         if self._background is not None:
             raise RuntimeError("the world runs already")
         ready: concurrent.futures.Future[str] = concurrent.futures.Future()
@@ -370,13 +398,18 @@ class World(Interacting, Asking):
         def background() -> None:
             try:
                 self.system.adopt()
-                self.serve(port, server=server, id=id)
+                try:
+                    self.serve(8080 if port is None else port, server=server, id=id)
+                except OSError:
+                    if port is not None or run_options.current().port is not None:
+                        raise
+                    self.serve(0, server=server, id=id)
                 ready.set_result(self.url or "")
             except BaseException as error:
                 ready.set_exception(error)
                 return
             try:
-                self._run_served(math.inf)
+                self._run_served()
             finally:
                 self.close()
 
@@ -439,6 +472,7 @@ class World(Interacting, Asking):
             self._guard.watch()
             try:
                 self._publisher.frame()
+                self._begin_recordings()
             except BaseException:
                 self.close()
                 raise
@@ -484,7 +518,10 @@ class World(Interacting, Asking):
             for client in self.clients:
                 self._state.clients.let_go(client)
             self._state.clients.by_id.clear()
-            self._stepper.keep(run_options.current().kept)
+            self._stepper.keep()
+            for recording in self._recordings:
+                recording.stop()
+            self._recordings.clear()
             self._publisher.close()
             self._publisher = None
             atexit.unregister(self.close)
@@ -500,6 +537,15 @@ class World(Interacting, Asking):
         self._stepper.begin(run_options.current().kept)
         self._state.clock.restart()
 
+    def _begin_recordings(self) -> None:
+        assert self._publisher is not None
+        options = run_options.current()
+        if options.record is not None:
+            file, options.record = options.record, None  # of the first world that is served
+            self.record(file)
+        for recording in self._recordings:
+            recording.begin(self._publisher.room)
+
     def _run_headless(self, seconds: float) -> RunSummary:
         self._begin()
         end = self.system.time + seconds
@@ -507,7 +553,7 @@ class World(Interacting, Asking):
             self._stepper.step()
         return self._stepper.summary()
 
-    def _run_served(self, seconds: float) -> RunSummary:
+    def _run_served(self, seconds: float = math.inf) -> RunSummary:
         end = time.monotonic() + seconds
         clock = self._state.clock
         try:

@@ -115,12 +115,12 @@ class Themes implements FramePart {
   }
 }
 
-/** Other users, fetched with the second one. */
+/** Other users, fetched with the first one. */
 function othersOf({ world, session, viewer }: PageParts): PageListener {
   let asked = false;
   return {
     changed: (what) => {
-      if (asked || what !== "clients" || world.clients.length < 2) return;
+      if (asked || what !== "clients" || world.clients.every(({ client }) => client === session.clientId)) return;
       asked = true;
       void import("./people.ts").then(({ People }) => viewer.add(new People(world, session, viewer)));
     },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a recording without a server: `iota record NAME -o FILE.html`. Users can look around, stop and go to any time,
+// Plays a recording without a server: a page of `iota record NAME -o FILE.html` or `iota play`. Users can look around, stop and go to any time,
 // but not grab.
 
 import "./player.css";
@@ -7,7 +7,7 @@ import { makeDebug } from "../app/debug.ts";
 import { ScreenInput } from "../interact/screen_input.ts";
 import { makePage } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
-import { Role } from "../protocol/generated.ts";
+import { MessageType, Role } from "../protocol/generated.ts";
 import { byId, make } from "../ui/dom.ts";
 import { Playback, readFrames } from "./recording.ts";
 
@@ -23,17 +23,17 @@ class RecordedSocket {
   onopen: (() => void) | null = null;
   onmessage: ((event: { data: ArrayBuffer }) => void) | null = null;
   onclose: (() => void) | null = null;
-  private greeted_ = false;
 
   constructor() {
     RecordedSocket.current = this;
     queueMicrotask(() => this.onopen?.());
   }
 
-  /** The page sends hello first; its later messages need no answer except to pings. */
-  send(): void {
-    queueMicrotask(this.greeted_ ? RecordedSocket.ping : RecordedSocket.begin);
-    this.greeted_ = true;
+  /** The page sends hello first; its later messages need no answer, except pings. */
+  send(data: Uint8Array): void {
+    const type: number = data[0];
+    if (type === MessageType.hello) queueMicrotask(RecordedSocket.begin);
+    else if (type === MessageType.ping) queueMicrotask(RecordedSocket.ping);
   }
 
   close(): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replays a server's messages: frames by time, to a socket without a server.
 
-import { MessageType, messageTypeOf } from "../protocol/generated.ts";
+import { decodePosesInto, MessageType, messageTypeOf, PosesBuffer } from "../protocol/generated.ts";
 
 export interface Frame {
   /** From the start of the recording, s. */
@@ -9,9 +9,11 @@ export interface Frame {
   readonly data: ArrayBuffer;
 }
 
+const isPoses = ({ data }: Frame): boolean => messageTypeOf(data) === MessageType.poses;
+
 const magic = "iota stream 1\n";
 
-/** Throws unless the bytes are a complete recording. See python/iota/film/stream.py. */
+/** Throws unless the bytes are a complete recording. See python/iota/world/recording.py. */
 export function readFrames(bytes: Uint8Array): Frame[] {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (new TextDecoder().decode(bytes.subarray(0, magic.length)) !== magic) throw new Error("this is not a recording of Iota");
@@ -36,6 +38,7 @@ export class Playback {
 
   private readonly frames_: readonly Frame[];
   private readonly tell_: (data: ArrayBuffer) => void;
+  private readonly poses_ = new PosesBuffer();
   private next_ = 0;
 
   constructor(frames: readonly Frame[], tell: (data: ArrayBuffer) => void) {
@@ -60,19 +63,23 @@ export class Playback {
     const past = this.frames_.findIndex((frame) => frame.time > this.position);
     this.next_ = past < 0 ? this.frames_.length : past;
     const told = this.frames_.slice(0, this.next_);
-    const isPoses = ({ data }: Frame) => messageTypeOf(data) === MessageType.poses;
-    const [first, last] = [told.findIndex(isPoses), told.findLastIndex(isPoses)];
+    const [first, last] = [told.findIndex(isPoses), told.findLastIndex((frame) => isPoses(frame) && this.isKeyframe_(frame))];
     told.forEach((frame, index) => {
       const type = messageTypeOf(frame.data);
       if (type === MessageType.effect || type === MessageType.notice) return;
-      // The first poses complete the state.
-      if (type !== MessageType.poses || index === first || index === last) this.tell_(frame.data);
+      // The first poses complete the state. A keyframe lists all bodies, the poses after it those that moved since.
+      if (!isPoses(frame) || index === first || index >= last) this.tell_(frame.data);
     });
   }
 
   /** Sends the newest poses again, so that the page does not time out. */
   repeat(): void {
-    const last = this.frames_.slice(0, this.next_).findLast(({ data }) => messageTypeOf(data) === MessageType.poses);
+    const last = this.frames_.slice(0, this.next_).findLast(isPoses);
     if (last !== undefined) this.tell_(last.data);
+  }
+
+  private isKeyframe_({ data }: Frame): boolean {
+    decodePosesInto(data, this.poses_);
+    return this.poses_.keyframe;
   }
 }

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of a running world, with what its users do."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from page_client import PageClient, decode
+
+import iota
+from iota.film import browser
+from iota.film.stream import unpack
+from iota.world.recording import StreamFile
+
+Told = list[tuple[float, str, dict[str, Any]]]
+
+
+def read(file: Path) -> tuple[Told, bool]:
+    """The messages of a recording by name, and whether it is complete."""
+    messages, is_complete = unpack(file.read_bytes())
+    return [(at, *decode(data)) for at, data in messages], is_complete
+
+
+def wait_for(check: Any) -> None:
+    end = time.monotonic() + 30
+    while not check():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def make_world() -> iota.World:
+    system = iota.System(gravity=(0, 0, 0))
+    system.body().particle((0, 1, 0), velocity=(0.5, 0, 0))
+    system.body(shape=iota.Sphere(0.2), position=(0, 2, 0))
+    world = iota.World(system, title="lesson", ground=None)
+
+    @world.action("flash", key="f", on="world")
+    def flash() -> None:
+        world.effect("break", (0, 2, 0))
+
+    return world
+
+
+def test_a_recording_has_what_two_users_did_and_its_file_plays_at_any_time(tmp_path: Path) -> None:
+    file = tmp_path / "lesson.iota"
+    world = make_world()
+    with world.record(file) as recording:
+        url = world.start(port=0)
+        with PageClient(url, name="Ada") as ada, PageClient(url, name="Max") as max_:
+            ada.wait_for(lambda: len(ada.last["clients"]["clients"]) == 2)
+            body = ada.entities["body"][1]["id"]
+            ada.send("grab_start", hold=1, body=body, local_point=(0, 0, 0), target=(0, 2, 0))
+            ada.send("grab_move", hold=1, target=(1, 2, 0))
+            max_.send("select", body=body)
+            max_.send("action", name="flash", body=(0, 0))
+            ada.wait_for(lambda: ada.places[1][0] > 0.5 and ada.effects)
+            early, is_complete = read(file)  # while it is written
+            assert early and not is_complete
+            world.notice("only for Ada", client=ada.id)
+            world.notice("for all")
+            max_.wait_for(lambda: max_.notices)
+        world.call(lambda: None)
+    assert recording.error is None
+    world.stop()
+    told, is_complete = read(file)
+    assert is_complete and told[: len(early)] == early
+    names = [name for _, name, _ in told]
+    assert names[0] == "welcome" and told[0][2]["client"] == 0
+    users = [{user["name"] for user in values["clients"]} for _, name, values in told if name == "clients"]
+    assert users[0] == set() and {"Ada", "Max"} in users, "the recorder is no user"
+    selected = [user["selected"] for _, name, values in told if name == "clients" for user in values["clients"]]
+    assert body in selected
+    poses = [values for _, name, values in told if name == "poses"]
+    holds = [hold for each in poses for hold in each["holds"]]
+    assert any(hold["body"] == 1 and hold["target"] == pytest.approx((1, 2, 0)) for hold in holds)
+    assert poses[0]["keyframe"] and poses[-1]["time"] > 0.3
+    assert [values["title"] for _, name, values in told if name == "notice"] == ["for all"]
+    assert [values["kind"] for _, name, values in told if name == "effect"].count("break") == 1
+    times = [at for at, *_ in told]
+    assert times == sorted(times) and times[0] < 0.5
+    assert len(poses) / (times[-1] - times[0]) < 40, "some 30 a second"
+
+
+SCRIPT = """
+import iota
+system = iota.System(gravity=(0, 0, 0))
+system.body().particle((0, 1, 0), velocity=(0.5, 0, 0))
+world = iota.World(system, title="lesson", ground=None)
+world.run()
+"""
+
+
+@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+def test_the_recording_of_a_killed_server_plays_up_to_its_end(tmp_path: Path) -> None:
+    sync = pytest.importorskip("playwright.sync_api")
+    script, file, page_file = tmp_path / "mine.py", tmp_path / "mine.iota", tmp_path / "mine.html"
+    script.write_text(SCRIPT)
+    words = [sys.executable, "-m", "iota", "run", str(script), "--port", "0", "--no-open", "--record", str(file)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        with PageClient(process.stdout.readline().removeprefix("lesson: ").strip(), name="Ada") as page:
+            page.wait_for(lambda: page.last["poses"]["time"] > 1.5)
+            last = page.last["poses"]["time"]
+            process.send_signal(signal.SIGKILL)
+            process.wait(20)
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == ["mine.iota", "mine.py"]
+    told, is_complete = read(file)
+    assert not is_complete
+    assert [values["time"] for _, name, values in told if name == "poses"][-1] > last - 0.5
+    # Cut anywhere, it still plays.
+    whole = file.read_bytes()
+    for length in (len(whole) - 1, len(whole) // 2):
+        assert unpack(whole[:length])[0]
+    done = subprocess.run(
+        [sys.executable, "-m", "iota", "play", str(file), "-o", str(page_file), "--no-open"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0 and "ends early" in done.stderr and done.stderr.count("\n") == 1
+    with sync.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
+        page = chromium.new_context(offline=True, viewport={"width": 320, "height": 240}).new_page()
+        complaints: list[str] = []
+        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+        page.goto(page_file.as_uri())
+        page.wait_for_function("() => globalThis.iota?.connected && iota.bodyPosition(0)?.[0] > 0.6", timeout=60_000)
+        page.wait_for_function("() => iota.page.world.clients.length === 1", timeout=60_000)
+        assert complaints == []
+        chromium.close()
+
+
+def test_a_recording_that_does_not_fit_on_the_disk_ends_and_the_world_goes_on(tmp_path: Path) -> None:
+    pytest.importorskip("resource")
+    script = tmp_path / "full.py"
+    script.write_text(
+        textwrap.dedent("""
+        import resource, random
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+        """)
+        + SCRIPT.replace(
+            "world = ",
+            "for _ in range(200): system.body().particle([random.random() for _ in range(3)], velocity=(0.1, 0, 0))\nworld = ",
+        ).replace("world.run()", "recording = world.record('full.iota')\nworld.run(seconds=4)\nprint(recording.error)")
+    )
+    words = [sys.executable, "-m", "iota", "run", "full.py", "--port", "0", "--no-open"]
+    with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stderr is not None
+        with PageClient(process.stdout.readline().removeprefix("lesson: ").strip()) as page:
+            page.wait_for(lambda: any(card["title"] == "The recording ended" for card in page.notices))
+            step = page.last["poses"]["step"]
+            page.wait_for(lambda: page.last["poses"]["step"] > step + 20)
+        said, warned = process.communicate(timeout=30)
+    assert process.returncode == 0 and "full.iota cannot be written: File too large" in said
+    assert warned.count("File too large") == 1 and "Traceback" not in warned
+    assert read(tmp_path / "full.iota")[0]
+
+
+def test_an_older_file_stays_until_there_is_something_to_record(tmp_path: Path) -> None:
+    file = tmp_path / "old.iota"
+    file.write_bytes(b"an older one")
+    StreamFile(file).close()
+    recording = make_world().record(file)
+    recording.stop()
+    recording.stop()
+    assert file.read_bytes() == b"an older one" and list(tmp_path.iterdir()) == [file], "nothing else is left"
+    world = make_world()
+    with world.record(file):
+        world.start(port=0)
+        wait_for(lambda: file.read_bytes() != b"an older one")
+    world.stop()
+    assert read(file)[1] and [path for path in tmp_path.iterdir() if path.is_file()] == [file]
+
+
+def test_files_that_cannot_be_are_refused_in_one_line(tmp_path: Path) -> None:
+    world = make_world()
+    with pytest.raises(ValueError, match=r"end in \.iota"):
+        world.record(tmp_path / "film.mp4")
+    with pytest.raises(OSError, match="cannot be written: No such file"):
+        world.record(tmp_path / "none" / "film.iota")
+    for words, told in (
+        (["--record", "x.iota", "--headless"], "needs a page"),
+        (["--record", "x.iota", "--terminal"], "needs a page"),
+        (["--record", "x.mp4"], "must end in .iota"),
+        (["--record", str(tmp_path / "none" / "x.iota")], "no folder"),
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", "iota", "run", "chain", *words], capture_output=True, text=True, timeout=60
+        )
+        assert done.returncode == 1 and told in done.stderr and done.stderr.count("\n") == 1, done.stderr
