@@ -49,10 +49,10 @@ protocol::Part make_part(const std::string& kind, const std::vector<float>& size
 
 void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& looks,
                   const std::string& look, const std::optional<std::pair<Vec3, Vec3>>& camera,
-                  std::optional<double> ground) {
+                  std::optional<double> ground, const std::vector<std::string>& modules) {
   const auto& [position, target] = camera.value_or(std::pair<Vec3, Vec3>{});
   self.use().set(protocol::WorldSettings{title, looks, look, camera.has_value(), narrow(position), narrow(target),
-                                         ground.has_value(), static_cast<float>(ground.value_or(0))});
+                                         ground.has_value(), static_cast<float>(ground.value_or(0)), modules});
 }
 
 /// Two digits, so that small fluctuations are not sent to pages.
@@ -238,6 +238,21 @@ void bind_room(nb::module_& module) {
           "offset"_a = nb::make_tuple(0, 0, 0), "rotation"_a = Quat4{0, 0, 0, 1}, "turn"_a = 0.0,
           "vertices"_a = std::vector<float>{}, "triangles"_a = std::vector<std::uint32_t>{});
 
+  nb::class_<RoomRecordingObject>(module, "RoomRecording", "Keeps what the viewers of a world are sent.")
+      .def(
+          "take",
+          [](RoomRecordingObject& self) {
+            nb::list taken;
+            if (!self.recording) return taken;
+            for (const net::RecordedMessage& message : self.recording->take())
+              taken.append(nb::make_tuple(
+                  message.time, nb::bytes(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size())));
+            return taken;
+          },
+          nb::sig("def take(self) -> list[tuple[float, bytes]]"),
+          "The messages since the last call, each with its time from the start of the recording (s). On any thread.")
+      .def("end", [](RoomRecordingObject& self) { self.recording.reset(); }, "Keeps no more.");
+
   nb::class_<RoomObject>(module, "Room", "A world on a server. `World` uses it; scripts rarely need to.")
       .def_prop_ro(
           "world", [](RoomObject& self) { return self.use().world(); }, "Its id.")
@@ -250,7 +265,7 @@ void bind_room(nb::module_& module) {
           },
           "system"_a, "Tells its pages that the world has ended, and stops logging changes of its system.")
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
-           "ground"_a.none())
+           "ground"_a.none(), "modules"_a)
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")
@@ -337,6 +352,12 @@ void bind_room(nb::module_& module) {
           },
           "client"_a, "hand"_a, "strength"_a, "seconds"_a,
           "A haptic pulse for one client. hand: 'left', 'right' or '', both. strength: from 0 to 1.")
+      .def(
+          "record",
+          [](RoomObject& self, double pose_time) {
+            return new RoomRecordingObject{self.use().record(finite_positive(pose_time, "pose_time", "s"))};
+          },
+          "pose_time"_a, "Records what viewers are sent. pose_time: between two recorded poses, s.")
       .def(
           "take_input", [](RoomObject& self) { return self.use().take_input(); },
           "Events since the last call, in order of arrival.");

@@ -308,7 +308,9 @@ SERVER: list[Vector] = [
         + vec3([2.5, 1.5, 3.5])
         + vec3([0.0, 1.25, 0.0])
         + b"\x01"
-        + pack("<f", -0.5),
+        + pack("<f", -0.5)
+        + pack("<I", 1)
+        + text("modules/halo.js"),
         {
             "title": "K\u00e4tte",
             "looks": ["rope", "chain"],
@@ -318,6 +320,7 @@ SERVER: list[Vector] = [
             "camera_target": [0.0, 1.25, 0.0],
             "has_ground": True,
             "ground": -0.5,
+            "modules": ["modules/halo.js"],
         },
     ),
     (

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 import urllib.error
 import urllib.request
 from pathlib import Path
 
 import pytest
+from page_client import PageClient
 
 import iota
 from iota.film import browser
@@ -44,7 +46,7 @@ def test_a_module_of_the_script_draws_in_the_page(tmp_path: Path) -> None:
             page.on("pageerror", lambda error: complaints.append(str(error)))
             page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
             page.goto(url)
-            halo = "iota.page.viewer.scene.getObjectByName('halo').position.x"
+            halo = "iota.page.viewer.scene.getObjectByName('halo')?.position.x"
             page.wait_for_function(f"() => globalThis.iota?.connected && {halo} > 0.2", timeout=60_000)
             assert page.evaluate(f"{halo} - iota.bodyPosition(iota.bodies()[0])[0]") == pytest.approx(0, abs=0.05)
             assert complaints == []
@@ -52,29 +54,41 @@ def test_a_module_of_the_script_draws_in_the_page(tmp_path: Path) -> None:
         world.stop()
 
 
-def test_only_the_named_modules_are_served_and_gone_afterwards(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_clients_learn_where_the_named_modules_are_and_they_are_gone_afterwards(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(temporary))
-    for name in ("halo.js", "secret.js", "other.mjs"):
+    for name in ("halo.js", "secret.js", "other ö.mjs"):
         (tmp_path / name).write_text(HALO)
     world, _ = make_world()
     world.client_module(tmp_path / "halo.js")
-    world.client_module(tmp_path / "other.mjs")
+    world.client_module(tmp_path / "other ö.mjs")
     world.client_module(tmp_path / "halo.js")
-    base = world.serve(port=0).split("?")[0]
+    url = world.start(port=0)
+    base = url.split("?")[0]
     try:
+        with PageClient(url) as page:
+            page.wait_for(lambda: "world_settings" in page.last)
+            modules = page.last["world_settings"]["modules"]
+        assert [re.sub("[0-9a-f]{32}", "SECRET", module) for module in modules] == [
+            "modules/SECRET/halo.js",
+            "modules/SECRET/other%20%C3%B6.mjs",
+        ]
+        for module in modules:
+            assert urllib.request.urlopen(base + module).read().decode() == HALO
         index = urllib.request.urlopen(base).read().decode()
-        assert index.count("modules/halo.js") == 1 and index.index("halo.js") < index.index("other.mjs")
-        assert urllib.request.urlopen(f"{base}modules/halo.js").read().decode() == HALO
-        for name in ("secret.js", "", "../index.html", "%2e%2e/%2e%2e/etc/passwd"):
-            with pytest.raises(urllib.error.HTTPError):
+        secret = modules[0].split("/")[1]
+        assert secret not in index and "modules" not in index
+        for name in ("halo.js", "", f"{secret}/secret.js", f"{secret}/", secret, f"{'0' * 32}/halo.js"):
+            with pytest.raises(urllib.error.HTTPError, match="404"):
                 urllib.request.urlopen(f"{base}modules/{name}")
         with pytest.raises(RuntimeError, match="before"):
             world.client_module(tmp_path / "secret.js")
         assert len(list(temporary.iterdir())) == 1
     finally:
-        world.close()
+        world.stop()
     assert list(temporary.iterdir()) == []
 
 

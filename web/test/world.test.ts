@@ -11,7 +11,7 @@ const weight = style(1, "weight", part("sphere", [0.1]));
 function settings(look: string): WorldSettings {
   return {
     type: "worldSettings", title: "chain", looks: ["rope", "chain"], look, hasCamera: true, cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0],
-    hasGround: false, ground: 0,
+    hasGround: false, ground: 0, modules: [],
   };
 }
 

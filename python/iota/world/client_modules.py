@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-import html
+import secrets
 import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from urllib.parse import quote
 
 from iota.world.page import page_folder
 
@@ -39,16 +40,14 @@ def script_folder() -> Path:
 
 
 @contextmanager
-def page_with(modules: Sequence[Path]) -> Iterator[Path]:
-    """A copy of the built page that also loads these modules. Removed at the end."""
+def page_with(modules: Sequence[Path]) -> Iterator[tuple[Path, list[str]]]:
+    """A copy of the built page with these modules, and their paths in it, which nobody can guess: the server tells them to
+    its clients. Removed at the end."""
     with TemporaryDirectory(prefix="iota-page-") as made:
         folder = Path(made, "page")
-        shutil.copytree(page_folder(), folder, ignore=shutil.ignore_patterns("index.html.*"))
-        (folder / FOLDER).mkdir()
+        shutil.copytree(page_folder(), folder)
+        secret = f"{FOLDER}/{secrets.token_hex(16)}"
+        (folder / secret).mkdir(parents=True)
         for module in modules:
-            shutil.copy(module, folder / FOLDER / module.name)
-        index = folder / "index.html"
-        names = [html.escape(f"./{FOLDER}/{module.name}") for module in modules]
-        tags = "".join(f'<script type="module" src="{name}"></script>\n' for name in names)
-        index.write_text(index.read_text(encoding="utf-8").replace("</body>", f"{tags}</body>"), encoding="utf-8")
-        yield folder
+            shutil.copy(module, folder / secret / module.name)
+        yield folder, [f"{secret}/{quote(module.name)}" for module in modules]

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from iota._core import InputEvent, Room, Vec3
@@ -19,8 +20,9 @@ from iota.world.state import State
 class Publisher:
     """A world's room on a server. The room sends only changes to viewers."""
 
-    def __init__(self, state: State, server: Server, room: Room, is_alone: bool) -> None:
+    def __init__(self, state: State, server: Server, room: Room, is_alone: bool, modules: Sequence[str] = ()) -> None:
         self._state, self._server, self._is_alone = state, server, is_alone
+        self._modules = list(modules)
         self._folder = ExitStack()  # of the page, if it is not the built one
         self._source = source_of(state.system)
         self._told: dict[str, dict[str, Any]] = {}
@@ -38,9 +40,12 @@ class Publisher:
     def open(cls, state: State, host: str, port: int, lan: bool | Lan) -> Publisher:
         """Starts a server. Raises OSError if the port is in use, PageMissingError if the page is not built."""
         with ExitStack() as stack:
-            folder = stack.enter_context(page_with(state.client_modules)) if state.client_modules else None
+            folder: Path | None = None
+            modules: list[str] = []
+            if state.client_modules:
+                folder, modules = stack.enter_context(page_with(state.client_modules))
             server = Server(host, port, folder=folder, lan=lan)
-            publisher = cls(state, server, server.open("default"), is_alone=True)
+            publisher = cls(state, server, server.open("default"), is_alone=True, modules=modules)
             publisher._folder = stack.pop_all()
         return publisher
 
@@ -101,6 +106,7 @@ class Publisher:
             look=state.style or (looks[0] if looks else ""),
             camera=None if state.camera is None else (Vec3(*state.camera.position), Vec3(*state.camera.target)),
             ground=state.ground,
+            modules=self._modules,
         )
         listeners = state.listeners
         clicks, hovers, moves = (listeners.has(kind) for kind in ("click", "hover", "pointer"))

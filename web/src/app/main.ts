@@ -4,10 +4,11 @@
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
 import { takeToken } from "../net/token.ts";
+import type { PageListener } from "../page/events.ts";
 import { makePage, type Page } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
 import type { FramePart } from "../page/viewer.ts";
-import { Role } from "../protocol/generated.ts";
+import { NoticeLevel, Role } from "../protocol/generated.ts";
 import type { Band } from "../ui/band.ts";
 import { Overlay } from "../ui/overlay.ts";
 import { byId } from "../ui/dom.ts";
@@ -73,6 +74,30 @@ function wallsWhenWalking({ navigation, world }: Page): void {
   };
 }
 
+/** Loads the script's modules in their order, each once, also if the page is later told of another version. */
+function modulesOf({ world, events }: Page): PageListener {
+  const known = new Set<string>();
+  let queue = Promise.resolve();
+  const load = async (path: string, name: string): Promise<void> => {
+    try {
+      await import(/* @vite-ignore */ new URL(path, document.baseURI).href);
+    } catch (error) {
+      events.notice({ level: NoticeLevel.error, title: `The module ${name} failed`, text: String(error), hint: "Correct it, and reload the page." });
+    }
+  };
+  return {
+    changed: (what) => {
+      if (what !== "settings") return;
+      for (const path of world.settings.modules) {
+        const name = path.slice(path.lastIndexOf("/") + 1);
+        if (known.has(name)) continue;
+        known.add(name);
+        queue = queue.then(() => load(path, name));
+      }
+    },
+  };
+}
+
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
@@ -90,7 +115,7 @@ function main(): void {
     },
     toggle: (body) => selection.toggle(body),
   });
-  events.add(overlay);
+  events.add(overlay, modulesOf(page));
   window.addEventListener("vite:preloadError", ({ payload }) => {
     const hint = "Reload the page. If the world has ended, start its script again.";
     events.notice({ level: 1, title: "A part of the page did not come", text: payload.message, hint });

@@ -34,6 +34,7 @@ export interface WorldListener {
 
 const noSettings: WorldSettings = {
   type: "worldSettings", title: "", looks: [], look: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false, ground: 0,
+  modules: [],
 };
 
 export class World {
