@@ -310,12 +310,6 @@ def test_a_saved_script_goes_on_where_it_was_if_it_starts_its_world_the_same_way
                 assert (place(after[-1]) > 0.4) == goes_on, after
                 assert not goes_on or "once\n" not in after, "an event before now has been"
                 until(lambda line: line.startswith("at") and place(line) > 0.5)
-            path.write_text(text.replace("CUT", "world.after(0.05)(lambda: system.body().particle((5, 5, 5)))"))
-            until(lambda line: "token=" in line)
-            until(lambda line: line.startswith("at") and place(line) > 0.5)
-            path.write_text(text.replace("CUT", "world.after(0.05)(lambda: system.body().particle((5, 5, 6)))"))
-            until(lambda line: "token=" in line)
-            assert place(until(lambda line: line.startswith("at"))[-1]) < 0.2, "the script does not know of the body"
         finally:
             process.send_signal(signal.SIGINT)
             process.wait(20)
@@ -350,6 +344,50 @@ def test_a_prompt_acts_on_the_running_world(tmp_path: Path) -> None:
     assert done.returncode == 0 and "'build'" in done.stdout
     done = subprocess.run([*command, "chain", "--watch"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and "--prompt" in done.stderr
+
+
+def test_a_statement_without_end_is_ended_by_its_time_or_by_ctrl_c_and_the_world_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text(
+        "import iota\nsystem = iota.System(gravity=(0, 0, 0))\nball = system.body().particle((0, 1, 0))\n"
+        "iota.World(system, title='mine').run()\n"
+    )
+    start = "import sys; from iota.cli import main, prompt; prompt.LONGEST = 1; sys.exit(main(sys.argv[1:]))"
+    command = [sys.executable, "-c", start, "run", "--prompt", "--port", "0", str(path)]
+    with subprocess.Popen(command, stdin=-1, stdout=-1, stderr=-1, text=True) as process:
+        assert process.stdin and process.stdout and process.stderr
+        with PageClient(process.stdout.readline().removeprefix("mine: ").strip()) as page:
+
+            def say(text: str) -> None:
+                assert process.stdin
+                process.stdin.write(text)
+                process.stdin.flush()
+
+            def goes_on() -> None:
+                step = page.last["poses"]["step"]
+                page.wait_for(lambda: page.last["poses"]["step"] > step + 20)
+
+            for statement in ("while True: pass\n\n", "import time; time.sleep(1000)\n"):
+                told = len(page.notices)
+                say(statement)
+                page.wait_for(lambda told=told: len(page.notices) > told)  # it holds the world
+                assert "is slow" in page.notices[-1]["title"]
+                goes_on()
+            say("prompt_limit = __import__('iota.cli.prompt').cli.prompt; prompt_limit.LONGEST = 100\n")
+            told = len(page.notices)
+            say("while True: pass\n\n")
+            page.wait_for(lambda: len(page.notices) > told)
+            process.send_signal(signal.SIGINT)
+            goes_on()
+            process.send_signal(signal.SIGINT)  # between two statements
+            say("ball.velocity = (2, 0, 0)\n")
+            page.wait_for(lambda: page.places[0][0] > 0.1)
+            process.stdin.close()
+            assert page.closed.wait(20)
+        assert process.wait(20) == 0
+        said = process.stderr.read()
+        assert said.count("StatementEnded: it was ended after 1 s") == 2
+        assert said.count("\nKeyboardInterrupt") == 1 and "Ctrl-D ends the world" in said
 
 
 def test_the_token_can_be_renewed() -> None:
