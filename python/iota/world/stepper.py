@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, Guard, Hook, print_on_terminal
 from iota.world.event import Event
 from iota.world.floor import Floor
-from iota.world.keeping import keep, take
+from iota.world.keeping import Keeper
 from iota.world.schedule import Schedule
 from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
@@ -37,7 +36,7 @@ class Stepper:
         self._off: set[Hook] = set()  # functions that raised since the last reset
         self._floor: Floor | None = None
         self._start: bytes | None = None
-        self._structure = 0
+        self._keeper: Keeper | None = None
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
 
@@ -46,29 +45,28 @@ class Stepper:
         return self._tally is not None
 
     def begin(self, kept: Path | None = None) -> None:
-        """Starts a run; `reset` returns to this state. kept: the file of `keep`; where it fits, the run goes on from it."""
+        """Starts a run; `reset` returns to this state. kept: a file of `keep`, which the run goes on from as far as it fits."""
         state = self._state
         self._tally = Tally(state.system)
         if state.ground is not None and isinstance(state.system, System):
             self._floor = Floor(state.system, state.ground, state.thickness_of)
         self._start = self._state.system.snapshot()
-        self._structure = state.system.structure_version
         self.schedule.begin()
-        before = None if kept is None or not isinstance(state.system, System) else take(kept, self._start)
-        if before is not None:
-            state.system.restore(before)
-            self.schedule.skip(state.system.time)
-            print_on_terminal(f"iota: the world goes on at {state.system.time:.1f} s; r on the page resets it\n")
-
-    def keep(self, file: Path | None) -> None:
-        """Writes the state for the run of a changed script. A world with new joins, breaks or bodies is not kept, since its
-        script would not know of them."""
-        system = self._state.system
-        if file is None or not isinstance(system, System) or self._start is None:
+        if kept is None or not isinstance(state.system, System):
             return
-        if system.structure_version == self._structure:
-            with suppress(OSError):
-                keep(file, self._start, system.snapshot())
+        self._keeper = Keeper(kept, state.system)
+        start = state.system.time
+        told = self._keeper.take()
+        if state.system.time != start:
+            self.schedule.skip(state.system.time)
+        if told:
+            print_on_terminal(f"iota: {told} r on the page resets it\n")
+            state.notices.send("The script was saved", told, "A reset begins the world anew.", keep=True)
+
+    def keep(self) -> None:
+        """Writes the state for the run of a changed script."""
+        if self._keeper is not None:
+            self._keeper.keep()
 
     def summary(self) -> RunSummary:
         """Whether there were steps since `begin`."""
