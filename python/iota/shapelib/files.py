@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,9 @@ class FileError(ValueError):
         where = os.fspath(path) if line is None else f"{os.fspath(path)}, line {line}"
         super().__init__(f"{where}: {' '.join(reason.split())}")
         self.path, self.reason, self.line = os.fspath(path), reason, line
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.path, self.reason, self.line)
 
 
 def read_bytes(path: PathLike) -> bytes:

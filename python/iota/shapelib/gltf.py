@@ -51,6 +51,7 @@ def read_gltf(path: PathLike, read_mesh: Callable[[bytes, str], Any]) -> list[Pa
     if packed := [name for name in needed if "compression" in str(name)]:
         raise FileError(path, f"its meshes are compressed ({', '.join(packed)}), which is not read; export it without")
     try:
+        _check_tree(head.get("nodes", []), path)
         materials = _Materials(head, binary, path)
         bare = _without_materials(head)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -88,6 +89,23 @@ def _split(data: bytes, path: PathLike) -> tuple[dict[str, Any], bytes | None]:
     if not isinstance(head, dict):
         raise FileError(path, "is not glTF: an object with a list of required extensions must stand here")
     return head, binary
+
+
+def _check_tree(nodes: list[dict[str, Any]], path: PathLike) -> None:
+    """Raises FileError unless each node has one parent at most and none is below itself, as glTF demands."""
+    parents: dict[int, int] = {}
+    for at, node in enumerate(nodes):
+        for child in node.get("children", []):
+            if not 0 <= child < len(nodes):
+                raise FileError(path, f"node {at} has a child {child}; there are 0..{len(nodes) - 1}")
+            if child in parents:
+                raise FileError(path, f"node {child} is a child of node {parents[child]}, and again of node {at}")
+            parents[child] = at
+    found = [at for at in range(len(nodes)) if at not in parents]
+    for at in found:  # grows meanwhile
+        found += nodes[at].get("children", [])
+    if circle := sorted(set(range(len(nodes))) - set(found)):
+        raise FileError(path, f"node {circle[0]} is below itself")
 
 
 def _without_materials(head: dict[str, Any]) -> dict[str, Any]:

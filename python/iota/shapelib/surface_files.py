@@ -13,13 +13,20 @@ from typing import Any
 
 import numpy as np
 
+from iota.shapelib.apart import apart
 from iota.shapelib.files import FileError, PathLike, number, read_bytes, read_text, whole, with_progress
 from iota.shapelib.gltf import PaintedSurface, read_gltf
 from iota.shapelib.surface import MOST_FACES, Surface
 
 
 def read_surface(path: PathLike) -> Surface:
-    """By the file's ending. Vertices are those of the file. Raises FileError."""
+    """By the file's ending, in a process of its own with 4 GiB and three minutes. Vertices are those of the file. Raises
+    FileError."""
+    return apart(read_surface_here, path)
+
+
+def read_surface_here(path: PathLike) -> Surface:
+    """The same in this process."""
     ending = Path(path).suffix.lower()
     if ending not in READERS:
         raise FileError(path, f"surfaces are in files that end in {', '.join(READERS)}, not in {ending or 'nothing'!r}")
@@ -261,17 +268,22 @@ def _read_ply(path: PathLike) -> Surface:
 
 def read_model(path: PathLike) -> list[PaintedSurface]:
     """The surfaces of a glTF file, one for each material of each mesh, with their colors and images; of another file the
-    only one. Raises FileError."""
+    only one. Reads as `read_surface`. Raises FileError."""
+    return apart(read_model_here, path)
+
+
+def read_model_here(path: PathLike) -> list[PaintedSurface]:
+    """The same in this process."""
     if Path(path).suffix.lower() in (".gltf", ".glb"):
         return read_gltf(path, lambda data, kind: _load_gltf(data, kind, path))
-    surface = read_surface(path)
+    surface = read_surface_here(path)
     return [PaintedSurface(surface.vertices, surface.faces, surface.groups, surface.lines, surface.notes)]
 
 
 def _read_gltf(path: PathLike) -> Surface:
     """All meshes of the scene, transformed by its nodes."""
     surface = Surface(np.empty((0, 3)), [])
-    for part in read_model(path):
+    for part in read_model_here(path):
         offset = len(surface.vertices)
         surface.vertices = np.concatenate([surface.vertices, part.vertices])
         surface.faces += [[v + offset for v in face] for face in part.faces]
