@@ -22,6 +22,23 @@ describe("the pose buffer", () => {
     expect(buffer.position[3]).toBeCloseTo(7, 1);
   });
 
+  it("draws a body at its newest pose soon after it was taken, and eases it back", () => {
+    const buffer = new PoseBuffer();
+    for (let step = 0; step < 8; step++) {
+      buffer.push(frame(step, [body(0, step)]), step * (1000 / 60));
+      buffer.sample(step * (1000 / 60), 1 / 60);
+    }
+    const delay = () => buffer.lateness.now[0];
+    expect(delay()).toBeCloseTo(usualLateness);
+    buffer.lateness.goal[0] = 0;
+    for (let picture = 0; picture < 3; picture++) buffer.sample(200, 1 / 60);
+    expect(delay()).toBeLessThan(0.1 * usualLateness);
+    buffer.lateness.goal[0] = usualLateness;
+    for (let picture = 0; picture < 3; picture++) buffer.sample(200, 1 / 60);
+    expect(delay()).toBeGreaterThan(0.3 * usualLateness);
+    expect(delay()).toBeLessThan(0.6 * usualLateness);
+  });
+
   it("draws all at their newest poses for a film, whenever they came", () => {
     const buffer = new PoseBuffer();
     buffer.exact = true;

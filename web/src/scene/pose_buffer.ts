@@ -9,7 +9,8 @@ const frameCount = 8;
 /** Other bodies are drawn this many frame intervals late, so that there is nearly always a later frame to interpolate
  * to. */
 export const usualLateness = 1.5;
-const easeSeconds = 0.08;
+/** Times in which bodies change to another delay: a held one quickly, since its user waits for its motion. */
+const easeSeconds = { held: 0.02, released: 0.08 } as const;
 /** A larger slot is an error, and must not allocate gigabytes. */
 export const mostSlots = 1 << 20;
 
@@ -151,11 +152,12 @@ export class PoseBuffer {
   sample(now: number, seconds: number): void {
     if (this.count === 0) return;
     this.sampled_ = now;
-    const ease = 1 - Math.exp(-seconds / easeSeconds);
+    const less = 1 - Math.exp(-seconds / easeSeconds.held);
+    const more = 1 - Math.exp(-seconds / easeSeconds.released);
     const { now: late, goal } = this.lateness;
     for (let body = 0; body < this.capacity; body++) {
       if (this.known[body] === 0) continue;
-      late[body] += (goal[body] - late[body]) * ease;
+      late[body] += (goal[body] - late[body]) * (goal[body] < late[body] ? less : more);
       this.sampleBody_(body, this.drawnStamp(body));
     }
   }
