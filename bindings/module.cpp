@@ -2,6 +2,7 @@
 // The Python module `iota._core`: the engine and the server under their own names. `iota` re-exports it.
 #include "binders.h"
 #include "explained_calls.h"
+#include "places_object.h"
 
 NB_MODULE(_core, module) {
   using namespace iota::bindings;
@@ -24,6 +25,7 @@ NB_MODULE(_core, module) {
   bind_restructuring(module);
   bind_arrays(module);
   bind_parts(module);
+  bind_places(module);
   bind_articulates(module);
   bind_edits(module);
   bind_emitters(module);

@@ -2,6 +2,7 @@
 #include "shape/mesh.h"
 
 #include "base/archive.h"
+#include "geometry/triangle_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -37,31 +38,6 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-/// The point of triangle a b c nearest to p (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
-Vec3 closest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-               d6 = dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return a;
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b);
-  const double inverse = 1 / (va + vb + vc);
-  return a + vb * inverse * ab + vc * inverse * ac;
-}
-
-/// Solid angle of a triangle as seen from p (van Oosterom, Strackee 1983); over a closed surface 4 pi inside, else 0.
-double solid_angle(Vec3 a, Vec3 b, Vec3 c, const Vec3& p) {
-  a -= p, b -= p, c -= p;
-  const double la = norm(a), lb = norm(b), lc = norm(c);
-  return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-}
-
 }  // namespace
 
 std::uint64_t Traits<Mesh>::key(const Mesh& mesh) {
@@ -75,7 +51,7 @@ Vec3 Traits<Mesh>::closest(const Mesh& mesh, const Vec3& p) {
   Vec3 best;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 q = closest_of_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
+    const Vec3 q = geometry::closest_of_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
     if (const double distance = dot(q - p, q - p); distance < least) least = distance, best = q;
   }
   return best;
@@ -84,7 +60,7 @@ Vec3 Traits<Mesh>::closest(const Mesh& mesh, const Vec3& p) {
 bool Traits<Mesh>::is_within(const Mesh& mesh, const Vec3& p) {
   double angle = 0;
   for (const auto& [a, b, c] : mesh.triangles)
-    angle += solid_angle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
+    angle += geometry::solid_angle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
   return angle > 2 * std::numbers::pi;
 }
 

@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pytest
+from slow_asking import SlowAsking
 
 import iota
 
@@ -81,3 +85,93 @@ def test_the_nearest_body_and_those_within_a_distance_are_by_their_surfaces() ->
     assert world.within((0, 1, 0), 0.5001) == [ball]
     assert world.within((0, 1, 0), 0.99) == [ball, rod]
     assert iota.World(iota.System()).nearest((0, 0, 0)) is None
+
+
+def make_crowd(count: int) -> iota.World:
+    """Balls, boxes, meshes, rods and points in motion, some with looks."""
+    random = np.random.default_rng(4)
+    system = iota.System(gravity=(0, 0, 0))
+    corners = [(-0.2, -0.2, -0.2), (0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.3)]
+    mesh = iota.Mesh(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    for number in range(count):
+        place = random.uniform(-3, 3, 3)
+        if number % 5 < 3:
+            shape = (iota.Sphere(0.2), iota.Box((0.4, 0.2, 0.3), rounding=0.02), mesh)[number % 5]
+            body = system.body(shape=shape, position=place)
+            body.angular_velocity = random.normal(size=3)
+        else:
+            body = system.body()
+            for _ in range(1 + number % 3):
+                body.particle(place + random.uniform(-0.3, 0.3, 3))
+        body.velocity = random.normal(size=3)
+    world = iota.World(system, ground=None)
+    world.draw(system.bodies[3::5], iota.looks.capsule(0.03, "steel"))
+    return world
+
+
+def test_a_crowd_in_motion_is_answered_as_one_body_after_the_other() -> None:
+    world, random = make_crowd(80), np.random.default_rng(5)
+    slow = SlowAsking(world)
+    met = 0
+    for round in range(6):
+        for _ in range(15):
+            place, aim = random.uniform(-4, 4, 3), world.system.bodies[random.integers(70)].position
+            along = np.array(list(aim)) - place + 0.1 * random.normal(size=3)
+            hit, expected = world.ray(place, along), slow.ray(place, along)
+            assert (hit is None) == (expected is None)
+            if hit is not None and expected is not None:
+                met += 1
+                assert hit.body == expected.body and hit.distance == pytest.approx(expected.distance, abs=1e-4)
+            near, expected = world.nearest(place), slow.nearest(place)
+            assert near is not None and expected is not None
+            assert near.body == expected.body and near.distance == pytest.approx(expected.distance, abs=1e-9)
+            assert near.point == pytest.approx(expected.point, abs=1e-9)
+            assert world.within(place, 0.8) == slow.within(place, 0.8)
+        for _ in range(20):
+            world.system.step(1 / 60)
+        if round == 1:
+            world.system.bodies[7].destroy()
+        if round == 2:
+            world.draw(world.system.bodies[::4], iota.looks.capsule(0.1, "steel"))
+        if round == 3:
+            world.system.bodies[0].position = (0, 0, 0)
+        if round == 4:
+            world.system.bodies[1].kind = "inactive"
+    assert met > 20
+
+
+def test_ten_thousand_bodies_take_less_than_a_tenth_of_asking_a_thousand_one_by_one() -> None:
+    def least(ask: Callable[[], object], count: int) -> float:
+        times = []
+        for _ in range(count):
+            began = time.perf_counter()
+            ask()
+            times.append(time.perf_counter() - began)
+        return min(times)
+
+    system = iota.System(gravity=(0, 0, 0))
+    system.particle_array(np.random.default_rng(1).uniform(-5, 5, (10_000, 3)))
+    world = iota.World(system, ground=None)
+    few = iota.System(gravity=(0, 0, 0))
+    few.particle_array(np.random.default_rng(1).uniform(-5, 5, (1000, 3)))
+    slow = SlowAsking(iota.World(few, ground=None))
+    for name, arguments in (
+        ("ray", ((-9, 0, 0), (1, 0.1, 0.1))),
+        ("nearest", ((1, 2, 3),)),
+        ("within", ((1, 2, 3), 0.5)),
+    ):
+        quick = least(partial(getattr(world, name), *arguments), 30)
+        assert quick < 0.1 * least(partial(getattr(slow, name), *arguments), 3), name
+
+
+def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:
+    class Nothing(iota.Simulator):
+        bodies = ()
+
+        def step(self, dt: float) -> None: ...
+        def poses(self): ...
+        def snapshot(self) -> bytes: ...
+        def restore(self, snapshot: bytes) -> None: ...
+
+    with pytest.raises(TypeError, match="simulator of its own"):
+        iota.World(Nothing(), ground=None).nearest((0, 0, 0))

@@ -50,10 +50,12 @@ class Scene:
         self.classes: dict[str, Looks] = {}
         self._class_of: dict[Body | SimulatedBody, tuple[str, int]] = {}
         self._untold: dict[Body | SimulatedBody, tuple[str, int]] = {}
+        self._drawn: set[Body | SimulatedBody] = set()
 
     def assign(self, bodies: Iterable[Body | SimulatedBody], name: str) -> None:
         for index, body in enumerate(bodies):
             self._class_of[body] = self._untold[body] = (name, index % 2)
+            self._drawn.add(body)
 
     def looks_of(self, body: Body) -> Looks | None:
         return self.classes[self._class_of[body][0]] if body in self._class_of else None
@@ -63,6 +65,7 @@ class Scene:
         if like in self._class_of:
             name, odd = self._class_of[like]
             self._class_of[body] = self._untold[body] = (name, 1 - odd)
+            self._drawn.add(body)
 
     def thickness_of(self, body: Body) -> float | None:
         """Radius of a body's look, m, if it is round about the body's line; None otherwise."""
@@ -76,6 +79,11 @@ class Scene:
                 elif isinstance(look.shape, Torus):
                     radii.append(look.shape.radius + look.shape.tube)
         return min(radii, default=None)
+
+    def take_drawn(self) -> set[Body | SimulatedBody]:
+        """The bodies that were given a look since the last call."""
+        drawn, self._drawn = self._drawn, set()
+        return drawn
 
     def textures(self) -> Iterator[Texture]:
         """The images on them."""

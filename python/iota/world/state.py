@@ -59,9 +59,14 @@ class State:
         thickness = self.scene.thickness_of(body)
         if thickness is not None:
             return thickness
+        return self.usual_thickness if len(body.particles) > 1 else 2 * self.usual_thickness
+
+    @property
+    def usual_thickness(self) -> float:
+        """Radius of rods without a look, m."""
         if self._usual_thickness is None:
             self._usual_thickness = usual_thickness(self.system)
-        return self._usual_thickness if len(body.particles) > 1 else 2 * self._usual_thickness
+        return self._usual_thickness
 
     def forget_holds(self) -> None:
         """Call it after the system was restored: ends all holds."""

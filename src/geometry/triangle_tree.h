@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/box_tree.h"
+
+#include <iota/shapes.h>
+
+#include <optional>
+
+namespace iota::geometry {
+
+/// The triangles of a closed mesh in a tree, for meshes of many. In the mesh's frame, m.
+class TriangleTree {
+ public:
+  explicit TriangleTree(Mesh mesh);
+
+  /// The nearest point of the surface.
+  Vec3 closest(const Vec3& place) const;
+  bool is_within(const Vec3& place) const;
+  /// Distance along a ray to the surface; 0 for a start inside.
+  std::optional<double> ray(const Vec3& from, const Vec3& unit, double farthest) const;
+
+  /// Around all of them.
+  const Bounds& box() const { return box_; }
+
+ private:
+  Mesh mesh_;
+  Bounds box_;
+  BoxTree tree_;
+};
+
+/// The point of triangle a b c nearest to p.
+Vec3 closest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+/// Solid angle of a triangle as seen from p: over a closed surface 4 pi inside, 0 outside.
+double solid_angle(Vec3 a, Vec3 b, Vec3 c, const Vec3& p);
+/// Distance along a ray to a triangle, from either side.
+std::optional<double> ray_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from, const Vec3& unit);
+
+}  // namespace iota::geometry

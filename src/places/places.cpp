@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "places/places.h"
+
+#include "math/mat3.h"
+#include "shape/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace iota {
+
+using geometry::Bounds;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double close = 1e-6;  ///< of a line's thickness: a ray that comes so near has met it
+constexpr int most_marches = 1000;
+
+Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
+
+Bounds around(const Vec3& center, double radius) {
+  const Vec3 r{radius, radius, radius};
+  return {center - r, center + r};
+}
+
+Vec3 nearest_of_segment(const Vec3& a, const Vec3& b, const Vec3& place) {
+  const Vec3 along = b - a;
+  const double squared = dot(along, along);
+  return squared > 0 ? a + std::clamp(dot(place - a, along) / squared, 0.0, 1.0) * along : a;
+}
+
+void require_finite(const Vec3& place) {
+  if (!is_finite(place)) throw std::invalid_argument("the place must be finite");
+}
+
+double reach_of(const Vec3& low, const Vec3& high) {
+  const auto most = [](double a, double b) { return std::max(std::abs(a), std::abs(b)); };
+  return norm({most(low.x, high.x), most(low.y, high.y), most(low.z, high.z)});
+}
+
+}  // namespace
+
+// ----------------------------------------------------------------------------------------------------------- questions
+
+std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double farthest, Only only) {
+  require_finite(from);
+  const double length = norm(direction);
+  if (!(length > 0 && is_finite(direction))) throw std::invalid_argument("the direction of a ray must not be zero");
+  const Vec3 unit = (1 / length) * direction;
+  std::optional<Hit> first;
+  search_along(from, unit, farthest, only, [&](const Known& body) {
+    if (const auto met = meet(body, from, unit, farthest)) {
+      farthest = *met;
+      first = Hit{body.id, from + *met * unit, *met};
+    }
+    return farthest;
+  });
+  return first;
+}
+
+std::optional<Hit> Places::nearest(const Vec3& place, Only only) {
+  require_finite(place);
+  std::optional<Hit> best;
+  search_near(place, infinity, only, [&](const Known& body) {
+    const Near found = near(body, place);
+    if (found.distance < (best ? best->distance : infinity)) best = Hit{body.id, found.point, found.distance};
+    return best ? std::max(best->distance, 0.0) : infinity;  // within a body, it may be deeper in another one
+  });
+  return best;
+}
+
+std::vector<BodyId> Places::within(const Vec3& place, double radius, Only only) {
+  require_finite(place);
+  if (!(radius >= 0)) throw std::invalid_argument("the radius must be 0 m or more, not " + std::to_string(radius));
+  std::vector<BodyId> found;
+  search_near(place, radius, only, [&](const Known& body) {
+    if (near(body, place).distance <= radius) found.push_back(body.id);
+    return radius;
+  });
+  std::ranges::sort(found, {}, &BodyId::slot);
+  return found;
+}
+
+void Places::set_thickness(BodyId body, double radius) {
+  if (thickness_.size() <= body.slot) thickness_.resize(body.slot + 1);
+  thickness_[body.slot] = {body, radius};
+  has_moved_ = true;
+}
+
+template <class Visit>
+void Places::search_near(const Vec3& place, double within, Only only, Visit visit) {
+  refresh();
+  if (only) {
+    for (const std::uint32_t number : numbers(*only)) visit(known_[number]);
+    return;
+  }
+  for (const std::uint32_t number : endless_) within = visit(known_[number]);
+  tree_.near(place, within, [&](std::uint32_t item) { return visit(known_[items_[item]]); });
+}
+
+template <class Visit>
+void Places::search_along(const Vec3& from, const Vec3& unit, double within, Only only, Visit visit) {
+  refresh();
+  if (only) {
+    for (const std::uint32_t number : numbers(*only)) visit(known_[number]);
+    return;
+  }
+  for (const std::uint32_t number : endless_) within = visit(known_[number]);
+  tree_.along(from, unit, within, [&](std::uint32_t item) { return visit(known_[items_[item]]); });
+}
+
+std::vector<std::uint32_t> Places::numbers(std::span<const BodyId> only) const {
+  std::vector<std::uint32_t> found;
+  for (const BodyId id : only) {
+    (void)system_.bodies().kind(id);  // throws if it is gone
+    if (id.slot < number_.size() && number_[id.slot] != none) found.push_back(number_[id.slot]);
+  }
+  return found;
+}
+
+// ---------------------------------------------------------------------------------------------------------- up to date
+
+void Places::refresh() {
+  if (const std::uint32_t version = system_.viewer().scene_version(); version != version_) {
+    version_ = version;
+    describe_bodies();
+    has_moved_ = true;
+  }
+  read_places();
+  if (!has_moved_ && places_ == before_) return;
+  has_moved_ = false;
+  const std::vector<std::uint32_t> items = std::exchange(items_, {});
+  boxes_.clear(), endless_.clear();
+  for (std::uint32_t number = 0; number < known_.size(); ++number) {
+    const Known& body = known_[number];
+    if (!body.is_active) continue;
+    if (std::isinf(body.reach)) {
+      endless_.push_back(number);
+      continue;
+    }
+    items_.push_back(number);
+    boxes_.push_back(bounds(body));
+  }
+  if (items_ == items && tree_.size() == items_.size())
+    tree_.refit(boxes_);
+  else
+    tree_.build(boxes_);
+  before_ = places_;
+}
+
+void Places::describe_bodies() {
+  known_.clear(), number_.clear(), particles_.clear(), posed_.clear(), solids_.clear();
+  for (const BodyId id : system_.bodies().ids()) {
+    if (system_.viewer().is_spark(id)) continue;
+    Known body{.id = id, .is_active = system_.bodies().kind(id) != BodyKind::inactive};
+    describe_solids(body);
+    if (body.pose == none) {
+      const std::vector<ParticleId> own = system_.bodies().particles(id);
+      if (own.empty()) continue;
+      body.first = static_cast<std::uint32_t>(particles_.size());
+      body.count = static_cast<std::uint32_t>(own.size());
+      particles_.insert(particles_.end(), own.begin(), own.end());
+    }
+    if (number_.size() <= id.slot) number_.resize(id.slot + 1, none);
+    number_[id.slot] = static_cast<std::uint32_t>(known_.size());
+    known_.push_back(body);
+  }
+}
+
+void Places::describe_solids(Known& body) {
+  std::vector<SolidView> views = system_.bodies().solids(body.id);
+  if (views.empty()) return;
+  body.pose = static_cast<std::uint32_t>(posed_.size());
+  posed_.push_back(body.id);
+  body.first = static_cast<std::uint32_t>(solids_.size());
+  const Vec3 place = system_.bodies().center_of_mass(body.id);
+  const Quaternion back = conjugate(system_.bodies().orientation(body.id));
+  for (SolidView& view : views) {
+    Solid solid{{}, nullptr, rotate(back, view.position - place), multiply(back, view.orientation)};
+    double reach = 0;
+    if (auto* const mesh = std::get_if<Mesh>(&view.shape)) {
+      if (mesh->triangles.empty()) continue;  // this system does not have its triangles
+      solid.mesh = std::make_shared<geometry::TriangleTree>(std::move(*mesh));
+      reach = reach_of(solid.mesh->box().low, solid.mesh->box().high);
+    } else {
+      const shape::Bounds box = shape::bounds(view.shape);
+      reach = reach_of(box.low, box.high);
+      solid.shape = view.shape;
+    }
+    body.reach = std::max(body.reach, reach + norm(solid.position));
+    solids_.push_back(std::move(solid));
+  }
+  body.count = static_cast<std::uint32_t>(solids_.size()) - body.first;
+}
+
+void Places::read_places() {
+  const std::size_t points = 3 * particles_.size();
+  places_.resize(points + 7 * posed_.size());
+  const std::span<double> all(places_);
+  system_.many().read(Quantity::position, particles_, all.first(points));
+  system_.many().read(Quantity::pose, posed_, all.subspan(points));
+}
+
+double Places::thickness(const Known& body) const {
+  const std::uint32_t slot = body.id.slot;
+  if (slot < thickness_.size() && thickness_[slot].id == body.id) return thickness_[slot].radius;
+  return body.count > 1 ? usual_line_ : usual_ball_;
+}
+
+Bounds Places::bounds(const Known& body) const {
+  const auto place = [&](std::size_t at) { return Vec3{places_[at], places_[at + 1], places_[at + 2]}; };
+  if (body.pose != none) return around(place(3 * particles_.size() + 7 * body.pose), body.reach);
+  const double radius = thickness(body);
+  Bounds box = around(place(3 * body.first), radius);
+  for (std::uint32_t i = 1; i < body.count; ++i) box = joined(box, around(place(3 * (body.first + i)), radius));
+  return box;
+}
+
+// ------------------------------------------------------------------------------------------------------------ one body
+
+template <class Visit>
+void Places::for_each_line(const Known& body, Visit visit) const {
+  const auto place = [&](std::uint32_t i) {
+    const double* const at = places_.data() + 3 * (body.first + i);
+    return Vec3{at[0], at[1], at[2]};
+  };
+  if (body.count == 1) return visit(place(0), place(0));
+  for (std::uint32_t i = 1; i < body.count; ++i) visit(place(i - 1), place(i));
+}
+
+template <class Visit>
+void Places::for_each_solid(const Known& body, Visit visit) const {
+  const double* const pose = places_.data() + 3 * particles_.size() + 7 * body.pose;
+  const Vec3 place{pose[0], pose[1], pose[2]};
+  const Quaternion turn{pose[3], pose[4], pose[5], pose[6]};
+  for (std::uint32_t i = body.first; i < body.first + body.count; ++i)
+    visit(solids_[i], place + rotate(turn, solids_[i].position), multiply(turn, solids_[i].turn));
+}
+
+Places::Near Places::near(const Known& body, const Vec3& place) const {
+  Near best;
+  if (body.pose != none) {
+    for_each_solid(body, [&](const Solid& solid, const Vec3& origin, const Quaternion& turn) {
+      const Vec3 local = rotate(conjugate(turn), place - origin);
+      const Vec3 point = solid.mesh ? solid.mesh->closest(local) : shape::closest(solid.shape, local);
+      const bool is_within = solid.mesh ? solid.mesh->is_within(local) : shape::is_within(solid.shape, local);
+      const double apart = is_within ? -norm(local - point) : norm(local - point);
+      if (apart < best.distance) best = {apart, origin + rotate(turn, point)};
+    });
+    return best;
+  }
+  const double radius = thickness(body);
+  for_each_line(body, [&](const Vec3& a, const Vec3& b) {
+    const Vec3 middle = nearest_of_segment(a, b, place), away = place - middle;
+    const double length = norm(away);
+    if (length - radius >= best.distance) return;
+    best = {length - radius, middle + radius * (length > 0 ? (1 / length) * away : Vec3{0, 1, 0})};
+  });
+  return best;
+}
+
+std::optional<double> Places::meet(const Known& body, const Vec3& from, const Vec3& unit, double farthest) const {
+  std::optional<double> first;
+  const auto found = [&](std::optional<double> distance) {
+    if (distance && *distance <= farthest) first = distance, farthest = *distance;
+  };
+  if (body.pose != none) {
+    for_each_solid(body, [&](const Solid& solid, const Vec3& origin, const Quaternion& turn) {
+      const Quaternion back = conjugate(turn);
+      const Vec3 local = rotate(back, from - origin), direction = rotate(back, unit);
+      found(solid.mesh ? solid.mesh->ray(local, direction, farthest)
+                       : shape::ray(solid.shape, local, direction, farthest));
+    });
+    return first;
+  }
+  const double radius = thickness(body);
+  for_each_line(body, [&](const Vec3& a, const Vec3& b) {
+    // Sphere tracing, see shape::ray, from the plane before the line to that behind it.
+    const double begin = std::max(std::min(dot(a - from, unit), dot(b - from, unit)) - radius, 0.0);
+    const double end = std::max(dot(a - from, unit), dot(b - from, unit)) + radius;
+    double gone = begin;
+    for (int march = 0; march < most_marches && gone <= std::min(farthest, end); ++march) {
+      const Vec3 place = from + gone * unit;
+      const double apart = norm(place - nearest_of_segment(a, b, place)) - radius;
+      if (apart <= close * radius) return found(gone);
+      gone += apart;
+    }
+  });
+  return first;
+}
+
+}  // namespace iota

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays, nearest bodies and overlaps while bodies move, come and go; against the same questions about listed bodies, which
+// use no tree.
+#include "places/places.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace iota {
+namespace {
+
+struct Crowd {
+  System system{SystemOptions{.gravity = {}}};
+  Places places{system};
+  std::mt19937 random{11};
+
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  Vec3 place(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+
+  void add(int count) {
+    const Shape shapes[] = {Sphere{0.3}, Box{{0.6, 0.4, 0.2}, 0.05}, Capsule{0.1, 0.5}, Cone{0.2, 0.5}};
+    for (int i = 0; i < count; ++i) {
+      if (i % 2 == 0) {
+        (void)system.bodies().create(shapes[i / 2 % 4], {.position = place(5), .velocity = place(2), .spin = place(3)});
+        continue;
+      }
+      const BodyId body = system.bodies().create();
+      const Vec3 at = place(5);
+      for (int p = 0; p < 1 + i % 3; ++p) (void)system.particles().create(body, at + place(0.4), 1, place(2));
+      if (i % 5 == 0) places.set_thickness(body, number(0.01, 0.2));
+    }
+  }
+  void compare() {
+    const std::vector<BodyId> ids = system.bodies().ids();
+    const std::span<const BodyId> all(ids);
+    for (int question = 0; question < 60; ++question) {
+      const Vec3 at = place(6), along = place(1);
+      const auto met = places.ray(at, along), met_slowly = places.ray(at, along, 1e9, all);
+      ASSERT_EQ(met.has_value(), met_slowly.has_value());
+      if (met) {
+        EXPECT_EQ(met->distance, met_slowly->distance);
+      }
+      const auto nearest = places.nearest(at), nearest_slowly = places.nearest(at, all);
+      ASSERT_TRUE(nearest && nearest_slowly);
+      EXPECT_EQ(nearest->distance, nearest_slowly->distance);
+      EXPECT_EQ(places.within(at, 0.7), places.within(at, 0.7, all));
+    }
+  }
+};
+
+TEST(Places, of_bodies_are_found_as_by_a_look_at_each_while_they_move_come_and_go) {
+  Crowd crowd;
+  System& system = crowd.system;
+  EXPECT_FALSE(crowd.places.nearest({}));
+  EXPECT_FALSE(crowd.places.ray({}, {1, 0, 0}));
+  EXPECT_TRUE(crowd.places.within({}, 1).empty());
+  crowd.add(200);
+  crowd.compare();
+  const Snapshot start = system.snapshot();
+  for (int round = 0; round < 8; ++round) {
+    (void)system.step(0.05, 5);
+    crowd.compare();
+    if (round == 2) crowd.add(50);
+    if (round == 3)
+      for (const BodyId body : system.bodies().ids())
+        if (body.slot % 3 == 0) system.bodies().destroy(body);
+    if (round == 4)
+      for (const BodyId body : system.bodies().ids()) system.bodies().set_pose(body, crowd.place(5), {0, 0, 0, 1});
+    if (round == 5) system.restore(start);
+    crowd.compare();
+  }
+}
+
+TEST(Places, follow_an_edit_between_two_questions) {
+  System system;
+  Places places(system);
+  const BodyId body = system.bodies().create(Sphere{0.5});
+  EXPECT_NEAR(places.ray({-5, 0, 0}, {2, 0, 0})->distance, 4.5, 1e-6);
+  system.bodies().set_pose(body, {1, 0, 0}, {0, 0, 0, 1});
+  EXPECT_NEAR(places.ray({-5, 0, 0}, {2, 0, 0})->distance, 5.5, 1e-6);
+  system.bodies().set_kind(body, BodyKind::inactive);
+  EXPECT_FALSE(places.ray({-5, 0, 0}, {1, 0, 0}));
+}
+
+TEST(Places, know_a_half_space_from_everywhere_and_a_mesh_by_its_triangles) {
+  System system;
+  const BodyId ground = system.bodies().create(HalfSpace{{0, 1, 0}}, {.kind = BodyKind::static_});
+  const Mesh cube = convex_hull(std::vector<Vec3>{
+      {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}});
+  const BodyId block = system.bodies().create(cube, {.position = {0, 3, 0}, .kind = BodyKind::static_});
+  Places places(system);
+  const auto under = places.ray({1e6, 50, 0}, {0, -1, 0});
+  ASSERT_TRUE(under);
+  EXPECT_EQ(under->body, ground);
+  EXPECT_NEAR(under->distance, 50, 1e-3);
+  const auto on = places.ray({0.5, 50, 0.2}, {0, -1, 0});
+  ASSERT_TRUE(on);
+  EXPECT_EQ(on->body, block);
+  EXPECT_NEAR(on->distance, 46, 1e-9);
+  const auto inside = places.nearest({0, 3.9, 0});
+  ASSERT_TRUE(inside);
+  EXPECT_EQ(inside->body, block);
+  EXPECT_NEAR(inside->distance, -0.1, 1e-9);
+  EXPECT_NEAR(inside->point.y, 4, 1e-9);
+  EXPECT_EQ(places.within({0, 1, 0}, 1.001).size(), 2u);
+}
+
+TEST(Places, refuse_places_directions_and_radii_that_are_none) {
+  System system;
+  const BodyId gone = system.bodies().create(Sphere{0.5});
+  Places places(system);
+  const double nan = std::nan("");
+  EXPECT_THROW((void)places.ray({}, {}), std::invalid_argument);
+  EXPECT_THROW((void)places.ray({nan, 0, 0}, {1, 0, 0}), std::invalid_argument);
+  EXPECT_THROW((void)places.nearest({0, nan, 0}), std::invalid_argument);
+  EXPECT_THROW((void)places.within({}, -1), std::invalid_argument);
+  EXPECT_THROW((void)places.within({}, nan), std::invalid_argument);
+  system.bodies().destroy(gone);
+  EXPECT_THROW((void)places.nearest({}, std::span(&gone, 1)), StaleIdError);
+  EXPECT_FALSE(places.nearest({}, std::span<const BodyId>{}));
+}
+
+}  // namespace
+}  // namespace iota
