@@ -17,6 +17,7 @@ from iota.world.clients import alive
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event, Hand
 from iota.world.listeners import Drag, Listener
+from iota.world.pace import Pace
 from iota.world.state import State
 from iota.world.widgets import Widget
 
@@ -27,6 +28,7 @@ class Inputs:
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
         self._waiting: list[tuple[InputEvent, list[Any]]] = []
+        self._pace = Pace()
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def call(self, function: Callable[[], None]) -> None:
@@ -44,6 +46,13 @@ class Inputs:
             body = bodies[0] if bodies else None
             if event.kind == "picture":
                 self._state.pictures.take(event)
+                continue
+            if event.kind == "leave":
+                self._pace.forget(event.client)
+            elif not self._pace.allows(event.client, event.kind):
+                if self._pace.is_first_refusal(event.client):
+                    text = "A page can run 30 actions a second. The others were left out."
+                    self._state.notices.send("Too fast", text, client=event.client)
                 continue
             if event.names_body and body is None:
                 if event.kind == "pointer":
