@@ -67,7 +67,7 @@ class StreamFile:
             left = left[self._file.write(left) :]
 
 
-class Recording:
+class LiveRecording:
     """What pages show of a running world, with what its users do, written to a file: made by `World.record`.
 
     path: of the file. error: why writing ended early, or None."""
@@ -81,7 +81,7 @@ class Recording:
         self._stop = threading.Event()
         self._writer = threading.Thread(target=self._write, name="iota-recording", daemon=True)
 
-    def __enter__(self) -> Recording:
+    def __enter__(self) -> LiveRecording:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -32,7 +32,7 @@ from iota.world.inputs import Inputs
 from iota.world.interacting import Interacting
 from iota.world.lan import Lan
 from iota.world.publisher import Publisher
-from iota.world.recording import Recording
+from iota.world.recording import LiveRecording
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.skins import Skin
@@ -89,7 +89,7 @@ class World(Interacting, Asking):
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
         self._state.clients.take_picture = self._take_picture
         self._publisher: Publisher | None = None
-        self._recordings: list[Recording] = []
+        self._recordings: list[LiveRecording] = []
         self._runner: int | None = None
         self._background: threading.Thread | None = None
         self._stopping = False
@@ -231,7 +231,7 @@ class World(Interacting, Asking):
             raise RuntimeError("pages load modules when they open: call client_module before the world is served")
         add_module(self._state.client_modules, Path(file))
 
-    def record(self, file: str | Path) -> Recording:
+    def record(self, file: str | Path) -> LiveRecording:
         """Writes what pages show, with all that users do, to a file while the world is served, until `stop` of the result,
         its with block, or the world ends; `iota play` shows it. The file ends in .iota. If the process is killed, it plays
         up to then. If the disk is full, a card tells so and the world goes on. Raises ValueError for another ending,
@@ -249,7 +249,7 @@ class World(Interacting, Asking):
             self._inputs.call(lambda: self._state.notices.send("The recording ended", text, level="warning", keep=True))
 
         try:
-            recording = Recording(path, fail)
+            recording = LiveRecording(path, fail)
         except OSError as error:
             raise OSError(f"{path} cannot be written: {error.strerror or error}") from None
         self._recordings.append(recording)
