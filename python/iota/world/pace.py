@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 ACTIONS = 30.0  # a second of one page, and at once
-SHARE = {"action": 1.0, "change": 0.1, "pointer": 0.1, "key": 0.1}  # of an action that an event counts as
+SHARE = {"action": 1.0, "change": 0.1, "pointer": 0.05, "key": 0.1}  # of an action that an event counts as
 
 
 @dataclass
@@ -19,7 +19,8 @@ class _Allowance:
 
 
 class Pace:
-    """30 actions a second of each page; ten times as many clicks, keys and changes of controls. now: s."""
+    """30 actions a second of each page; ten times as many keys and changes of controls, twenty times as many clicks and moves
+    of pointers. now: s."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
         self._now = now
