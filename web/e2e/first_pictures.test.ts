@@ -41,7 +41,7 @@ async function withStart(study: string, look: (tab: Tab) => Promise<void>): Prom
 describe("the first picture", () => {
   it.each(studyNames())("of %s is the kept one", async (study) => {
     await withStart(study, (tab) => expectKept(tab, `study_${study}`, () => take(tab)));
-  });
+  }, 300_000);
 
   it("is not the kept one where something is missing, black or elsewhere", async () => {
     await withStart("cradle", async (tab) => {
