@@ -49,7 +49,7 @@ class Rocket:
         if self.is_ready:
             return
         self._tail.move(self.particle.position)
-        if self.particle.velocity.y < 0.3:
+        if self.particle.velocity.y < 0.3 and self._world.held() != self.particle.body:  # not in a hand
             self._star.move(self.particle.position)
             self._tail.active, self._star.active = False, True
             self._world.after(0.1)(lambda: setattr(self._star, "active", False))
