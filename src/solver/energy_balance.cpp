@@ -14,6 +14,12 @@ constexpr double round_off_of_energy = 1e-14;
 constexpr double of_motion = 1e-9;  // of the kinetic energy: what the tolerance of a solve may make
 constexpr double finest = 1e-12;    // of a length: motion below it is round-off
 
+/// Of motions below round-off of the places, J: a body at rest has no less.
+double jitter_energy(const Problem& problem, double reference_length, double h) {
+  const double jitter = finest * reference_length / h;
+  return std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
+}
+
 /// One solved (sub-)step.
 struct Solved {
   const Problem& problem;
@@ -192,6 +198,8 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();
+  if (energy.gained() > energy.round_off)
+    energy.round_off += jitter_energy(problem, newton.reference_length(), stage.h);
   energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
   if (energy.made() > energy.slack)
     energy.slack +=
@@ -208,10 +216,7 @@ void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
 }
 
 void EnergyBalance::close(const Problem& problem, double reference_length, double h, AdvanceReport& report) {
-  if (missing < -slack) {
-    const double jitter = finest * reference_length / h;
-    slack += std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
-  }
+  if (missing < -slack) slack += jitter_energy(problem, reference_length, h);
   (missing < -slack ? report.made : report.lost) += missing < -slack ? -missing : missing;
   missing = slack = 0;
 }

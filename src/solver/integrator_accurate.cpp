@@ -64,15 +64,6 @@ bool has_closed_row(const Problem& problem) {
   return closed;
 }
 
-bool is_internal(const Problem& problem) {
-  bool internal = problem.items_of<GyroscopicForce>().empty();
-  for (const Vec3& force : problem.force) internal = internal && force == Vec3{};
-  problem.for_each_force_pool([&](const auto& pool) {
-    for (const auto& f : pool.items) internal = internal && f.arm.is_internal();
-  });
-  return internal;
-}
-
 /// Time in which the motion may change its direction, s: of the links by their rates and accelerations.
 double time_scale(const Problem& problem, std::span<const Vec3> accelerations) {
   double fastest = 0;  // squared, 1/s^2
@@ -96,8 +87,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
   if (!runge_kutta_) runge_kutta_ = std::make_unique<RungeKutta>();
   RungeKutta& steps = *runge_kutta_;
   steps.begin(newton_, problem);
-  const std::optional<RigidMotion> free =
-      holds_.are_none() && is_internal(problem) ? std::optional(rigid_motion_of(problem)) : std::nullopt;
+  const std::optional<RigidMotion> free = free_motion(problem);
   double time = 0, part = first * time_scale(problem, steps.accelerations());
   while (time < h) {
     part = (h - time) / std::ceil((h - time) / part * (1 - 1e-9));
@@ -130,7 +120,17 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
   return time < h ? time / h : 1;
 }
 
-// Of a problem that nothing outside acts on but gravity: `start` is its motion `time` seconds before.
+// If nothing outside acts on the problem but gravity.
+std::optional<RigidMotion> Integrator::free_motion(const Problem& problem) const {
+  bool is_free = holds_.are_none() && problem.items_of<GyroscopicForce>().empty();
+  for (const Vec3& force : problem.force) is_free = is_free && force == Vec3{};
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) is_free = is_free && f.arm.is_internal();
+  });
+  return is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
+}
+
+// `start` is the free motion `time` seconds before.
 void Integrator::keep_momenta(Problem& problem, const RigidMotion& start, double time) const {
   const RigidMotion now = rigid_motion_of(problem);
   const Vec3 drift = start.velocity + time * problem.gravity - now.velocity;

@@ -149,9 +149,10 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   return report;
 }
 
-// Halves the step until the residual or the merit falls; returns the number of halvings. Beside a saddle of springs, as of cloth
-// that buckles, the clamped Hessian lacks what drives the points away: its steps lead in the right direction, but are a small part of the way.
-// So one that need not be halved is doubled while the merit falls: 31 % fewer iterations of a cloth of 32 x 32 springs.
+// Halves the step until the residual or the merit falls; returns the number of halvings. Beside a saddle of springs, as
+// of cloth that buckles, the clamped Hessian lacks what drives the points away: its steps lead in the right direction, but
+// are a small part of the way. So one that need not be halved is doubled while the merit falls: 31 % fewer iterations of a
+// cloth of 32 x 32 springs.
 template <bool Midpoint>
 int Newton::stretch(Problem& problem, const Stage& stage, double before, bool is_clamped) {
   // Weights above the new multipliers make the merit exact: violating constraints cannot reduce it.
@@ -170,9 +171,9 @@ int Newton::stretch(Problem& problem, const Stage& stage, double before, bool is
     scale_step(problem, stage, 0.5);
     measure<Midpoint>(problem, stage);
   }
-  // Beside a saddle of rows, as of an arm pulled beyond its reach, the points would only leave faster (227 J instead of 100).
-  const bool has_springs = problem.has_used<SpringForce>() || problem.has_used<RadialForce>();
-  if (!is_clamped || halvings > 0 || !has_springs) return halvings;
+  // Beside a saddle of rows, as of an arm pulled beyond its reach, the points would only leave faster (227 J instead of
+  // 100).
+  if (!is_clamped || halvings > 0 || !problem.has_used_springs()) return halvings;
   double least = merit(problem, stage, x_.data());
   int doublings = 0;
   while (doublings < Set::max_doublings) {

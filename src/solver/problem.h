@@ -197,6 +197,7 @@ struct Problem {
   bool has_used() const {
     return used_ >> place_of<Item>() & 1u;
   }
+  bool has_used_springs() const { return has_used<SpringForce>() || has_used<RadialForce>(); }
   bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
   /// Of an item in a constraint pool, by the pool's place among those that the folds visit.
   ItemKey key_of(std::size_t pool, std::size_t item) const {

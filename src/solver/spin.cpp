@@ -17,12 +17,6 @@ void for_each_mass(const Problem& problem, Visit visit) {
   for (const auto& c : problem.mass_couplings) visit(c.mass, c.a, c.b), visit(c.mass, c.b, c.a);
 }
 
-/// The largest share s <= 1 of a change of velocities, whose energy is first s + second s^2, with a gain up to a limit.
-double largest_share(double first, double second, double limit) {
-  if (!(first + second > limit)) return 1;
-  return (std::sqrt(first * first + 4 * second * limit) - first) / (2 * second + 1e-300);
-}
-
 /// visit(part): each part of which some of the nodes are.
 template <class Visit>
 void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::uint32_t> part_of, Visit visit) {
@@ -154,7 +148,7 @@ void Spin::find_supports(const Problem& problem) {
 
 /// Whether forces connect pieces, or damp them. What a spring holds to the world is no cluster: it may be stiff as a nail.
 bool Spin::find_clusters(const Problem& problem, const Holds& all) {
-  if (!problem.has_used<SpringForce>() && !problem.has_used<RadialForce>()) return false;
+  if (!problem.has_used_springs()) return false;
   find_parts(problem, Connection::rows_and_forces, all, clusters_);
   const auto drop_held = [&](const auto& forces) {
     for (const auto& f : forces)
@@ -256,14 +250,26 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
   const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
   const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
   const bool are_members_due = find_members(problem) && find_losses(problem, displacement, h, members_);
+  const bool are_wheels_due = wheels_.find_losses(problem, displacement, h);
   if (are_members_due) most_gain -= turn_members(problem, most_gain);
+  if (are_wheels_due)
+    most_gain -= wheels_.turn(
+        problem, most_gain,
+        [&](auto points) {  // not yet done as a member
+          return !are_members_due ||
+                 std::none_of(points.begin(), points.end(), [&](std::uint32_t i) { return members_.of(i).is_due; });
+        },
+        [&](auto points, const Vec3& given) {
+          Part& piece = pieces_.of(points.front());
+          piece.lost += given, piece.given += given;
+        });
   if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, is_rigid ? Rest::gives_all : Rest::gives, pieces_);
   if (are_clusters_due) {
     for (std::uint32_t i = 0; i < problem.size(); ++i)
       clusters_.of(i).lost += std::exchange(pieces_.of(i).given, Vec3{});
     (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
   }
-  return are_pieces_due || are_clusters_due || are_members_due;
+  return are_pieces_due || are_clusters_due || are_members_due || are_wheels_due;
 }
 
 /// By the angular impulse that each has lost, while its supports do not move. What that pushes a free piece is taken back from all

@@ -5,6 +5,7 @@
 #include "solver/holds.h"
 #include "solver/pieces.h"
 #include "solver/problem.h"
+#include "solver/wheels.h"
 
 #include <array>
 #include <cstdint>
@@ -22,11 +23,14 @@ namespace iota::solver {
 class Spin {
  public:
   /// After a change of structure.
-  void forget() { pieces_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear(); }
+  void forget() {
+    pieces_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear();
+    wheels_.forget();
+  }
 
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
-  /// along the line at the start. Members get theirs first, then pieces and clusters the remainder. Velocities are those after
+  /// along the line at the start. Members and wheels get theirs first, then pieces and clusters the remainder. Velocities are those after
   /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; what is above, the rest of a
   /// piece's motion gives, and others forgo. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
   bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
@@ -82,6 +86,7 @@ class Spin {
   void add_momenta(const Problem&);
 
   Parts pieces_, clusters_, members_;
+  Wheels wheels_;
   // Of each member.
   std::vector<Support> supports_;
   std::vector<std::uint32_t> piece_of_;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/function_ref.h"
+#include "solver/problem.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// The largest share s <= 1 of a change of velocities, whose energy is first s + second s^2, with a gain up to a limit.
+double largest_share(double first, double second, double limit);
+
+/// Balanced bodies that share exactly two points with the rest, and so can turn about the line through these: wheels.
+/// No row notices that motion, e_i = n x (x_i - a) of each own point i, so its momentum p = sum M_ij v_j . e_i changes
+/// only by the moment of forces, as the center of mass is on the line.
+class Wheels {
+ public:
+  /// After a change of structure.
+  void forget() { is_known_ = false; }
+
+  /// What a step of the end-point rule has taken from p, as Spin::give_back. The rule takes moments where the step ends,
+  /// sum M_ij (v1 - v0)_j . e1_i = h moment, and so loses sum M_ij (v1 - v0)_j . (e1 - e0)_i. Velocities are those after
+  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. Returns whether any wheel has lost something.
+  bool find_losses(const Problem&, std::span<const Vec3> displacement, double h);
+
+  /// Returns it to the wheels with is_due(own points), and calls given(own points, angular momentum) for each. The energy
+  /// rises by `most_gain` at most, J. Returns by how much.
+  double turn(Problem&, double most_gain, FunctionRef<bool(std::span<const std::uint32_t>)> is_due,
+              FunctionRef<void(std::span<const std::uint32_t>, const Vec3&)> given);
+
+ private:
+  static constexpr std::size_t most_nodes = 8;  // of a body: four that carry it, and some markers
+  struct Wheel {
+    std::array<std::uint32_t, 2> axis;
+    std::array<std::uint32_t, most_nodes> own;
+    std::uint32_t own_count = 0;
+    std::vector<std::uint32_t> couplings;  // of its own points' masses
+    std::array<Vec3, most_nodes> turning;  // e at the end of the step
+    double lost = 0;                       // kg m^2/s
+    double inertia = 0;                    // kg m^2
+    double turn = 0;                       // rad/s
+
+    std::span<const std::uint32_t> points() const { return {own.data(), own_count}; }
+    /// Among its own points; `own_count` or more if it is another one.
+    std::size_t place_of(std::uint32_t node) const {
+      return static_cast<std::size_t>(std::find(own.begin(), own.begin() + own_count, node) - own.begin());
+    }
+  };
+  void find(const Problem&);
+  template <class Visit>
+  static void for_each_mass(const Problem&, const Wheel&, Visit);
+
+  bool is_known_ = false;
+  std::vector<Wheel> wheels_;
+};
+
+}  // namespace iota::solver
