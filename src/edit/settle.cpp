@@ -153,8 +153,12 @@ Conserved& Conserved::add(const Conserved& other, double sign) {
 
 Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind,
                              RestructureReport& report)
-    : editor_(editor), report_(report), body_count_(bodies.size()), kind_(kind), followers_(editor.model, bodies) {
-  std::copy(bodies.begin(), bodies.end(), bodies_.begin());
+    : editor_(editor),
+      report_(report),
+      bodies_{bodies.front(), bodies.back()},
+      body_count_(bodies.size()),
+      kind_(kind),
+      followers_(editor.model, bodies) {
   report.articulates_before = editor.model.articulates.size();
   if (kind != Kind::moving) return;
   around_ = bodies_around(editor.model, bodies);
