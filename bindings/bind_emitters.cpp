@@ -20,23 +20,6 @@ constexpr const char* make_doc =
     "    fire = system.emitter(rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
     "                          curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
 
-Color to_color(nb::handle value, const char* name) {
-  Color color{1, 1, 1, 1};
-  try {
-    const auto numbers = nb::cast<std::vector<double>>(value);
-    if (numbers.size() == 3 || numbers.size() == 4) {
-      bool good = true;
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        good = good && numbers[i] >= 0 && numbers[i] <= 1;
-        color[i] = static_cast<float>(numbers[i]);
-      }
-      if (good) return color;
-    }
-  } catch (const nb::cast_error&) {
-  }
-  throw nb::value_error((std::string(name) + " must be 3 or 4 numbers from 0 to 1, not " + describe(value)).c_str());
-}
-
 nb::tuple from_color(const Color& c) { return nb::make_tuple(c[0], c[1], c[2], c[3]); }
 nb::tuple from_quaternion(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q.w); }
 

@@ -15,7 +15,8 @@ constexpr const char* make_doc =
     "A new particle of the body.\n\n"
     "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0. mass=0 makes a\n"
     "marker: a massless particle fixed to the massive ones of the body, within the line, plane or space that they\n"
-    "span. It can be hinged, nailed, bonded and constrained as any other particle.\n\n"
+    "span. It can be hinged, nailed, bonded and constrained as any other particle. lifetime: s, radius: m, color: see\n"
+    "the properties of these names.\n\n"
     "    p = body.particle((0, 1, 0), mass=0.2)\n"
     "    p.velocity = (1, 0, 0)";
 
@@ -98,14 +99,24 @@ void bind_particle(nb::module_& module) {
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
       .def(
           "particle",
-          [](const BodyHandle& self, VectorArgument position, double mass, VectorArgument velocity) {
+          [](const BodyHandle& self, VectorArgument position, double mass, VectorArgument velocity,
+             std::optional<double> lifetime, std::optional<double> radius, nb::object color, bool nailed) {
             const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
             if (mass != 0) finite_positive(mass, "mass", "kg");
             self.use();
             System& engine = self.system->use_between_steps("particle(...)");
-            return sibling(self, engine.particles().create(self.id, place, mass, speed));
+            ParticleAttributes attributes;
+            if (lifetime && *lifetime != attributes.lifetime)
+              attributes.lifetime = finite_positive(*lifetime, "lifetime", "s");
+            if (radius) attributes.radius = finite_not_negative(*radius, "radius", "m");
+            if (!color.is_none()) attributes.color = to_color(color, "color");
+            const ParticleHandle made = sibling(self, engine.particles().create(self.id, place, mass, speed));
+            if (lifetime || radius || !color.is_none()) engine.particles().set_attributes(made.id, attributes);
+            if (nailed) engine.particles().nail(made.id);
+            return made;
           },
           "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
+          nb::kw_only(), "lifetime"_a = nb::none(), "radius"_a = nb::none(), "color"_a = nb::none(), "nailed"_a = false,
           make_doc);
   module.def(
       "make_bodies", &make_bodies, "system"_a, "counts"_a, "position"_a, "mass"_a, "velocity"_a,

@@ -27,6 +27,8 @@ nb::object array_of(nb::handle values, const char* dtype, const char* name) {
   return array;
 }
 
+}  // namespace
+
 Mesh make_mesh(nb::handle vertices, nb::handle triangles) {
   const nb::object places = array_of(vertices, "float64", "vertices"),
                    faces = array_of(triangles, "int64", "triangles");
@@ -45,6 +47,8 @@ Mesh make_mesh(nb::handle vertices, nb::handle triangles) {
   }
   return mesh;
 }
+
+namespace {
 
 nb::object matrix(const Matrix3& rows) {
   std::vector<double> numbers;
@@ -177,13 +181,14 @@ void def_mesh(nb::class_<Mesh>& type) {
       .def_static(
           "load",
           [](nb::object path) {
-            nb::object loaded = nb::module_::import_("trimesh").attr("load")(path, "force"_a = "mesh");
-            Mesh made = make_mesh(loaded.attr("vertices"), loaded.attr("faces"));
+            const nb::object read = nb::module_::import_("iota.shapelib.surface_files").attr("read_any")(path);
+            Mesh made = make_mesh(read[0], read[1]);
             (void)mass_properties(made);
             return made;
           },
           "path"_a, nb::sig("def load(path: str | os.PathLike[str]) -> Mesh"),
-          "Reads a file of any format that trimesh knows. Raises ImportError without trimesh.")
+          "Reads a file of any format that trimesh knows, in a process of its own. Raises ValueError that names the file, and\n"
+          "ImportError without trimesh.")
       .def_static(
           "convex_hull",
           [](nb::handle points) {

@@ -13,5 +13,7 @@ namespace nb = nanobind;
 Shape to_shape(nb::handle value);
 bool is_shape(nb::handle value);
 nb::object from_shape(const Shape& shape);
+/// From arrays (n, 3) and (k, 3). Does not check the numbers of vertices.
+Mesh make_mesh(nb::handle vertices, nb::handle triangles);
 
 }  // namespace iota::bindings

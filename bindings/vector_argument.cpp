@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vector_argument.h"
 
+#include <nanobind/stl/vector.h>
+
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace iota::bindings {
 
@@ -106,6 +109,23 @@ double finite_not_negative(double value, const char* name, const char* unit) {
   if (!(std::isfinite(value) && value >= 0))
     raise_value(std::string(name) + " must be finite and at least 0 " + unit + ", not " + number_text(value));
   return value;
+}
+
+Color to_color(nb::handle value, const char* name) {
+  Color color{1, 1, 1, 1};
+  try {
+    const auto numbers = nb::cast<std::vector<double>>(value);
+    if (numbers.size() == 3 || numbers.size() == 4) {
+      bool good = true;
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        good = good && numbers[i] >= 0 && numbers[i] <= 1;
+        color[i] = static_cast<float>(numbers[i]);
+      }
+      if (good) return color;
+    }
+  } catch (const nb::cast_error&) {
+  }
+  throw nb::value_error((std::string(name) + " must be 3 or 4 numbers from 0 to 1, not " + describe(value)).c_str());
 }
 
 }  // namespace iota::bindings

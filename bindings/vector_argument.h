@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/attributes.h>
 #include <iota/vec3.h>
 
 #include <nanobind/nanobind.h>
@@ -24,6 +25,9 @@ Vec3 to_vec3(VectorArgument argument, const char* name);
 
 /// A unit quaternion from any 4 numbers x y z w; TypeError or ValueError for other values, or zero.
 Quaternion to_quaternion(nb::handle value, const char* name);
+
+/// Red, green, blue and opacity from 3 or 4 numbers from 0 to 1; ValueError for other values.
+Color to_color(nb::handle value, const char* name);
 
 /// `value` in short, for error texts.
 std::string describe(nb::handle value);

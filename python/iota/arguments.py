@@ -11,7 +11,7 @@ import difflib
 import re
 import reprlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from iota import _core
 
@@ -114,8 +114,11 @@ class Signature:
         places.update(named)
         for argument in [*positional, *self.keywords]:
             if argument.arg in places:
-                if text := self.explain_value(argument, places[argument.arg], f"{called(self.name)}: {argument.arg}"):
-                    return text
+                value = places[argument.arg]
+                if text := self.explain_value(argument, value, f"{called(self.name)}: {argument.arg}"):
+                    return text + self.place_for(
+                        value, [other for other in [*positional, *self.keywords] if other.arg not in places]
+                    )
             elif argument.arg not in self.optional:
                 return f"{called(self.name)} needs {argument.arg}: {in_words(argument.annotation)}"
         return None
@@ -126,6 +129,15 @@ class Signature:
         if isinstance(value, int) and fits(argument.annotation, 0):
             return f"{label} must be {in_words(argument.annotation)} of usual size, not {SHORT.repr(value)}"
         return f"{label} must be {in_words(argument.annotation)}, not {SHORT.repr(value)}"
+
+    def place_for(self, value: Any, free: Sequence[ast.arg]) -> str:
+        """The only free argument that takes objects of this class."""
+        takes = [
+            argument.arg
+            for argument in free
+            if any(isinstance(value, classes_of(option)) for option in options_of(argument.annotation))
+        ]
+        return f"; did you mean {takes[0]}=...?" if len(takes) == 1 else ""
 
     def too_many(self, positional: Sequence[ast.arg], count: int) -> str:
         takes = ", ".join(argument.arg for argument in positional)
@@ -172,9 +184,15 @@ def parts_of(annotation: ast.expr) -> list[ast.expr]:
     return list(annotation.slice.elts) if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
 
 
-def class_of(annotation: ast.expr | None) -> type | None:
+def classes_of(annotation: ast.expr | None) -> tuple[type, ...]:
+    """Box, Sphere, ... of 'Shape'."""
     found = getattr(_core, base_name(annotation), None) if annotation is not None else None
-    return found if isinstance(found, type) else None
+    return (found,) if isinstance(found, type) else get_args(found)
+
+
+def class_of(annotation: ast.expr | None) -> type | None:
+    found = classes_of(annotation)
+    return found[0] if len(found) == 1 else None
 
 
 def result_of(function: Any) -> type | None:
@@ -215,8 +233,8 @@ def fits_one(option: ast.expr, value: Any) -> bool:
         return all(fits(part, item) for part, item in zip(parts, value, strict=True))
     if name in ("list", "Iterable"):
         return isinstance(value, Iterable)
-    if kind := class_of(option):
-        return isinstance(value, kind) or (name == "Vec3" and value is not None)
+    if kinds := classes_of(option):
+        return isinstance(value, kinds) or (name == "Vec3" and value is not None)
     return value is not None
 
 

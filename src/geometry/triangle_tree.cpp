@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/triangle_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -34,21 +35,37 @@ double solid_angle(Vec3 a, Vec3 b, Vec3 c, const Vec3& p) {
   return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
+namespace {
+
+/// Where a line meets the plane of a triangle: the distance along it, and shares of b and c in the point.
+struct Crossing {
+  double distance = 0, b = 0, c = 0;
+  bool is_outward = false;  ///< the line leaves what the triangle bounds
+};
+
 // Moeller, Trumbore 1997.
-std::optional<double> ray_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from, const Vec3& unit) {
+std::optional<Crossing> crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from, const Vec3& unit) {
   const Vec3 ab = b - a, ac = c - a, across = cross(unit, ac), start = from - a;
   const double area = dot(ab, across);
   if (area == 0) return std::nullopt;
-  const double u = dot(start, across) / area;
   const Vec3 side = cross(start, ab);
-  const double v = dot(unit, side) / area, distance = dot(ac, side) / area;
-  // A ray through an edge must not pass between its two triangles.
-  constexpr double round_off = 1e-12;
-  if (!(u >= -round_off && v >= -round_off && u + v <= 1 + round_off && distance >= 0)) return std::nullopt;
-  return distance;
+  return Crossing{dot(ac, side) / area, dot(start, across) / area, dot(unit, side) / area, area < 0};
 }
 
-TriangleTree::TriangleTree(Mesh mesh) : mesh_(std::move(mesh)) {
+/// The share by which a crossing is within a triangle; negative outside.
+double depth(const Crossing& met) { return std::min({met.b, met.c, 1 - met.b - met.c}); }
+
+}  // namespace
+
+std::optional<double> ray_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from, const Vec3& unit) {
+  // A ray through an edge must not pass between its two triangles.
+  constexpr double round_off = 1e-12;
+  const auto met = crossing(a, b, c, from, unit);
+  if (!met || depth(*met) < -round_off || !(met->distance >= 0)) return std::nullopt;
+  return met->distance;
+}
+
+TriangleTree::TriangleTree(Mesh mesh, bool is_closed) : mesh_(std::move(mesh)), is_closed_(is_closed) {
   std::vector<Bounds> boxes;
   boxes.reserve(mesh_.triangles.size());
   for (const auto& [a, b, c] : mesh_.triangles)
@@ -72,8 +89,23 @@ Vec3 TriangleTree::closest(const Vec3& place) const {
   return best;
 }
 
+// By how often a ray leaves the surface more than it enters it. Near an edge that is not sure: then by solid angles, which
+// look at each triangle.
 bool TriangleTree::is_within(const Vec3& place) const {
-  if (distance(box_, place) > 0) return false;
+  if (!is_closed_ || distance(box_, place) > 0) return false;
+  constexpr Vec3 unit{0.48038446141526142, 0.61257153012461, 0.62762987};  // in no symmetry of a usual mesh
+  constexpr double unsure = 1e-9, endless = std::numeric_limits<double>::infinity();
+  int leaves = 0;
+  bool is_sure = true;
+  tree_.along(place, unit, endless, [&](std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    const auto met = crossing(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c], place, unit);
+    if (!met || depth(*met) < -unsure || met->distance < 0) return endless;
+    if (depth(*met) < unsure) is_sure = false;
+    leaves += met->is_outward ? 1 : -1;
+    return endless;
+  });
+  if (is_sure) return leaves > 0;
   double angle = 0;
   for (const auto& [a, b, c] : mesh_.triangles)
     angle += solid_angle(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c], place);

@@ -9,10 +9,11 @@
 
 namespace iota::geometry {
 
-/// The triangles of a closed mesh in a tree, for meshes of many. In the mesh's frame, m.
+/// The triangles of a mesh in a tree, for meshes of many. In the mesh's frame, m.
 class TriangleTree {
  public:
-  explicit TriangleTree(Mesh mesh);
+  /// is_closed: it has an inside.
+  explicit TriangleTree(Mesh mesh, bool is_closed = true);
 
   /// The nearest point of the surface.
   Vec3 closest(const Vec3& place) const;
@@ -20,11 +21,22 @@ class TriangleTree {
   /// Distance along a ray to the surface; 0 for a start inside.
   std::optional<double> ray(const Vec3& from, const Vec3& unit, double farthest) const;
 
+  /// Calls visit(a, b, c) with the corners of each triangle whose box is at most `within` m away, and maybe others.
+  template <class Visit>
+  void near(const Vec3& place, double within, Visit visit) const {
+    tree_.near(place, within, [&](std::uint32_t triangle) {
+      const auto& [a, b, c] = mesh_.triangles[triangle];
+      visit(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+      return within;
+    });
+  }
+
   /// Around all of them.
   const Bounds& box() const { return box_; }
 
  private:
   Mesh mesh_;
+  bool is_closed_;
   Bounds box_;
   BoxTree tree_;
 };

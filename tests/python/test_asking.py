@@ -24,7 +24,7 @@ def make_world() -> tuple[iota.World, iota.Body, iota.Body, iota.Body]:
     rod = system.body()
     rod.particle((0, 2, -1))
     rod.particle((0, 2, 1))
-    world = iota.World(system)
+    world = iota.World(system, ground=None)
     world.draw(rod, iota.looks.capsule(0.02, "steel"))
     return world, ball, box, rod
 
@@ -84,7 +84,7 @@ def test_the_nearest_body_and_those_within_a_distance_are_by_their_surfaces() ->
     assert world.within((1.4, 0, 0), 0.905) == [ball, box]
     assert world.within((0, 1, 0), 0.5001) == [ball]
     assert world.within((0, 1, 0), 0.99) == [ball, rod]
-    assert iota.World(iota.System()).nearest((0, 0, 0)) is None
+    assert iota.World(iota.System(), ground=None).nearest((0, 0, 0)) is None
 
 
 def make_crowd(count: int) -> iota.World:
@@ -162,6 +162,37 @@ def test_ten_thousand_bodies_take_less_than_a_tenth_of_asking_a_thousand_one_by_
     ):
         quick = least(partial(getattr(world, name), *arguments), 30)
         assert quick < 0.1 * least(partial(getattr(slow, name), *arguments), 3), name
+
+
+def test_what_is_fixed_is_met_too_the_ground_a_wall_and_a_room_from_a_file() -> None:
+    world = iota.World(iota.System(gravity=(0, 0, 0)), ground=-1)
+    wall = world.add_static(iota.looks.box((0.2, 4, 4)), (2, 0, 0))
+    beam = world.add_strut((0, 3, -2), (0, 3, 2), iota.looks.cylinder(0.1))
+    corners, faces = [(-3, 0, -3), (-3, 0, 3), (-3, 4, 3), (-3, 4, -3)], [(0, 1, 2), (0, 2, 3)]
+    side = world.surface(np.array(corners), faces)
+    ball = world.system.body(shape=iota.Sphere(0.2), position=(0, 1, 0))
+    for along, fixed, distance in (((1, 0, 0), wall, 1.9), ((0, 0, 1), None, None), ((-1, 0, 0), side, 3)):
+        hit = world.ray((0, 0.5, 0), along)
+        assert hit is None if fixed is None else (hit.body, hit.fixed) == (None, fixed)
+        assert hit is None or hit.distance == pytest.approx(distance, abs=1e-6)
+    down = world.ray((0.5, 0, 0), (0, -1, 0))
+    assert down.distance == pytest.approx(1) and isinstance(down.fixed.look.shape, iota.HalfSpace)
+    assert world.nearest((0, 2.8, 1)).fixed is beam
+    assert world.nearest((0, 2.8, 1), bodies=world.system.bodies).body == ball
+    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0)) == [ball, wall, side]
+    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0), bodies=[ball]) == [ball]
+    half = math.sqrt(0.5)
+    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1.3, 0), (0, half, 0, half)) == []
+
+    side.at = (-1, 0, 0)
+    assert world.ray((0, 0.5, 0), (-1, 0, 0)).distance == pytest.approx(4)
+    side.at = ball
+    assert world.ray((0, 0.5, 0), (-1, 0, 0)) is None, "what is on a body is no wall"
+    side.at = None
+    side.destroy()
+    assert world.ray((0, 0.5, 0), (-1, 0, 0)) is None
+    with pytest.raises(ValueError, match="convex"):
+        world.overlap(iota.Torus(1, 0.1), (0, 0, 0))
 
 
 def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:

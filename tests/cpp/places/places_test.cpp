@@ -45,7 +45,13 @@ struct Crowd {
       const auto nearest = places.nearest(at), nearest_slowly = places.nearest(at, all);
       ASSERT_TRUE(nearest && nearest_slowly);
       EXPECT_EQ(nearest->distance, nearest_slowly->distance);
-      EXPECT_EQ(places.within(at, 0.7), places.within(at, 0.7, all));
+      const auto near = places.within(at, 0.7);
+      EXPECT_EQ(near, places.within(at, 0.7, all));
+      std::vector<BodyId> overlapped;
+      for (const Found& each : places.overlap(Sphere{0.7}, at, {})) overlapped.push_back(each.body);
+      EXPECT_EQ(overlapped, near);
+      const Quaternion turn{0.5, -0.5, 0.1, 0.7};
+      EXPECT_EQ(places.overlap(Box{{2, 0.3, 1}, 0}, at, turn), places.overlap(Box{{2, 0.3, 1}, 0}, at, turn, all));
     }
   }
 };
@@ -93,18 +99,64 @@ TEST(Places, know_a_half_space_from_everywhere_and_a_mesh_by_its_triangles) {
   Places places(system);
   const auto under = places.ray({1e6, 50, 0}, {0, -1, 0});
   ASSERT_TRUE(under);
-  EXPECT_EQ(under->body, ground);
+  EXPECT_EQ(under->what.body, ground);
   EXPECT_NEAR(under->distance, 50, 1e-3);
   const auto on = places.ray({0.5, 50, 0.2}, {0, -1, 0});
   ASSERT_TRUE(on);
-  EXPECT_EQ(on->body, block);
+  EXPECT_EQ(on->what.body, block);
   EXPECT_NEAR(on->distance, 46, 1e-9);
   const auto inside = places.nearest({0, 3.9, 0});
   ASSERT_TRUE(inside);
-  EXPECT_EQ(inside->body, block);
+  EXPECT_EQ(inside->what.body, block);
   EXPECT_NEAR(inside->distance, -0.1, 1e-9);
   EXPECT_NEAR(inside->point.y, 4, 1e-9);
   EXPECT_EQ(places.within({0, 1, 0}, 1.001).size(), 2u);
+}
+
+TEST(Places, know_holes_of_what_is_not_convex_and_both_sides_of_the_ground) {
+  System system;
+  const BodyId ring = system.bodies().create(Torus{1, 0.2}, {.position = {0, 5, 0}});
+  (void)system.bodies().create(HalfSpace{{0, 1, 0}}, {.kind = BodyKind::static_});
+  Places places(system);
+  const auto count = [&](const Shape& shape, const Vec3& at) { return places.overlap(shape, at, {}).size(); };
+  EXPECT_EQ(count(Sphere{0.7}, {0, 5, 0}), 0u) << "it is in the hole";
+  EXPECT_EQ(count(Sphere{0.81}, {0, 5, 0}), 1u);
+  EXPECT_EQ(count(Box{{0.1, 0.1, 0.1}, 0}, {1, 5, 0}), 1u) << "it is in the wire";
+  EXPECT_EQ(count(Box{{0.1, 0.1, 3}, 0}, {0, 5, 0}), 0u) << "it goes through the hole";
+  EXPECT_EQ(places.overlap(Box{{3, 0.1, 0.1}, 0}, {0, 5, 0}, {}), std::vector{Found{ring}});
+  EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, 0.51, 0}), 0u);
+  EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, 0.49, 0}), 1u);
+  EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, -3, 0}), 1u) << "it is below the ground";
+}
+
+TEST(Places, of_fixed_shapes_and_open_surfaces_are_found_by_their_numbers_until_they_are_removed) {
+  System system;
+  Places places(system);
+  const std::uint32_t ground = places.add_fixed(HalfSpace{{0, 1, 0}}, {0, -1, 0}, {});
+  const double half = std::sqrt(0.5);
+  const std::uint32_t bar = places.add_fixed(Box{{4, 0.2, 0.2}, 0}, {0, 1, 0}, {0, half, 0, half});  // along z
+  const Mesh wall{{{0, 0, -1}, {0, 0, 1}, {0, 2, 1}, {0, 2, -1}}, {{0, 1, 2}, {0, 2, 3}}};
+  const std::uint32_t at = places.add_fixed_surface(wall, {3, 0, 0}, {});
+  const Found wall_found{{}, at}, bar_found{{}, bar};
+  const auto met = [&](const Vec3& from, const Vec3& along) { return places.ray(from, along).value_or(Hit{}); };
+  EXPECT_EQ(met({0.5, 5, 0}, {0, -1, 0}).what.fixed, ground);
+  EXPECT_NEAR(met({0.5, 5, 0}, {0, -1, 0}).distance, 6, 1e-9);
+  EXPECT_EQ(met({0, 5, 1.9}, {0, -1, 0}).what.fixed, bar);
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_EQ(met({3 + side, 0.7, 0.2}, {-side, 0, 0}).what.fixed, at) << "a surface has two sides";
+    EXPECT_NEAR(places.nearest({3 + 0.1 * side, 1, 0})->distance, 0.1, 1e-9) << "and no inside";
+  }
+  EXPECT_EQ(places.overlap(Box{{0.1, 0.1, 0.1}, 0}, {3.04, 1, 0}, {}), std::vector{wall_found});
+  EXPECT_TRUE(places.overlap(Box{{0.1, 0.1, 0.1}, 0}, {3.06, 1, 0}, {}).empty());
+  EXPECT_TRUE(places.within({0, 1, 0}, 1).empty()) << "bodies only";
+  const BodyId ball = system.bodies().create(Sphere{0.2}, {.position = {0, 1.1, 0}});
+  EXPECT_EQ(places.overlap(Sphere{0.5}, {0, 1.5, 0}, {}), (std::vector{Found{ball}, bar_found}));
+  EXPECT_EQ(places.overlap(Sphere{0.5}, {0, 1.5, 0}, {}, std::span(&ball, 1)), std::vector{Found{ball}});
+  places.remove_fixed(bar);
+  EXPECT_EQ(met({0, 5, 1.9}, {0, -1, 0}).what.fixed, ground);
+  EXPECT_EQ(places.add_fixed(Sphere{1}, {0, 9, 0}, {}), bar) << "its number is free";
+  EXPECT_EQ(met({0, 20, 0}, {0, -1, 0}).what.fixed, bar);
+  EXPECT_THROW((void)places.add_fixed_surface({{{0, 0, 0}}, {{0, 1, 0}}}, {}, {}), std::invalid_argument);
 }
 
 TEST(Places, refuse_places_directions_and_radii_that_are_none) {
@@ -117,6 +169,9 @@ TEST(Places, refuse_places_directions_and_radii_that_are_none) {
   EXPECT_THROW((void)places.nearest({0, nan, 0}), std::invalid_argument);
   EXPECT_THROW((void)places.within({}, -1), std::invalid_argument);
   EXPECT_THROW((void)places.within({}, nan), std::invalid_argument);
+  for (const Shape& shape : {Shape(Torus{1, 0.2}), Shape(HalfSpace{{0, 1, 0}}), Shape(Sphere{nan}), Shape(Mesh{})})
+    EXPECT_THROW((void)places.overlap(shape, {}, {}), std::invalid_argument);
+  EXPECT_THROW((void)places.overlap(Sphere{1}, {nan, 0, 0}, {}), std::invalid_argument);
   system.bodies().destroy(gone);
   EXPECT_THROW((void)places.nearest({}, std::span(&gone, 1)), StaleIdError);
   EXPECT_FALSE(places.nearest({}, std::span<const BodyId>{}));
