@@ -17,7 +17,6 @@ from page_client import PageClient
 
 import iota
 from iota import shapelib
-from iota.shapelib.surface_files import read_model_here
 from iota.textures import MOST_BYTES, PNG, make_png
 
 pytest.importorskip("trimesh")
@@ -192,7 +191,7 @@ def test_all_images_of_a_file_share_a_limit_of_pixels(tmp_path: Path, monkeypatc
     second = {"pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}}
     head["materials"][0] = second
     head["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 1
-    parts = read_model_here(write_glb(tmp_path / "a.glb", head, buffer))
+    parts = shapelib.read_model.__wrapped__(write_glb(tmp_path / "a.glb", head, buffer))
     assert [part.texture is None for part in parts] == [False, True]
     assert "all images together have more than" in parts[0].notes[0]
 

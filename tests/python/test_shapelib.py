@@ -19,6 +19,7 @@ from iota import shapelib
 from iota.shapelib import cif
 from iota.shapelib.convex import dual
 from iota.shapelib.johnson import johnson
+from iota.shapelib.molecule_files import read_molecule
 from iota.shapelib.named import named_polyhedron
 from iota.shapelib.nearest import near_pairs
 from iota.shapelib.surface import Surface
@@ -146,12 +147,12 @@ def write(tmp_path: Path) -> Callable[[str, str | bytes], Path]:
 Write = Callable[[str, "str | bytes"], Path]
 
 
-def fails(source: Path | str, *parts: str, load: Callable[..., object] = shapelib.load) -> None:
-    """Refused in one line that names the file and holds all parts."""
+def fails(source: Path | str, *parts: str, load: Callable[..., object] = shapelib.load, at: str | None = None) -> None:
+    """Refused in one line that names the file, or another one beside it, and holds all parts."""
     with pytest.raises(shapelib.FileError) as caught:
         load(source)
     text = str(caught.value)
-    assert text.startswith(str(source)) and "\n" not in text
+    assert text.startswith(str(source if at is None else Path(source).parent / at)) and "\n" not in text
     for part in parts:
         assert part in text, text
 
@@ -307,8 +308,9 @@ def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(
     atoms = "data_x\nloop_\n_atom_site.group_PDB\n" + "ATOM \n" * 60 + "HETATM \n" * 41
     with monkeypatch.context() as unread:
         unread.setattr(cif, "_tokens", None)
-        fails(write("atoms.cif", atoms), "line 104", "more than 100 rows")
-    fails(write("big.cif", "data_x\nloop_\n_other.a\n" + "1\n" * 101), "line 104", "more than 100 rows")
+        fails(write("atoms.cif", atoms), "line 104", "more than 100 rows", load=read_molecule)
+    other = write("big.cif", "data_x\nloop_\n_other.a\n" + "1\n" * 101)
+    fails(other, "line 104", "more than 100 rows", load=read_molecule)
 
 
 def test_bonds_that_a_molfile_cannot_have_are_refused_with_their_line(write: Write) -> None:
@@ -800,6 +802,26 @@ def test_an_mjcf_file_that_would_fill_the_memory_is_refused_before_mujoco_builds
     fails(write("a.xml", copies + "</worldbody></mujoco>"), "line 2", "makes 1000000 copies, more than 10000")
     field = '<mujoco><asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset></mujoco>'
     fails(write("b.xml", field), "line 1", "<hfield> has 1e+10 cells")
+    write("inner.xml", copies + "</worldbody></mujoco>")
+    fails(write("c.xml", '<mujoco><include file="inner.xml"/></mujoco>'), "makes 1000000", at="inner.xml")
+
+
+def test_an_mjcf_file_includes_neither_itself_nor_what_is_outside_of_its_folder(write: Write, tmp_path: Path) -> None:
+    (tmp_path / "inner").mkdir()
+    inner = MJCF.replace('<mujoco model="arm">', "<mujoco>")
+    write("inner/arm.xml", inner)
+    around = '<mujoco model="m">\n<include file="FILE"/></mujoco>'
+    assert shapelib.mechanism(write("a.xml", around.replace("FILE", "inner/arm.xml"))).counts["bodies"] == 2
+    fails(write("b.xml", around.replace("FILE", "b.xml")), "line 2", "b.xml includes itself")
+    write("d.xml", around.replace("FILE", "c.xml"))
+    fails(write("c.xml", around.replace("FILE", "d.xml")), "line 2", "c.xml includes itself", at="d.xml")
+    write("secret.xml", inner)
+    out = "leads out of the model's folder"
+    fails(write("inner/e.xml", around.replace("FILE", "../secret.xml")), "line 2", out)
+    fails(write("f.xml", around.replace("FILE", "/etc/passwd")), "line 2", out)
+    for part in ('<compiler meshdir="../meshes"/>', '<asset><mesh file="/tmp/part.stl"/></asset>'):
+        fails(write("g.xml", f"<mujoco>\n{part}</mujoco>"), "line 2", out)
+    fails(write("h.xml", around.replace("FILE", "none.xml")), "no such file", at="none.xml")
 
 
 MJCF = """\

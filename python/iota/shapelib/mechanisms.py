@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from iota.builder.points import Vector
+from iota.shapelib.apart import apart
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.imported import Imported
 from iota.shapelib.mechanism_data import to_structure
@@ -17,6 +18,7 @@ from iota.shapelib.urdf import read_urdf
 ENDINGS = (".urdf", ".mjcf", ".xml")
 
 
+@apart()
 def mechanism(
     path: PathLike,
     *,

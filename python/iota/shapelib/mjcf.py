@@ -22,6 +22,7 @@ FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
 CONNECT, WELD, EQUAL_JOINTS, EQUAL_TENDONS = range(4)  # mjtEq
 SITE = 6  # mjtObj
 WRAPPED_JOINT, WRAPPED_SITE = 1, 3  # mjtWrap
+FOLDERS = ("meshdir", "texturedir", "assetdir")
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
@@ -31,7 +32,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
     root = read_tree(path)
     if root.tag != "mujoco":
         raise root.wrong(f"an MJCF file has <mujoco> at its top, not <{root.tag}>")
-    check_sizes(root)
+    check(root, Path(path).parent, frozenset([Path(path)]))
     try:
         import mujoco
     except ImportError:
@@ -49,8 +50,9 @@ def read_mjcf(path: PathLike) -> Mechanism:
     return reader.mechanism
 
 
-def check_sizes(element: Element, copies: int = 1) -> None:
-    """Raises FileError for what MuJoCo would take minutes or all memory to build: it cannot be interrupted."""
+def check(element: Element, folder: Path, seen: frozenset[Path], copies: int = 1) -> None:
+    """Raises FileError for what MuJoCo would take minutes or all memory to build, as it cannot be interrupted, and for files
+    outside of the model's folder; also in the files that it includes. seen: the files around the element."""
     if element.tag in ("replicate", "flexcomp", "composite"):
         for word in element.text("count", "1").split():
             copies *= max(1, whole(word, element.path, element.line, "count"))
@@ -61,8 +63,16 @@ def check_sizes(element: Element, copies: int = 1) -> None:
             size = element.number(rows, 0.0) * element.number(columns, 0.0)
             if size > MOST_CELLS:
                 raise element.wrong(f"<{tag}> has {size:.3g} cells, more than {MOST_CELLS}")
+    for name, value in element.attributes.items():
+        if name.startswith("file") or name in FOLDERS:
+            if Path(value).is_absolute() or ".." in Path(value).parts:
+                raise element.wrong(f"{name} {value!r} leads out of the model's folder: copy what it needs into it")
+    if element.tag in ("include", "model") and (file := folder / element.text("file")).suffix.lower() == ".xml":
+        if file in seen:
+            raise element.wrong(f"{file.name} includes itself")
+        check(read_tree(file), folder, seen | {file}, copies)
     for child in element.children:
-        check_sizes(child, copies)
+        check(child, folder, seen, copies)
 
 
 class _Reader:

@@ -14,6 +14,7 @@ import numpy as np
 from iota import looks
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
+from iota.shapelib.apart import apart
 from iota.shapelib.files import PathLike, check_reach
 from iota.shapelib.graphs import bridges, pieces
 from iota.shapelib.imported import Imported
@@ -60,6 +61,24 @@ def molecule(
 
         caffeine = iota.shapelib.molecule("CN1C=NC2=C1C(=O)N(C(=O)N2C)C", kind="soft", at=(0, 2, 0))
     """
+    structure, symbols = _read(source, kind, scale, mass_scale, at, stiffness, damping, seed)
+    if atom_look is not None:
+        _draw(structure, symbols, atom_look)
+    return structure
+
+
+@apart()
+def _read(
+    source: PathLike,
+    kind: Kind,
+    scale: float,
+    mass_scale: float,
+    at: Vector,
+    stiffness: float | None,
+    damping: float,
+    seed: int,
+) -> tuple[Imported, list[str]]:
+    """The structure, and the symbol of each atom."""
     if kind not in KINDS:
         raise ValueError(f"kind must be one of {', '.join(KINDS)}, not {kind!r}")
     for name, value in (("scale", scale), ("mass_scale", mass_scale)):
@@ -72,10 +91,8 @@ def molecule(
     place += np.asarray(at, float) - mass @ place / mass.sum()
     check_reach(place, source)
     structure.points.add(place, mass)
-    look = atom_look or (lambda symbol: ball_of(symbol, scale))
-    drawn = {element.symbol: look(element.symbol) for element in set(data.elements)}
-    structure.points.radius[:] = [drawn[element.symbol][0] for element in data.elements]
-    structure.points.color[:] = [drawn[element.symbol][1] for element in data.elements]
+    symbols = [element.symbol for element in data.elements]
+    _draw(structure, symbols, lambda symbol: ball_of(symbol, scale))
     structure.looks["bond"] = looks.capsule(STICK * scale, "paint", color="#9a9aa0")
     piece = pieces(len(mass), data.bonds)
     structure.counts = {
@@ -88,7 +105,14 @@ def molecule(
         _make_flexible(structure, data)
     else:
         add_springs(structure, data.bonds, stiffness, damping)
-    return structure
+    return structure, symbols
+
+
+def _draw(structure: Imported, symbols: list[str], look: AtomLook) -> None:
+    """The atoms, which are the first points."""
+    drawn = {symbol: look(symbol) for symbol in set(symbols)}
+    structure.points.radius[: len(symbols)] = [drawn[symbol][0] for symbol in symbols]
+    structure.points.color[: len(symbols)] = [drawn[symbol][1] for symbol in symbols]
 
 
 def is_file(source: PathLike) -> bool:

@@ -14,6 +14,7 @@ from iota._core import Mesh
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
 from iota.looks import MOST_TRIANGLES, Drawn
+from iota.shapelib.apart import apart
 from iota.shapelib.files import FileError, PathLike, check_reach
 from iota.shapelib.imported import Imported
 from iota.shapelib.molecules import KINDS, Kind, add_springs
@@ -28,6 +29,11 @@ MOST_EDGES = 100_000
 LIGHTEST, HEAVIEST = 1e-30, 1e15  # kg, of a body
 
 
+def _is_file(source: PathLike) -> bool:
+    return not isinstance(source, str) or Path(source).suffix.lower() in READERS
+
+
+@apart(_is_file)
 def polyhedron(
     source: PathLike,
     kind: Kind = "rigid",
@@ -64,15 +70,13 @@ def polyhedron(
         raise ValueError(f"scale must be above 0, not {scale}")
     if mass is not None and not 0 < mass < math.inf:
         raise ValueError(f"mass must be above 0, not {mass}")
-    path = Path(source)
-    is_file = not isinstance(source, str) or path.suffix.lower() in READERS
-    surface = read_surface(source) if is_file else named_polyhedron(str(source))
+    surface = read_surface(source) if _is_file(source) else named_polyhedron(str(source))
     count = len(surface.vertices)
     check_reach(scale * surface.vertices, source)
     surface.weld()
     if not surface.faces:
         raise FileError(source, "has no faces with an area")
-    structure = Imported(title=path.stem if is_file else str(source), notes=surface.notes)
+    structure = Imported(title=Path(source).stem if _is_file(source) else str(source), notes=surface.notes)
     edges, named = surface.edges(), set(surface.groups) - {""}
     structure.counts = {
         "vertices": count, "welded vertices": len(np.unique(edges)), "edges": len(edges), "faces": len(surface.faces),

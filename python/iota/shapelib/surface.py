@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -154,21 +154,28 @@ class Surface:
 def _cut(places: Array, face: list[int]) -> list[list[int]]:
     """A polygon as triangles, by cutting off ears (Meisters 1975); a convex one becomes a fan."""
     normal = np.cross(places, np.roll(places, -1, axis=0)).sum(axis=0)
-    left, found = list(range(len(face))), []
-
-    def turn(a: int, b: int, c: int) -> float:
-        return float(np.dot(np.cross(places[b] - places[a], places[c] - places[b]), normal))
-
+    sides = np.roll(places, -1, axis=0) - places
+    following = np.roll(sides, -1, axis=0)
+    turns = np.cross(sides, following) @ normal
+    angles = np.arctan2(turns / (np.linalg.norm(normal) or 1.0), (sides * following).sum(axis=1))
+    if (turns > 0).all() and angles.sum() < 3 * np.pi:  # 4 pi for one that goes round twice
+        return [[face[0], b, c] for b, c in pairwise(face[1:])]
+    left, found = np.arange(len(face)), []
     while len(left) > 3:
         for at in range(len(left)):
             # Starting at the second corner makes the fan of a convex polygon start at its first.
-            a, b, c = left[at], left[(at + 1) % len(left)], left[(at + 2) % len(left)]
-            others = [p for p in left if p not in (a, b, c)]
-            if turn(a, b, c) > 0 and not any(min(turn(a, b, p), turn(b, c, p), turn(c, a, p)) > 0 for p in others):
-                break
+            ear = left[[at, (at + 1) % len(left), (at + 2) % len(left)]]
+            a, b, c = corners = places[ear]
+            if np.dot(np.cross(b - a, c - b), normal) > 0:
+                others = places[left[~np.isin(left, ear)]]
+                inward = [
+                    (others - end) @ np.cross(normal, end - begin)
+                    for begin, end in zip(corners, (b, c, a), strict=True)
+                ]
+                if not (np.min(inward, axis=0) > 0).any():
+                    break
         else:  # no ear: flat or crossing itself
-            at = 0
-            a, b, c = left[:3]
-        found.append([face[a], face[b], face[c]])
-        left.remove(b)
+            ear = left[:3]
+        found.append([face[i] for i in ear])
+        left = left[left != ear[1]]
     return [*found, [face[i] for i in left]]

@@ -19,14 +19,10 @@ from iota.shapelib.gltf import PaintedSurface, read_gltf
 from iota.shapelib.surface import MOST_FACES, Surface
 
 
+@apart()
 def read_surface(path: PathLike) -> Surface:
     """By the file's ending, in a process of its own with 4 GiB and three minutes. Vertices are those of the file. Raises
     FileError."""
-    return apart(read_surface_here, path)
-
-
-def read_surface_here(path: PathLike) -> Surface:
-    """The same in this process."""
     ending = Path(path).suffix.lower()
     if ending not in READERS:
         raise FileError(path, f"surfaces are in files that end in {', '.join(READERS)}, not in {ending or 'nothing'!r}")
@@ -266,24 +262,20 @@ def _read_ply(path: PathLike) -> Surface:
     return _from_trimesh(mesh, path)
 
 
+@apart()
 def read_model(path: PathLike) -> list[PaintedSurface]:
     """The surfaces of a glTF file, one for each material of each mesh, with their colors and images; of another file the
     only one. Reads as `read_surface`. Raises FileError."""
-    return apart(read_model_here, path)
-
-
-def read_model_here(path: PathLike) -> list[PaintedSurface]:
-    """The same in this process."""
     if Path(path).suffix.lower() in (".gltf", ".glb"):
         return read_gltf(path, lambda data, kind: _load_gltf(data, kind, path))
-    surface = read_surface_here(path)
+    surface = read_surface(path)
     return [PaintedSurface(surface.vertices, surface.faces, surface.groups, surface.lines, surface.notes)]
 
 
 def _read_gltf(path: PathLike) -> Surface:
     """All meshes of the scene, transformed by its nodes."""
     surface = Surface(np.empty((0, 3)), [])
-    for part in read_model_here(path):
+    for part in read_model(path):
         offset = len(surface.vertices)
         surface.vertices = np.concatenate([surface.vertices, part.vertices])
         surface.faces += [[v + offset for v in face] for face in part.faces]
@@ -297,10 +289,20 @@ def _load_gltf(data: bytes, kind: str, path: PathLike) -> Any:
     return _load(path, io.BytesIO(data), file_type=kind, resolver=resolver, force="scene", skip_materials=True)
 
 
-def _load(path: PathLike, source: Any = None, **options: Any) -> Any:
+@apart()
+def read_any(path: PathLike) -> tuple[Any, Any]:
+    """Vertices (n, 3) and triangles (k, 3) of a file of any format that trimesh knows, for `iota.Mesh.load`. Raises FileError."""
+    mesh = _load(path, force="mesh", process=True)
+    surface = _from_trimesh(mesh, path)
+    _check_count(len(surface.faces), "triangles", path)
+    return surface.vertices, mesh.faces
+
+
+def _load(path: PathLike, source: Any = None, process: bool = False, **options: Any) -> Any:
+    """process: merges coincident vertices."""
     library = trimesh()
     try:
-        return library.load(Path(path) if source is None else source, process=False, **options)
+        return library.load(Path(path) if source is None else source, process=process, **options)
     except Exception as error:  # trimesh raises any exception for a damaged file
         reason = f"{type(error).__name__}: {error}".split(" — ")[0].removesuffix(": ")
         raise FileError(path, f"trimesh cannot read it: {reason}") from None
