@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copyreg
 from typing import Any, get_args
 
 from iota._core import Mesh, Shape
@@ -29,3 +30,12 @@ def from_json(data: dict[str, Any]) -> Shape:
     except TypeError:
         raise ValueError(f"a {kind} is described wrongly by {', '.join(sizes) or 'no sizes'}") from None
     return shape
+
+
+def _pickled(shape: Shape) -> tuple[type[Any], tuple[Any, ...]]:
+    names = ("vertices", "triangles") if isinstance(shape, Mesh) else shape.sizes
+    return type(shape), tuple(getattr(shape, name) for name in names)
+
+
+for _kind in KINDS.values():
+    copyreg.pickle(_kind, _pickled)

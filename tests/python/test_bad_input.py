@@ -88,6 +88,10 @@ BAD_TYPES: dict[str, tuple[Callable[[iota.System], object], str]] = {
         "law must be a predefined law, an expression, a Law or a function, not 7",
     ),
     "text for a number": (lambda s: s.bodies[0].particle(mass="heavy"), "mass"),
+    "shape for a kind": (
+        lambda s: s.body(iota.Box((1, 1, 1))),
+        r"body: kind must be one of 'dynamic'.*, not Box\(.*\); did you mean shape=\.\.\.\?",
+    ),
     "body for a particle": (lambda s: s.particles[0].separate(s.bodies[1]), "separate: q must be a Particle"),
     "two arguments": (lambda s: iota.World(s).on_step(lambda a, b: None), "takes 2 arguments"),
 }

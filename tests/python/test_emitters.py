@@ -108,3 +108,26 @@ def test_bad_emitters_are_refused(system: iota.System) -> None:
         with pytest.raises(ValueError):
             system.emitter(**bad)
     assert system.validate() == []
+
+
+def test_a_particle_is_made_with_its_look_and_lifetime_or_not_at_all() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    body = system.body()
+    p = body.particle((0, 1, 0), lifetime=0.5, radius=0.1, color=(1, 0, 0), nailed=True)
+    assert (p.lifetime, p.radius, p.color, p.is_nailed) == (0.5, 0.1, (1, 0, 0, 1), True)
+    forever = system.body().particle(lifetime=math.inf)
+    plain = system.body().particle()
+    assert not plain.has_attributes and not plain.is_nailed
+    before = system.state_hash()
+    for wrong, text in (
+        ({"lifetime": -1}, "lifetime must be finite and above 0 s, not -1"),
+        ({"lifetime": math.nan}, "lifetime must be"),
+        ({"radius": -0.1}, "radius must be"),
+        ({"color": (2, 0, 0)}, "color must be 3 or 4 numbers from 0 to 1"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            plain.body.particle((1, 0, 0), **wrong)
+    assert system.state_hash() == before and system.validate() == []
+    for _ in range(40):
+        system.step(1 / 60)
+    assert not p.alive and forever.alive and plain.alive

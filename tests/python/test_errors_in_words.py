@@ -109,8 +109,8 @@ MISTAKES: dict[str, tuple[Callable[[sweep.Scene], Any], str]] = {
     "a particle for a body": (lambda c: c.box.combine(c.point), "combine: other must be a Body, not <Particle"),
     "a body for a particle": (lambda c: c.system.bond(c.box, c.point, "spring"), "bond: p must be a Particle, not <Body"),
     "an attribute as an argument": (
-        lambda c: c.box.particle(V, lifetime=4),
-        "has no argument 'lifetime'; assign it to the result: particle.lifetime = ...",
+        lambda c: c.box.particle(V, spin=(0, 0, 1)),
+        "has no argument 'spin'; assign it to the result: particle.spin = ...",
     ),
     "a misspelled argument": (
         lambda c: c.system.revolute(c.box, c.ball, at=V, axis=V, limit=3),

@@ -131,6 +131,19 @@ def test_more_than_pages_take_is_refused_where_it_is_assigned(rod: iota.Body) ->
     assert len(shapes.positions) == 100
 
 
+def test_more_things_than_pages_draw_are_refused_and_the_others_stay(
+    rod: iota.Body, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("iota.world.things.MOST_THINGS", 3)
+    world = iota.World(rod.system)
+    kept = [world.label("a", at=(x, 0, 0)) for x in range(3)]
+    with pytest.raises(ValueError, match=r"at most 3 things .* by one array: world\.points"):
+        world.label("b")
+    assert world.things == kept
+    kept[0].destroy()
+    assert len(world.things) == 2 and world.label("c") in world.things
+
+
 def test_a_thing_that_cannot_be_shown_is_told_to_pages_that_open_later(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system)
     world.points([(0, 0, 0)] * 3, radius=[0.1, 0.2])
@@ -305,6 +318,41 @@ def test_clicks_and_hovers_reach_who_asked_for_that_body(rod: iota.Body, run_wor
         assert heard[2] == ("nothing", None, None, (0, 0, -1))
         assert heard[3:5] == ["start", "end"] and set(map(str, heard[5:])) == {"other", str(("any", other.slot))}
         assert page.notices == []
+
+
+def test_a_class_of_bodies_is_a_group_which_they_join_and_leave(rod: iota.Body, run_world: Runner) -> None:
+    bricks = rod.system.group("bricks")
+    other = rod.system.body()
+    other.particle((0, 3, 0)).nail()
+    world = iota.World(rod.system)
+    heard: list[Any] = []
+    world.on_click(bricks)(lambda e: heard.append(e.body.slot))
+    world.on_drag(bricks, grab=False)(lambda e: heard.append(e.phase))
+    world.on_click("nothing")(lambda: heard.append("nothing"))
+    with pytest.raises(TypeError, match="a group"):
+        world.on_click([rod, bricks])
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.last.get("listens"))
+
+        def click(body: iota.Body, *expected: Any) -> None:
+            heard.clear()
+            point(page, PointerKind.CLICK, page.body(body.slot))
+            point(page, PointerKind.CLICK)
+            page.wait_for(lambda: "nothing" in heard)
+            assert heard == [*expected, "nothing"]
+
+        click(rod)
+        world.call(lambda: bricks.add(rod.particles[0], other))
+        click(rod, rod.slot)
+        click(other, other.slot)
+        heard.clear()
+        page.send("grab_start", hold=1, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0))
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: heard == ["start", "end"])
+        world.call(lambda: bricks.remove(rod))
+        click(rod)
+        world.call(bricks.destroy)
+        click(other)
 
 
 def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> None:
@@ -679,3 +727,51 @@ def test_every_drawing_is_on_a_particle_a_body_a_bond_a_frame_or_nothing(
         world.call(rod.destroy)
         page.wait_for(lambda: not {slots[on] for on in ON[:3]} & set(page.entities[kind]))
         assert {slots[on] for on in ON[3:]} <= set(page.entities[kind])
+
+
+def drawn_on(world: iota.World, at: Any) -> dict[str, Any]:
+    """One of each thing that has a place, on what is given."""
+    corners = np.eye(3)
+    ball = looks.sphere(0.1)
+    return {
+        "label": world.label("here", at=at),
+        "line": world.line(at, (1, 1, 1)),
+        "tube": world.tube(at, (1, 1, 1), radius=0.1),
+        "arrow": world.arrow(at, vector=(0, 1, 0)),
+        "axes": world.axes(at),
+        "trace": world.trace(at),
+        "points": world.points(corners, at=at),
+        "shape": world.shape(ball, on=None if isinstance(at, tuple) else at),
+        "shapes": world.shapes(ball, corners, at=at),
+        "strut": world.strut(at, (1, 1, 1), looks.cylinder(0.1)),
+        "surface": world.surface(corners, [(0, 1, 2)], at=at),
+        "frame": world.frame(at),
+        "viewpoint": world.viewpoint("there", at, (0, 0, 0)),
+        "light": world.light("point", at=at),
+        "custom": world.custom("flower", at=at),
+    }
+
+
+def bodies_in(record: Any) -> set[int]:
+    """The numbers of the bodies that a record names."""
+    if not isinstance(record, dict):
+        return set()
+    own = {int(record["body"])} if "body" in record else set()
+    own |= {int(each) for each in record.get("bodies", ())}
+    return own.union(*(bodies_in(each) for each in record.values()))
+
+
+@pytest.mark.parametrize("on", ["particle", "body", "bond", "place"])
+def test_each_thing_is_on_a_particle_a_body_a_bond_or_nothing_and_ends_with_it(rod: iota.Body, on: str) -> None:
+    other = rod.system.body()
+    spring = rod.system.bond(other.particle((0, 3, 0)), rod.particles[0], "energy = k*r^2", k=1.0)
+    at = {"particle": other.particles[0], "body": other, "bond": spring, "place": (1.0, 2.0, 3.0)}[on]
+    things = drawn_on(iota.World(rod.system), at)
+    for name, thing in things.items():
+        record = thing._record()
+        assert record is not None, name
+        named = bodies_in(record) - {NO_BODY}
+        assert named == set() if on == "place" else other.slot in named, f"{name}: {record}"
+    other.destroy()
+    gone = {name for name, thing in things.items() if thing._record() is None}
+    assert gone == (set() if on == "place" else set(things))

@@ -318,6 +318,32 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
     assert "'ponder' took 2.0 s" in capsys.readouterr().err
 
 
+def test_a_step_that_takes_long_is_told_while_it_lasts(run_world: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("iota.world.stepper.SLOW_STEP", 1.0)
+    system = iota.System()
+    p, q = (system.body().particle((x, 1, 0)) for x in (0, 1))
+    hangs, go_on = threading.Event(), threading.Event()
+
+    def law(bond: iota.Bond) -> tuple[float, float, float]:
+        if hangs.is_set():
+            go_on.wait(60)
+        return (0, 0, 0)
+
+    system.bond(p, q, law)
+    url = run_world(iota.World(system))
+    try:
+        with PageClient(url) as page:
+            hangs.set()
+            (notice,) = page.wait_for(lambda: page.notices)
+            assert notice["title"] == "A step of the world is slow" and "smaller world" in notice["hint"]
+            hangs.clear()
+            go_on.set()
+            step = page.last["poses"]["step"]
+            page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
+    finally:
+        go_on.set()
+
+
 def test_garbage_frames_are_refused_with_a_reason_and_the_session_lives(world: iota.World, run_world: Runner) -> None:
     good = encode("grab_start", hold=1, body=(3, 1), local_point=(0, 0, 0), target=(0, 0, 0))
     with PageClient(run_world(world)) as page:

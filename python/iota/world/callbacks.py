@@ -8,8 +8,8 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -17,7 +17,9 @@ from typing import Any
 
 from iota.world.costs import Costs
 
-SLOW = 0.5  # s
+SLOW = 0.5  # s, of a function
+SLOW_STEP = 2.0  # s; before that, pages see slow motion
+ELSEWHERE = "Do long work elsewhere, or in small pieces once a step."
 GO_ON = "The world continues. Correct the script and run it again."
 _PACKAGE = str(Path(__file__).parent.parent)  # as in frames, without resolving symbolic links
 _STUDIES = str(Path(_PACKAGE, "studies"))
@@ -108,33 +110,53 @@ def print_on_terminal(text: str) -> None:
         sys.stderr.flush()
 
 
+@dataclass(frozen=True, eq=False)
+class Running:
+    """What the world waits for: since when and how long at most before it is told, s, and what helps."""
+
+    what: str
+    since: float
+    longest: float
+    hint: str
+
+
 class Guard:
     """Calls functions of the script; reports errors and slow functions by `tell(title, text, hint)`, and the return of
-    a slow one by `over(title)`.
+    a slow one by `over(title)`. Steps of the simulator are watched the same way.
 
-    A thread reports a slow function while it still runs; the page, served by another thread, continues to draw.
+    A thread reports what is slow while it still runs; the page, served by another thread, continues to draw.
     """
 
     def __init__(self, tell_error: Tell, tell_slow: Tell, over: Callable[[str], None], costs: Costs) -> None:
         self._tell_error, self._tell_slow, self._over, self._costs = tell_error, tell_slow, over, costs
-        self._running: tuple[str, float] | None = None
-        self._told: tuple[str, float] | None = None
+        self._running: Running | None = None
+        self._told: Running | None = None
         self._stop = threading.Event()
         self._watcher: threading.Thread | None = None
 
     def call(self, what: str, function: Callable[..., Any], *arguments: Any, hint: str = GO_ON) -> bool:
         """Calls it; False if it raised, which is reported. KeyboardInterrupt and SystemExit propagate."""
-        before, self._running = self._running, (what, time.monotonic())
         try:
-            with self._costs.of(f"script: {what}"):
+            with self.watching(what, SLOW, ELSEWHERE), self._costs.of(f"script: {what}"):
                 function(*arguments)
         except Exception as error:
             self.failed(what, error, hint)
             return False
-        finally:
-            self._finish(what)
-            self._running = before
         return True
+
+    @contextmanager
+    def watching(self, what: str, longest: float, hint: str) -> Iterator[None]:
+        """A with block that is reported if it takes longer, s."""
+        running = Running(what, time.monotonic(), longest, hint)
+        before, self._running = self._running, running
+        try:
+            yield
+        finally:
+            self._running = before
+            seconds = time.monotonic() - running.since
+            if seconds > longest:
+                print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world was stopped meanwhile\n")
+                self._over(slow_title(what))
 
     def failed(self, what: str, error: Exception, hint: str = GO_ON) -> None:
         print_error(error)
@@ -153,19 +175,9 @@ class Guard:
             self._watcher.join()
             self._watcher = None
 
-    def _finish(self, what: str) -> None:
-        running = self._running
-        if running is None or running[0] != what:
-            return
-        seconds = time.monotonic() - running[1]
-        if seconds > SLOW:
-            print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world was stopped meanwhile\n")
-            self._over(slow_title(what))
-
     def _watch(self) -> None:
         while not self._stop.wait(0.1):
             running = self._running
-            if running and running != self._told and time.monotonic() - running[1] > SLOW:
+            if running and running is not self._told and time.monotonic() - running.since > running.longest:
                 self._told = running
-                hint = "Do long work elsewhere, or in small pieces once a step."
-                self._tell_slow(slow_title(running[0]), "The world waits for it; the page continues.", hint)
+                self._tell_slow(slow_title(running.what), "The world waits for it; the page continues.", running.hint)

@@ -318,7 +318,8 @@ class Drawing:
     ) -> Custom:
         """An object of a class of your own: a module of `World.client_module` defines how it is drawn, its bounds, what a ray or a
         hand meets, and what happens when it is selected; see web/README.md. On a body it stands for it: a hit holds
-        and selects the body. rotation: quaternion x y z w. values: the object's data.
+        and selects the body. Recordings carry no code and show none of these. rotation: quaternion x y z w. values: the
+        object's data.
 
         world.client_module("flower.js")  # has iota.define("flower", {...})
         flower = world.custom("flower", at=stem, values={"petals": 7})

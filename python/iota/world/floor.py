@@ -254,11 +254,12 @@ class Floor:
 
     def _list(self, positions: Array, row_of: Indices) -> None:
         carriers: list[Carrier] = []
+        joined = {part.number for part in self._system.articulates if len(part) > 1}
         self._reach = 0.0
         for body in self._bodies:
             if body.kind not in ("dynamic", "resting"):
                 continue
-            is_joined = len(body.articulate) > 1
+            is_joined = body.articulate.number in joined
             particles = body.particles
             rows, masses = [int(row_of[p.slot]) for p in particles], [p.mass for p in particles]
             corners = positions[rows[:4]]

@@ -8,11 +8,29 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from iota._core import Body, Constraint, Particle
+from iota._core import Body, Constraint, Group, Particle
 from iota.simulator import SimulatedBody
 from iota.world.callbacks import Hook, twice
 
 KINDS = ("click", "press", "release", "drag", "hover", "pointer", "key", "join", "leave", "frame", "contact", "break")
+
+
+@dataclass(frozen=True)
+class Members:
+    """The bodies with a particle in a group, at present."""
+
+    group: Group
+
+    def __contains__(self, body: object) -> bool:
+        return (
+            isinstance(body, Body)
+            and body.alive
+            and self.group.alive
+            and any(particle in self.group for particle in body.particles)
+        )
+
+
+Bodies = frozenset[Any] | Members | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +40,7 @@ class Listener:
 
     kind: str
     hook: Hook
-    bodies: frozenset[Any] | None = None
+    bodies: Bodies = None
     key: str | None = None
     on_release: bool = False
     takes_over: bool = False
@@ -36,27 +54,29 @@ class Listener:
         if self.kind in ("join", "leave", "frame", "pointer"):
             return True
         if body is None:
-            return self.bodies is not None and not self.bodies
+            return self.bodies == frozenset()
         if self.bodies is None:
             return True
+        if isinstance(self.bodies, Members):
+            return body in self.bodies
         # An absorbed body is represented by its survivor.
         return body in self.bodies or any(isinstance(each, Body) and each.survivor == body for each in self.bodies)
 
 
-def things_of(target: Any) -> frozenset[Any] | None:
+def things_of(target: Any) -> Bodies:
     """The bodies and constraints of a target of simulation events. Raises TypeError for other targets."""
-    if target == "anything" or isinstance(target, Body | SimulatedBody | Particle):
+    if target == "anything" or isinstance(target, Body | SimulatedBody | Particle | Group):
         return bodies_of(target)
     if isinstance(target, Constraint):
         return frozenset([target])
     if isinstance(target, Iterable) and not isinstance(target, str):
-        found = frozenset().union(*(things_of(each) or () for each in target))
-        if found:
-            return found
-    raise TypeError(f"must be a body, a constraint, several, or 'anything', not {target!r}")
+        found = [things_of(each) for each in target]
+        if found and all(isinstance(each, frozenset) and each for each in found):
+            return frozenset().union(*found)  # type: ignore[arg-type]
+    raise TypeError(f"must be a body, a constraint, several, a group, or 'anything', not {target!r}")
 
 
-def bodies_of(target: Any) -> frozenset[Any] | None:
+def bodies_of(target: Any) -> Bodies:
     """The bodies of a target. Raises TypeError for other targets."""
     if target == "anything":
         return None
@@ -66,11 +86,13 @@ def bodies_of(target: Any) -> frozenset[Any] | None:
         return frozenset([target])
     if isinstance(target, Particle):
         return frozenset([target.body])
+    if isinstance(target, Group):
+        return Members(target)
     if isinstance(target, Iterable) and not isinstance(target, str):
-        found = frozenset().union(*(bodies_of(each) or () for each in target))
-        if found:
-            return found
-    raise TypeError(f"must be a body, bodies, 'anything' or 'nothing', not {target!r}")
+        found = [bodies_of(each) for each in target]
+        if found and all(isinstance(each, frozenset) and each for each in found):
+            return frozenset().union(*found)  # type: ignore[arg-type]
+    raise TypeError(f"must be a body, bodies, a group, 'anything' or 'nothing', not {target!r}")
 
 
 @dataclass

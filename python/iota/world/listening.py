@@ -18,7 +18,8 @@ class Listening:
     """Decorators for functions that are called on events of users or of the simulation. They take one `Event`, or
     nothing; the event has the client, the body and the place.
 
-    on: a body, several, "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` removes the
+    on: a body, several, a class of bodies (a Group of the system: those with a particle in it when it happens),
+    "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` removes the
     function.
     """
 

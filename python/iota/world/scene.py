@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus
+from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus, Vec3
 from iota.looks import Look, Looks, color_number
 from iota.simulator import SimulatedBody
 from iota.textures import Texture
@@ -19,6 +19,16 @@ class Camera:
 
     position: Sequence[float] = (2.5, 1.6, 3.5)
     target: Sequence[float] = (0.0, 1.2, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Static:
+    """A fixed shape without physics, see `World.add_static`; the ground is one too, of a HalfSpace. position: m. rotation:
+    quaternion x y z w."""
+
+    look: Look
+    position: Vec3
+    rotation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)
 
 
 def listed(style: Look | list[Look]) -> list[Look]:
@@ -95,7 +105,7 @@ class Scene:
         """Forgets what was sent: the next room is empty."""
         self._untold = dict(self._class_of)
 
-    def tell(self, room: Room, statics: Iterable[dict[str, Any]] = ()) -> None:
+    def tell(self, room: Room, statics: Iterable[Static] = ()) -> None:
         """Sends all that was not sent yet. statics: shapes without physics."""
         for name, looks in self.classes.items():
             parts = [part_of(look.describe(), style) for style, drawn in looks.items() for look in listed(drawn)]
@@ -106,4 +116,4 @@ class Scene:
             else:
                 room.assign(body, name, odd=bool(odd))
         self._untold.clear()
-        room.set_statics([part_of(s["shape"], offset=s["position"], rotation=s["rotation"]) for s in statics])
+        room.set_statics([part_of(s.look.describe(), offset=tuple(s.position), rotation=s.rotation) for s in statics])

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from iota.world.costs import Costs
 from iota.world.listeners import Listeners
 from iota.world.notices import Notices
 from iota.world.pictures import Pictures
-from iota.world.scene import Camera, Scene
+from iota.world.scene import Camera, Scene, Static
 from iota.world.step_costs import StepCosts
 from iota.world.things import Things
 
@@ -35,7 +34,7 @@ class State:
     style: str | None = None  # of pages at first
     ground: float | None = 0.0  # m
     camera: Camera | None = None
-    statics: list[dict[str, Any]] = field(default_factory=list)
+    statics: list[Static] = field(default_factory=list)
     actions: Actions = field(default_factory=Actions)
     things: Things = field(default_factory=Things)
     listeners: Listeners = field(default_factory=Listeners)

@@ -12,7 +12,7 @@ import numpy as np
 
 from iota._core import Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
-from iota.world.callbacks import GO_ON, Guard, Hook, print_on_terminal
+from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
 from iota.world.event import Event
 from iota.world.floor import Floor
 from iota.world.keeping import Keeper
@@ -22,6 +22,7 @@ from iota.world.step_costs import EVERY, parts_of
 from iota.world.summary import RunSummary, Tally
 
 IMPACTS_EVERY = 0.05  # s, simulated
+SMALLER = "Try a smaller world, or the mode 'plausible'."
 SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
 
 
@@ -84,16 +85,8 @@ class Stepper:
             if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
                 self._off.add(hook)
         dt, began = state.clock.dt, time.perf_counter()
-        if self._floor is not None:
-            with state.costs.of("floor"):
-                self._floor.push(dt)
-            self._tell_impact(self._floor)
-        try:
-            with state.costs.of("simulator"):
-                report = self._step_system(dt)
-        except ForceError as error:
-            report = error.report
-            self._guard.failed("A force", error, "It is switched off. " + GO_ON)
+        with self._guard.watching("A step of the world", SLOW_STEP, SMALLER):
+            report = self._step_on_floor(dt)
         state.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - state.step_ms)
         if self._tally is not None:
             self._tally.add(report, dt)
@@ -101,6 +94,19 @@ class Stepper:
             state.notices.warn_once(warning)
         self._tell_what_happened()
         return report
+
+    def _step_on_floor(self, dt: float) -> StepReport:
+        state = self._state
+        if self._floor is not None:
+            with state.costs.of("floor"):
+                self._floor.push(dt)
+            self._tell_impact(self._floor)
+        try:
+            with state.costs.of("simulator"):
+                return self._step_system(dt)
+        except ForceError as error:
+            self._guard.failed("A force", error, "It is switched off. " + GO_ON)
+            return error.report
 
     def _step_system(self, dt: float) -> StepReport:
         """Times the step if its costs are shown."""

@@ -5,6 +5,7 @@ it."""
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
@@ -22,6 +23,7 @@ from iota.world.records import encode
 
 Value = TypeVar("Value")
 FARTHEST = 1e9  # m
+MOST_THINGS = 100_000  # of a world
 
 
 class Field(Generic[Value]):
@@ -155,12 +157,18 @@ class Things:
         self._gone: list[tuple[str, int, int]] = []
         self._told: dict[Thing, bytes] = {}
         self._structure = -1
+        self.changes: Counter[type[Thing]] = Counter()  # of each kind: rises when one comes, changes or goes
         self.effect: Callable[[str, Vec3, float], object] | None = None  # while the world is served
 
     def __iter__(self) -> Iterator[Thing]:
         return iter(self._ids)
 
     def add(self, thing: Thing) -> None:
+        """Raises ValueError for more than pages can draw."""
+        if len(self._ids) >= MOST_THINGS:
+            raise ValueError(
+                f"a world has at most {MOST_THINGS} things of its script; draw many by one array: world.points, world.shapes"
+            )
         free = self._free.get(thing.kind)
         if free:
             slot, generation = free.pop()
@@ -171,6 +179,7 @@ class Things:
         self.mark(thing)
 
     def remove(self, thing: Thing) -> None:
+        self.changes[type(thing)] += 1
         slot, generation = self._ids.pop(thing)
         self._dirty.pop(thing, None)
         self.images.use(thing, None)
@@ -186,6 +195,7 @@ class Things:
 
     def mark(self, thing: Thing) -> None:
         """Marks it to be sent again."""
+        self.changes[type(thing)] += 1
         self._dirty[thing] = None
 
     def mark_attached(self) -> None:

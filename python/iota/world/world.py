@@ -33,13 +33,13 @@ from iota.world.interacting import Interacting
 from iota.world.lan import Lan
 from iota.world.publisher import Publisher
 from iota.world.recording import LiveRecording
-from iota.world.scene import Camera
+from iota.world.scene import Camera, Static
 from iota.world.server import Server
 from iota.world.skins import Skin
 from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
-from iota.world.things import vector
+from iota.world.things import unit_quaternion, vector
 from iota.world.view import View
 from iota.world.widgets import Plot
 
@@ -48,6 +48,7 @@ Result = TypeVar("Result")
 
 EFFECTS = ("break", "join", "grab", "impact")
 HEADLESS_SECONDS = 10.0  # default
+ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 
 
 class World(Interacting, Asking):
@@ -185,16 +186,17 @@ class World(Interacting, Asking):
         self._state.scene.classes[kind] = by_style(look)
         self._state.is_changed = True
 
-    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
-        """Adds a shape without physics: a beam, a stand. position: m. rotation: quaternion x y z w."""
-        self._state.statics.append(
-            {"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)}
-        )
+    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Static:
+        """Adds a shape without physics: a beam, a stand. Walks end at it, and `ray` meets it. position: m. rotation: quaternion
+        x y z w."""
+        added = Static(look, vector(position), unit_quaternion(rotation))
+        self._state.statics.append(added)
         if look.texture is not None:
             self._state.things.images.use(look.texture.name, look.texture)
         self._state.is_changed = True
+        return added
 
-    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> None:
+    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> Static:
         """Adds a look without physics from `start` to `end` (m): its local x runs along the line, and a cylinder or
         capsule without a length gets that of the line."""
         a, b = Vec3(*start), Vec3(*end)
@@ -202,7 +204,7 @@ class World(Interacting, Asking):
         if not length > 0:
             raise ValueError(f"a strut needs two different ends, not {a} twice")
         direction = (b - a) * (1 / length)
-        self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
+        return self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
@@ -241,7 +243,7 @@ class World(Interacting, Asking):
             world.run()
         """
         path = Path(file)
-        if path.suffix != ".iota":
+        if path.suffix.lower() != ".iota":
             raise ValueError(f"a recording must end in .iota, not {path.name!r}")
 
         def fail(text: str) -> None:
@@ -467,7 +469,7 @@ class World(Interacting, Asking):
                 self._publisher = Publisher.open(self._state, host, port, options.lan or lan)
             else:
                 self._publisher = Publisher.join(self._state, server, id)
-            atexit.register(self.close)  # for scripts that do not call close
+            atexit.register(self._end)  # for scripts that do not call close or stop
             self._begin()
             self._guard.watch()
             try:
@@ -524,8 +526,16 @@ class World(Interacting, Asking):
             self._recordings.clear()
             self._publisher.close()
             self._publisher = None
-            atexit.unregister(self.close)
+            atexit.unregister(self._end)
         self._inputs.take_calls()
+
+    def _end(self) -> None:
+        """With the process. What runs in the background ends by itself, unless a callback hangs."""
+        if self._background is None:
+            self.close()
+        else:
+            self._stopping = True
+            self._background.join(ENDING_SECONDS)
 
     # --- the loop -------------------------------------------------------------------------------------------------
 
