@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from conftest import Runner
+from page_client import PageClient
 
 import iota
 from iota import studies
@@ -151,6 +153,29 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
     run(world, 0.7)
     assert told[-1] == "one"
     assert ball.alive
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"), [("fireworks", 2.5), ("lab", 8.0), ("ladder", 8.0), ("molecule", 6.0), ("undersea", 3.0)]
+)
+def test_a_story_says_that_it_begins_and_a_hand_on_a_page_stops_it(name: str, begins: float, run_world: Runner) -> None:
+    world = studies.module(name).build()
+    run(world, begins - 0.5)
+    with PageClient(run_world(world)) as page:
+
+        def has_said(title: str) -> bool:
+            return any(notice["title"] == title for notice in page.notices)
+
+        page.wait_for(lambda: has_said("The story begins"))
+
+        def free() -> tuple[int, iota.Vec3]:
+            body = next(body for body in world.system.bodies if body.kind == "dynamic" and not body.is_spark)
+            return body.slot, body.center_of_mass
+
+        slot, place = world.call(free)
+        assert not has_said("The story stops")
+        page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=tuple(place))
+        page.wait_for(lambda: has_said("The story stops"))
 
 
 def test_stories_and_helpers_are_no_studies() -> None:

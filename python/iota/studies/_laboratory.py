@@ -20,12 +20,14 @@ GREEN, CLAY, GLASS = ("paint", "#3f7a45"), ("paint", "#a5603f"), ("glass", "#bcd
 BOOKS = [("paint", color) for color in ("#7a2f2f", "#2f4f7a", "#356b4a", "#b08b3c", "#5c4a72", "#d9d2c0")]
 KEYS = (15, 14, 14, 13, 12, 8)  # of a keyboard, row by row
 TOP = 0.74  # of a desk, m
+WALLS = 3.6  # height, m
 
 
 class Furniture:
-    """Triangles by material and color."""
+    """Triangles by material and color. detail: of round things, times the usual number of facets around."""
 
-    def __init__(self) -> None:
+    def __init__(self, detail: int = 1) -> None:
+        self._detail = detail
         self._pieces: dict[Key, list[tuple[Array, Array]]] = {}
         self.triangles = 0
 
@@ -47,6 +49,7 @@ class Furniture:
 
     def turned(self, key: Key, foot: Sequence[float], profile: Sequence[tuple[float, float]], around: int = 40) -> None:
         """A surface of revolution about the vertical. profile: radius and height above `foot`, m, from below; both ends are closed."""
+        around *= self._detail
         angles = 2 * math.pi * np.arange(around) / around
         rings = [(r * np.cos(angles), np.full(around, h), -r * np.sin(angles)) for r, h in profile]
         ends = [(0.0, profile[0][1], 0.0), (0.0, profile[-1][1], 0.0)]
@@ -62,7 +65,7 @@ class Furniture:
 
     def ball(self, key: Key, center: Sequence[float], radii: Sequence[float], rows: int = 10, around: int = 16) -> None:
         """An ellipsoid with axes along x, y, z."""
-        turns = np.linspace(-math.pi / 2, math.pi / 2, rows + 2)[1:-1]
+        turns = np.linspace(-math.pi / 2, math.pi / 2, self._detail * rows + 2)[1:-1]
         foot = np.asarray(center, float)
         before = len(self._pieces.get(key, []))
         self.turned(key, (0, 0, 0), [(math.cos(turn), math.sin(turn)) for turn in turns], around)
@@ -85,9 +88,9 @@ class Furniture:
                     batch.append(piece)
 
 
-def furnish(world: iota.World) -> Furniture:
-    """A laboratory of 9 x 7 m, open to the viewer's side."""
-    room, random = Furniture(), np.random.default_rng(3)
+def furnish(world: iota.World, detail: int = 1) -> Furniture:
+    """A laboratory of 9 x 7 m, open to the viewer's side, of 65 000 triangles; more with more detail."""
+    room, random = Furniture(detail), np.random.default_rng(3)
     shell(room)
     desk(room, -0.2, 0.0)
     for x in (-3.0, -1.0, 1.0):
@@ -109,7 +112,7 @@ def furnish(world: iota.World) -> Furniture:
 
 
 def shell(room: Furniture) -> None:
-    """Parquet, two walls with a skirting, three windows, foam that damps the sound, ceiling lamps on wires."""
+    """Parquet, three walls with a skirting, three windows, foam that damps the sound, ceiling lamps on wires."""
     for row in range(70):
         for column in range(19):
             x, z = -4.5 + 0.5 * column - (0.25 if row % 2 else 0), -3.5 + 0.1 * row
@@ -117,11 +120,12 @@ def shell(room: Furniture) -> None:
             key = FLOOR if (row * 7 + column * 5) % 3 else ("wood", "#e2c7a3")
             if right > left:
                 room.box(key, ((left + right) / 2, -0.012, z + 0.05), (right - left - 0.003, 0.04, 0.098))
-    room.box(WALL, (0, 1.4, -3.55), (9.1, 2.8, 0.1))
+    room.box(WALL, (0, WALLS / 2, -3.55), (9.1, WALLS, 0.1))
+    room.box(WALL, (-4.55, WALLS / 2, 0), (0.1, WALLS, 7.0))
     room.box(WHITE, (0, 0.04, -3.49), (9.0, 0.08, 0.02))
     for z, length in ((-3.3, 0.4), (-1.5, 0.5), (0.5, 0.5), (2.6, 1.8)):
-        room.box(WALL, (4.55, 1.4, z), (0.1, 2.8, length))
-    for low, high in ((0, 0.9), (2.3, 2.8)):
+        room.box(WALL, (4.55, WALLS / 2, z), (0.1, WALLS, length))
+    for low, high in ((0, 0.9), (2.3, WALLS)):
         room.box(WALL, (4.55, (low + high) / 2, 0), (0.1, high - low, 7.0))
     for z in (-2.4, -0.5, 1.3):
         room.box(GLASS, (4.55, 1.6, z), (0.01, 1.4, 1.5))
@@ -132,7 +136,7 @@ def shell(room: Furniture) -> None:
             pyramid(room, ("rubber", "#4a4f57"), (x, y, -3.5), 0.048, 0.04)
     for x in (-2.5, 0.0, 2.5):
         room.turned(WHITE, (x, 2.45, -0.6), [(0.02, 0.22), (0.05, 0.2), (0.2, 0.0), (0.19, 0.0), (0.045, 0.19)], 64)
-        room.box(DARK, (x, 2.9, -0.6), (0.008, 0.5, 0.008))
+        room.box(DARK, (x, (2.65 + WALLS) / 2, -0.6), (0.008, WALLS - 2.65, 0.008))
 
 
 def pyramid(room: Furniture, key: Key, foot: Sequence[float], side: float, height: float) -> None:
@@ -251,5 +255,9 @@ def lamp(room: Furniture, foot: Sequence[float]) -> None:
 
 
 def mug(room: Furniture, foot: Sequence[float]) -> None:
-    """Of coffee."""
-    room.turned(WHITE, foot, [(0.036, 0), (0.04, 0.005), (0.04, 0.095), (0.036, 0.095), (0.036, 0.085)], 64)
+    """Of coffee, with a handle."""
+    x, y, z = foot
+    room.turned(WHITE, foot, [(0.036, 0), (0.04, 0.005), (0.04, 0.095), (0.036, 0.095), (0.036, 0.08)], 64)
+    room.turned(("paint", "#3a2418"), foot, [(0.036, 0.08), (0.036, 0.084)], 64)
+    for at, size in (((0.066, 0.05), (0.008, 0.056)), ((0.05, 0.074), (0.028, 0.008)), ((0.05, 0.026), (0.028, 0.008))):
+        room.box(WHITE, (x + at[0], y + at[1], z), (*size, 0.012))

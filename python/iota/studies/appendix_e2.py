@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import iota
-from iota.studies.appendix_e1 import GROUND, present
+from iota.studies.appendix_e1 import GROUND, SCALE, present
 
 
 def build() -> iota.World:
@@ -13,7 +13,7 @@ def build() -> iota.World:
     particle1 = system.body().particle()
     particle2 = system.body().particle((30, 0, 0))
     system.bond(particle1, particle2, force_function1)
-    world = present(iota.World(system, title="Appendix E.2", ground=GROUND))
+    world = present(iota.World(system, title=f"Appendix E.2: {SCALE}", ground=GROUND))
     world.line(particle1, particle2)
     return world
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import iota
-from iota.studies.appendix_e1 import GROUND, present
+from iota.studies.appendix_e1 import GROUND, SCALE, present
 
 
 def build() -> iota.World:
@@ -20,4 +20,4 @@ def build() -> iota.World:
     system.cosmetic_bond(particle2, particle2a)
     # A hinge. The two need not be at one place: they meet at once and stay together.
     particle1.combine(particle2)
-    return present(iota.World(system, title="Appendix E.3", ground=GROUND))
+    return present(iota.World(system, title=f"Appendix E.3: {SCALE}", ground=GROUND))

@@ -32,7 +32,7 @@ BODY = (
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
-    world = iota.World(system, title="shoal", dt=1 / 60)
+    world = iota.World(system, title="shoal: a fish is 0.3 m long", dt=1 / 60)
     school = School(world, fish, leader_at)
     present(world)
 

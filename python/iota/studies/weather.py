@@ -48,9 +48,8 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
         cloth.bond(p, q, "spring", stiffness=60, damping=0.02, break_force=6)
     cloth.nail(*knots[:, 0])
     cloth.group("cloth", knots.flat)
+    cloth.points.radius[:], cloth.points.color[:] = 0.003, (0.85, 0.6, 0.3)
     made = cloth.realize(system)
-    for knot in made.points:
-        knot.radius = 0.006
     cells = [(int(knots[r, c]), int(knots[r + 1, c])) for r in range(ROWS - 1) for c in range(COLUMNS - 1)]
     triangles = [t for k, below in cells for t in ((k, below, k + 1), (k + 1, below, below + 1))]
     world.surface(list(made.points), triangles, threads=made.bonds, color="#c8842c")
