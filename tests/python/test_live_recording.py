@@ -177,6 +177,7 @@ def test_an_older_file_stays_until_there_is_something_to_record(tmp_path: Path) 
         wait_for(lambda: file.read_bytes() != b"an older one")
     world.stop()
     assert read(file)[1] and [path for path in tmp_path.iterdir() if path.is_file()] == [file]
+    make_world().record(tmp_path / "SHOUTED.IOTA").stop()
 
 
 def test_files_that_cannot_be_are_refused_in_one_line(tmp_path: Path) -> None:

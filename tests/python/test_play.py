@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from iota.film import browser
+from iota.film import Film, browser
 from iota.film.files import Failed
-from iota.film.stream import pack, unpack
+from iota.film.stream import pack, unpack, write_stream
 
 SPEED, BREAK = 1.5, 0.5  # m/s; s, when the ball loses its tail
 
@@ -35,6 +35,13 @@ def test_a_stream_that_is_cut_is_read_up_to_its_last_whole_message() -> None:
         messages, is_complete = unpack(packed[:end])
         assert messages == frames[: len(messages)] and not is_complete
         assert len(messages) >= 20 * end // len(packed) - 3
+
+
+def test_an_ending_in_capitals_is_the_same_ending(tmp_path: Path) -> None:
+    frames = [(0.0, b"one"), (0.5, b"two")]
+    write_stream(tmp_path / "A.IOTA", frames, "a title")
+    assert unpack((tmp_path / "A.IOTA").read_bytes()) == (frames, True)
+    assert Film(tmp_path / "A.MP4").is_drawn and not Film(tmp_path / "A.IOTA").is_drawn
 
 
 def iota(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -84,6 +91,35 @@ def test_the_page_shows_what_was_there_at_any_time_without_a_server(tmp_path: Pa
         chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
         for file in (page_file, direct):
             look(chromium, file)
+        chromium.close()
+
+
+@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+def test_the_page_says_that_it_lacks_what_the_scripts_own_code_draws(tmp_path: Path) -> None:
+    sync = pytest.importorskip("playwright.sync_api")
+    (tmp_path / "flower.js").write_text('iota.define("flower", { make: () => new iota.three.Group() });')
+    script = """
+        import iota
+        def build():
+            system = iota.System()
+            system.body().particle((0, 1, 0)).nail()
+            world = iota.World(system)
+            {own}
+            return world
+        """
+    own = f"world.client_module({str(tmp_path / 'flower.js')!r}); world.custom('flower')"
+    with sync.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
+        for name, line, told in (("own", own, ["flower.js"]), ("usual", "pass", [])):
+            (tmp_path / f"{name}.py").write_text(textwrap.dedent(script).format(own=line))
+            file = tmp_path / f"{name}.html"
+            done = iota("record", tmp_path / f"{name}.py", "-o", file, "--seconds", "0.2", "--size", "64x48")
+            assert done.returncode == 0, done.stderr
+            page = chromium.new_page()
+            page.goto(file.as_uri())
+            page.wait_for_function("() => globalThis.iota?.connected && iota.bodies().length > 0", timeout=60_000)
+            shown = page.locator(".note:visible").all_inner_texts()
+            assert len(shown) == len(told) and all(word in text for word, text in zip(told, shown, strict=True))
         chromium.close()
 
 

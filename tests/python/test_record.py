@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import textwrap
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from iota.cli.record import Bar
 from iota.film import browser
 
 av = pytest.importorskip("av")
@@ -117,6 +119,20 @@ def test_what_fails_leaves_the_old_film_and_nothing_else(script: Path, tmp_path:
     assert done.returncode != 0
     assert film.read_bytes() == b"old"
     assert set(tmp_path.iterdir()) - before <= {tmp_path / "state"}
+
+
+def test_a_terminal_shows_how_far_the_film_is(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
+    Bar("chain").show(10, 40)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    bar = Bar("chain")
+    bar.show(10, 40)
+    assert re.match(r"\rchain \[#{7} {23}\] 10/40 frames, \d+ s left", capsys.readouterr().err)
+    bar.end()
+    assert capsys.readouterr().err == "\r\033[K"
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ def play(arguments: argparse.Namespace) -> None:
     """Makes the page in the system's temporary folder, or at the path of -o, and opens it."""
     source: Path = arguments.file
     target = arguments.output or Path(tempfile.gettempdir()) / f"iota-{source.stem}.html"
-    if target.suffix != ".html":
+    if target.suffix.lower() != ".html":
         raise Failure(f"{target} must end in .html")
     try:
         file = source.read_bytes()

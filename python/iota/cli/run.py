@@ -94,6 +94,8 @@ def token(arguments: argparse.Namespace) -> None:
         print(renew_token() if arguments.renew else kept_token())
     except OSError as error:
         raise Failure(f"{error.strerror or error}") from None
+    if arguments.renew:
+        print("iota: worlds that are running keep the old token until they are started again", file=sys.stderr)
 
 
 def can_show_a_page() -> bool:

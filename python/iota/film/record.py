@@ -55,7 +55,7 @@ class Film:
     @property
     def is_drawn(self) -> bool:
         """Whether all frames are needed as pictures."""
-        return self.film is not None and self.film.suffix == ".mp4"
+        return self.film is not None and self.film.suffix.lower() == ".mp4"
 
     def on_sheet(self) -> set[int]:
         """The frames that the sheet shows: the middle of each of its equal parts of the time."""

@@ -80,4 +80,4 @@ def player(file: bytes, title: str) -> str:
 def write_stream(path: Path, messages: Iterable[tuple[float, bytes]], title: str) -> None:
     """The file itself, or the page that plays it, by its ending: .iota or .html."""
     file = pack(messages)
-    path.write_bytes(file if path.suffix == ".iota" else player(file, title).encode())
+    path.write_bytes(file if path.suffix.lower() == ".iota" else player(file, title).encode())
