@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/expectations.md names tests that are there."""
+"""docs/expectations.md and docs/interaction.md name tests that are there."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 ROW = re.compile(r"^\| (\d+) \| (.+?) \| (.+?) \| (.*?) ?\|$", re.MULTILINE)
+PART = re.compile(r"^\| ([^|]+?) \| (`[^|]+\.test\.ts`[^|]+|`tests/[^|]+) \|$", re.MULTILINE)
 NAMED = re.compile(r"`([^`]+)`((?:(?!`).)*)")
 
 
@@ -15,9 +16,24 @@ def test_each_expectation_names_tests_that_exist() -> None:
     rows = ROW.findall((ROOT / "docs" / "expectations.md").read_text())
     assert [int(number) for number, *_ in rows] == list(range(1, 29))
     for number, _, state, shown in rows:
-        named = NAMED.findall(shown)
-        assert named or not state.startswith("yes"), f"row {number} says yes, but names no test"
-        for file, names in named:
-            text = (ROOT / file).read_text()
-            for name in filter(None, (part.strip(" :;") for part in names.split(";"))):
-                assert name in text, f"row {number}: {file} has no test {name!r}"
+        assert NAMED.findall(shown) or not state.startswith("yes"), f"row {number} says yes, but names no test"
+        check_names(f"row {number}", shown)
+
+
+def test_each_part_of_interaction_names_tests_that_exist() -> None:
+    table, shown = (ROOT / "docs" / "interaction.md").read_text().split("| part | shown by |")
+    rows = PART.findall(shown)
+    assert len(rows) == shown.count("\n| ")
+    parts = ", ".join(part for part, _ in rows)
+    for part, names in rows:
+        check_names(part, names)
+    for part in re.findall(r"^\| ([a-z][^|]+?) \|", table, re.MULTILINE)[1:]:
+        for word in re.split(r", |: ", part)[:1]:
+            assert word in parts, f"nothing shows {part!r}"
+
+
+def check_names(row: str, shown: str) -> None:
+    for file, names in NAMED.findall(shown):
+        text = (ROOT / file).read_text()
+        for name in filter(None, (part.strip(" :;") for part in names.split(";"))):
+            assert name in text, f"{row}: {file} has no test {name!r}"

@@ -106,6 +106,17 @@ export class Tab {
     await this.until("nothing fades or slides", () => document.getAnimations().every(({ playState }) => playState !== "running"));
   }
 
+  /** Until the first picture is shown. */
+  async drawn(): Promise<void> {
+    await this.until("it has been drawn", () => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
+  }
+
+  /** Returns a paused world to its start. */
+  async backToStart(): Promise<void> {
+    await this.page.evaluate(() => iota.page.commands.run("reset"));
+    await this.until("it has begun anew", () => iota.time === 0);
+  }
+
   /** Waits until the camera of the flat page stands still, and returns its place. */
   async eyeAtRest(): Promise<number[]> {
     const eye = () => this.page.evaluate(async () => {

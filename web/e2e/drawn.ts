@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where things are in the drawn picture, by counting pixels.
 
+import type { DirectionalLight } from "three";
 import type { Tab } from "./browser.ts";
 
 export interface Drawn {
   /** Share of the picture's pixels. */
   readonly share: number;
-  /** Bounds of the drawn pixels as shares of the picture: 0 .. 1. */
+  /** Extent of the drawn pixels, and the lowest of them, as shares of the picture: 0 .. 1. */
   readonly wide: number;
   readonly high: number;
+  readonly low: number;
   /** Whether drawn pixels touch the picture's edge. */
   readonly cut: boolean;
+  /** Of the drawn pixels, the share under the panel of controls. The bar hides itself. */
+  readonly covered: number;
 }
 
 const everything = ["body", "staticShape", "tie", "particleSet"] as const;
 
-/** The pixels of these kinds of things: those that change when they are hidden. */
-export async function drawn(tab: Tab, kinds: readonly (typeof everything)[number][] = everything): Promise<Drawn> {
+/** The pixels of these kinds of things, or of shadows: those that change when they are hidden. */
+export async function drawn(tab: Tab, what: readonly (typeof everything)[number][] | "shadows" = everything): Promise<Drawn> {
   return tab.page.evaluate((hiding) => {
     const { viewer, world: { entities } } = iota.page;
     const { renderer } = viewer;
@@ -28,23 +32,29 @@ export async function drawn(tab: Tab, kinds: readonly (typeof everything)[number
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
       return pixels;
     };
-    const roots = hiding.map((kind) => entities[kind].root);
+    const show = (on: boolean) => {
+      if (hiding !== "shadows") for (const kind of hiding) entities[kind].root.visible = on;
+      else viewer.scene.traverse((light) => { if ("isDirectionalLight" in light) (light as DirectionalLight).shadow.intensity = on ? 1 : 0; });
+    };
     renderer.shadowMap.autoUpdate = false;
     const shown = take();
-    for (const root of roots) root.visible = false;
+    show(false);
     const hidden = take();
-    for (const root of roots) root.visible = true;
+    show(true);
     renderer.shadowMap.autoUpdate = true;
-    let count = 0;
+    const panel = document.getElementById("panel")?.getBoundingClientRect();
+    let [count, under] = [0, 0];
     let [left, right, low, top] = [width, -1, height, -1];
     for (let index = 0; index < width * height; index++) {
       const change = Math.max(...[0, 1, 2].map((channel) => Math.abs(shown[4 * index + channel] - hidden[4 * index + channel])));
       if (change < 12) continue;
       count++;
       const [x, y] = [index % width, Math.floor(index / width)];
+      const [across, down] = [(x / width) * innerWidth, (1 - y / height) * innerHeight];
+      if (panel !== undefined && across > panel.left && across < panel.right && down > panel.top && down < panel.bottom) under++;
       [left, right, low, top] = [Math.min(left, x), Math.max(right, x), Math.min(low, y), Math.max(top, y)];
     }
     const cut = left === 0 || low === 0 || right === width - 1 || top === height - 1;
-    return { share: count / (width * height), wide: (right - left) / width, high: (top - low) / height, cut };
-  }, kinds);
+    return { share: count / (width * height), wide: (right - left) / width, high: (top - low) / height, low: low / height, cut, covered: under / Math.max(count, 1) };
+  }, what);
 }

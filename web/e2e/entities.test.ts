@@ -18,7 +18,7 @@ beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
   browser = await Browser.start({ width: 960, height: 540, density: 1 });
   tab = await browser.open(server.url);
-  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.drawn();
   await tab.until("its images are decoded", () => {
     let images = 0;
     iota.page.viewer.scene.traverse((item) => {

@@ -16,7 +16,6 @@ afterAll(async () => {
   await browser?.stop();
 });
 
-const drawn = (tab: Tab) => tab.until("it has been drawn", () => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
 const take = (tab: Tab) => pictureOf(tab, 320, 180);
 
 /** A page that comes to the study at its start. */
@@ -24,12 +23,11 @@ async function withStart(study: string, look: (tab: Tab) => Promise<void>): Prom
   const server = await WorldServer.start([study], await freePort());
   try {
     const tab = await browser.open(server.url);
-    await drawn(tab);
+    await tab.drawn();
     await tab.pause(true);
-    await tab.page.evaluate(() => iota.page.commands.run("reset"));
-    await tab.until("it has begun anew", () => iota.time === 0);
+    await tab.backToStart();
     await tab.page.reload();
-    await drawn(tab);
+    await tab.drawn();
     await tab.eyeAtRest();
     await look(tab);
     expect(tab.complaints).toEqual([]);
@@ -54,7 +52,7 @@ describe("the first picture", () => {
       await bodies("root.visible = true; root.traverse(({ material }) => material?.color?.multiplyScalar(0))");
       expect(await alike(), "black").toBe(false);
       await tab.page.reload();
-      await drawn(tab);
+      await tab.drawn();
       await tab.eyeAtRest();
       await expect.poll(alike).toBe(true);
       await bodies("root.position.x = 0.3 * iota.page.viewer.size");

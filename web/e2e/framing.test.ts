@@ -22,7 +22,7 @@ afterAll(async () => {
 
 async function open(url: string): Promise<Tab> {
   const tab = await browser.open(url);
-  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.drawn();
   return tab;
 }
 
@@ -68,6 +68,21 @@ describe("the first picture", () => {
       await server.stop();
     }
   });
+});
+
+it("shadows on a ground far below what falls are in the first picture", async () => {
+  const server = await WorldServer.start(["web/e2e/falling_probe.py"], await freePort());
+  try {
+    const tab = await open(server.url);
+    await tab.pause(true);
+    await tab.backToStart();
+    // The rod, which has shadows of itself, is in the upper half.
+    await expect.poll(async () => (await drawn(tab, "shadows")).low).toBeLessThan(0.4);
+    expect(await tab.page.evaluate(() => iota.bodyPosition(0)[1]), "it has not fallen").toBeGreaterThan(-1);
+    expect(tab.complaints).toEqual([]);
+  } finally {
+    await server.stop();
+  }
 });
 
 it("what comes off is pointed at from the edge of the picture, and a press of the marker shows everything", async () => {

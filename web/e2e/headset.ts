@@ -31,7 +31,7 @@ export class HeadsetTab {
     await this.tab.page.mouse.move(200, 120);
     await this.tab.page.mouse.move(210, 120);
     await this.tab.page.click("#enter-xr");
-    await this.tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2 && iotaXR.panelButton("play") !== null);
+    await this.tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2);
   }
 
   /** The result of a function of the page, after some frames. */
@@ -115,8 +115,28 @@ export class HeadsetTab {
     await this.frames(2);
   }
 
-  /** Points a ray at a button of the wrist panel. */
+  /** Turns the back of the left hand to the eyes and looks there, as at a watch. */
+  async lookAtWrist(): Promise<void> {
+    await this.tab.page.evaluate(() => {
+      const { controllers, hands, position: head } = iotaXR!.device!;
+      const from = { x: head.x - 0.2, y: head.y - 0.24, z: head.z - 0.38 };
+      // The rotation that takes +y to the direction of the eyes, the half-way quaternion of both, after a quarter turn about +y: the
+      // hand points to the right, as that of who reads a watch.
+      const length = Math.hypot(0.2, 0.24, 0.38);
+      const [x, y, z] = [0.2 / length, 0.24 / length, 0.38 / length];
+      const half = Math.SQRT2 * Math.hypot(1 + y, x, z);
+      for (const part of [controllers.left, hands.left]) {
+        part?.position.set(from.x, from.y, from.z);
+        part?.quaternion.set((z - x) / half, -(1 + y) / half, -(x + z) / half, (1 + y) / half);
+      }
+    });
+    await this.look(0.3, -0.25);
+    await this.tab.until("the panel is at the wrist", () => iotaXR!.panelButtons().some((name) => iotaXR!.panelButton(name) !== null));
+  }
+
+  /** Points a ray at a button of the wrist panel, which the user looks at. */
   async pointAtPanel(side: Side, at: Point, name: string): Promise<void> {
+    await this.lookAtWrist();
     await this.tab.until(`the panel has a button ${name}`, (wanted) => iotaXR!.panelButton(wanted), name);
     // The panel eases to its place: point again where it has gone on.
     for (let trial = 0; trial < 50; trial++) {

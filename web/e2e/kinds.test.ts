@@ -17,7 +17,7 @@ beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/kinds_probe.py"], await freePort());
   browser = await Browser.start({ width: 960, height: 540, density: 1 });
   tab = await browser.open(server.url);
-  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.drawn();
   await tab.page.evaluate(() => iota.page.commands.run("reset"));
   await tab.until("it has begun anew", () => iota.time < 0.5);
   await tab.pause(false);

@@ -30,11 +30,11 @@ beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
   browser = await Browser.start({ width: 960, height: 540, density: 1 });
   tab = await browser.open(server.url);
-  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting") && iota.time > 0.6);
+  await tab.drawn();
+  await tab.until("its moving things have come some way", () => iota.time > 0.6);
   // The ball that runs about is where it began.
   await tab.freeze();
-  await tab.page.evaluate(() => iota.page.commands.run("reset"));
-  await tab.until("it has begun anew", () => iota.time === 0);
+  await tab.backToStart();
   await tab.freeze();
 });
 

@@ -43,11 +43,10 @@ async function visit(server: WorldServer, options: BrowserOptions, look: (tab: T
   const browser = await Browser.start({ ...options, density: 1 });
   try {
     const tab = await browser.open(server.url);
-    await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+    await tab.drawn();
     // The world at its start, so that plots are empty and all is whole.
     await tab.pause(true);
-    await tab.page.evaluate(() => iota.page.commands.run("reset"));
-    await tab.until("it has begun anew", () => iota.time === 0);
+    await tab.backToStart();
     await tab.page.evaluate((rules) => {
       const sheet = new CSSStyleSheet();
       sheet.replaceSync(rules);
@@ -108,6 +107,7 @@ describe("the headset", () => {
       await me.tab.pause(true);
       await me.tab.page.evaluate(() => iota.page.commands.run("reset"));
       await me.enter();
+      await me.lookAtWrist();
       await expectKept(me.tab, `panel_wrist_${name}`, () => me.tab.page.evaluate(() => {
         const { map } = iotaXR!.headset.panel.board.mesh.material;
         return (map!.image as HTMLCanvasElement).toDataURL("image/png");

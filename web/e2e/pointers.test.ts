@@ -2,7 +2,7 @@
 // What a script hears of pointers: mouse, finger, gamepad, controllers, bare hands.
 
 import { afterAll, beforeAll, expect, it } from "vitest";
-import { Browser, small, type Tab } from "./browser.ts";
+import { Browser, small } from "./browser.ts";
 import { HeadsetTab } from "./headset.ts";
 import { freePort, WorldServer } from "./server.ts";
 
@@ -30,18 +30,6 @@ async function hears(what: string, condition: (told: Told) => boolean): Promise<
   await expect.poll(() => server.output.split("\n").some((line) => line.startsWith("{") && condition(JSON.parse(line) as Told)), { message: what }).toBe(true);
 }
 
-/** Where the ball is drawn, once the camera has come to rest. */
-async function ball(tab: Tab): Promise<readonly [number, number]> {
-  let last: readonly [number, number] = [0, 0];
-  await expect.poll(async () => {
-    const now = await tab.place(0);
-    const moved = Math.hypot(now[0] - last[0], now[1] - last[1]);
-    last = now;
-    return moved;
-  }, { message: "the camera is at rest" }).toBeLessThan(0.1);
-  return last;
-}
-
 it("of the mouse: where it points, on what is there or beside the middle of the scene, and its button; and of a gamepad's sticks", async () => {
   const browser = await Browser.start(small);
   try {
@@ -50,7 +38,8 @@ it("of the mouse: where it points, on what is there or beside the middle of the 
       navigator.getGamepads = () => [pad as unknown as Gamepad];
     });
     const tab = await browser.open(server.url);
-    const [x, y] = await ball(tab);
+    await tab.eyeAtRest();
+    const [x, y] = await tab.place(0);
     await tab.page.mouse.move(x, y);
     // The front of the ball.
     await hears("of the mouse on the ball", ({ pointer, at, trigger }) => pointer === "mouse" && Math.abs(at[2] - 0.3) < 0.02 && trigger === 0);
@@ -70,7 +59,8 @@ it("of a finger", async () => {
   const browser = await Browser.start({ width: 390, height: 700, touch: true });
   try {
     const tab = await browser.open(server.url);
-    await tab.touch("touchStart", [await ball(tab)]);
+    await tab.eyeAtRest();
+    await tab.touch("touchStart", [await tab.place(0)]);
     await hears("of the finger on the ball", ({ pointer, at, trigger }) => pointer.startsWith("touch") && Math.abs(at[2] - 0.3) < 0.05 && trigger === 1);
     await tab.lift();
   } finally {

@@ -28,7 +28,7 @@ def build() -> iota.World:
     world.on_key("d")(lambda: tone.play((3, 1, 3)))
     world.on_key("w")(lambda: tone.play((0, 1, -300)))
     world.on_key("s")(lambda: tone.play(ball))
-    world.on_key("i")(lambda: world.effect("impact", (-3, 1, 3)))
+    world.on_key("i")(lambda: world.effect("impact", (3, 1, 3)))
     world.on_key("x")(lambda: world.sound(folder / "broken.ogg"))
     world.on_key("y")(lambda: world.sound(np.zeros(8000 * 65), rate=8000))
     return world

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A walk through the furnished laboratory of over 100 000 triangles ends at its walls.
+// A walk through the furnished laboratory of over 100 000 triangles ends at its walls, and at one that a script read from a GLB file.
 
 import { afterAll, beforeAll, expect, it } from "vitest";
 import { Browser, type Tab } from "./browser.ts";
@@ -10,10 +10,10 @@ let browser: Browser;
 let tab: Tab;
 
 beforeAll(async () => {
-  server = await WorldServer.start(["lab"], await freePort());
+  server = await WorldServer.start(["web/e2e/room_probe.py"], await freePort());
   browser = await Browser.start({ width: 320, height: 180 });
   tab = await browser.open(server.url);
-  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.drawn();
 });
 
 afterAll(async () => {
@@ -56,6 +56,20 @@ it("ends at the walls, whichever way one goes", async () => {
     await walk(key, 4);
     expect(await outside(), key).toBeLessThan(0);
   }
+  // Where the laboratory is open: the wall from the file, at z = 3.5 m.
+  await tab.page.evaluate(() => {
+    iota.page.viewer.camera.position.set(0, 1.5, 2.5);
+    iota.page.navigation.setHome({ pivot: [0, 1.5, 3.2], distance: 0.7, yaw: Math.PI, pitch: 0 });
+    iota.page.navigation.jumpHome();
+  });
+  await walk("w", 4);
+  expect(await tab.page.evaluate(() => iota.page.viewer.camera.position.z)).toBeLessThan(3.5);
+  expect(await tab.page.evaluate(() => iota.page.viewer.camera.position.z), "it went on to it").toBeGreaterThan(3.3);
+  expect(await tab.page.evaluate(() => {
+    let triangles = 0;
+    for (const { geometry } of iota.page.world.entities.staticShape.meshes()) triangles += (geometry.index ?? geometry.getAttribute("position")).count / 3;
+    return triangles;
+  })).toBeGreaterThan(100_000);
   await tab.picture("walk");
   await tab.page.evaluate(() => { iota.page.navigation.walls = null; });
   await walk("w", 6);

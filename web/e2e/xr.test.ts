@@ -136,7 +136,6 @@ describe("an emulated headset", () => {
   it("breaks and rejoins by the panel at the left wrist", async () => {
     await me.tab.page.evaluate((id) => iota.select(id), link);
     await me.tab.pause(false);
-    await me.look(0.3, -0.25);
     await me.pointAtPanel("right", [0.12, 1.38, -0.2], "action break");
     await me.click("right", "trigger");
     await untilParts(2);
@@ -149,10 +148,24 @@ describe("an emulated headset", () => {
     await me.look(0, 0);
   });
 
+  it("has its panel only while the user looks at the back of the left hand", async () => {
+    const isThere = () => me.tab.page.evaluate(() => iotaXR!.headset.panel.board.mesh.visible);
+    await me.point("left", [-0.2, 1.36, -0.38], [-0.2, 1.36, -2]);
+    await me.look(0, 0);
+    await me.tab.until("a hand that points ahead has none", () => !iotaXR!.headset.panel.board.mesh.visible);
+    await me.look(0.4, -0.3);
+    await me.frames(20);
+    expect(await isThere(), "a hand that points ahead has none for who looks at it").toBe(false);
+    await me.lookAtWrist();
+    expect(await isThere()).toBe(true);
+    await me.look(-0.6, 0.1);
+    await me.tab.until("it is gone for who looks away", () => !iotaXR!.headset.panel.board.mesh.visible);
+    await me.look(0, 0);
+  });
+
   it("selects several by the panel and the trigger", async () => {
     await me.tab.page.evaluate(() => iota.select(-1));
     const press = async () => {
-      await me.look(0.3, -0.25);
       await me.pointAtPanel("right", [0.12, 1.38, -0.2], "select several");
       await me.click("right", "trigger");
       await me.look(0, 0);
@@ -212,6 +225,29 @@ describe("an emulated headset", () => {
     await me.stick("left", 0, 0);
     const after = await me.tab.page.evaluate(() => iotaXR!.rig().yaw);
     expect(((after - before) * 180) / Math.PI).toBeCloseTo(90, 1);
+  });
+
+  it("shows an arrow to the scene while that is out of view, and only then", async () => {
+    const untilShown = (shown: boolean) => me.tab.until(`the arrow is ${shown ? "" : "not "}shown`, (wanted) => iota.page.viewer.room.getObjectByName("way home")!.visible === wanted, shown);
+    for (const [yaw, pitch] of [[2.2, 0], [-1.8, 0.3]]) {
+      await me.look(0, 0);
+      await untilShown(false);
+      await me.look(yaw, pitch);
+      await untilShown(true);
+      const arrow = await me.tab.page.evaluate(() => {
+        const { room, stage, renderer } = iota.page.viewer;
+        const { position, quaternion } = room.getObjectByName("way home")!;
+        const points = position.clone().set(0, 0, 1).applyQuaternion(quaternion);
+        const way = room.worldToLocal(stage.middle.clone()).sub(position).normalize();
+        const seen = room.localToWorld(position.clone()).project(renderer.xr.getCamera().cameras[0]);
+        return { cosine: points.dot(way), seen: Math.max(Math.abs(seen.x), Math.abs(seen.y)) };
+      });
+      expect(arrow.cosine).toBeGreaterThan(0.97);
+      expect(arrow.seen, "1 is the edge of the view").toBeLessThan(1);
+    }
+    await me.picture("xr_way_home");
+    await me.look(0, 0);
+    await untilShown(false);
   });
 
   it("sits and stands, and goes home", async () => {
@@ -315,6 +351,7 @@ describe("bare hands in an emulated headset", () => {
 
   it("press the panel with a fingertip, once for each touch", async () => {
     await me.tab.page.evaluate((id) => iota.select(id), link);
+    await me.lookAtWrist();
     const press = async (name: string) => {
       await me.tab.until(`the panel has a button ${name}`, (wanted) => iotaXR!.panelButton(wanted), name);
       const path = await me.tab.page.evaluate((wanted) => {

@@ -23,7 +23,7 @@ afterAll(async () => {
 describe("a headset", () => {
   it.each([["1e-09", true], ["0.001", true], ["1", false], ["1000", true]])("in a world of %s m sees it whole and takes hold of it", async (size, isScaled) => {
     const me = await HeadsetTab.open(browser, `${server.url}&world=${size}`);
-    await me.tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+    await me.tab.drawn();
     await me.enter();
     await me.tab.until("the rods hang still", () => iota.step > 200);
     await me.tab.page.evaluate(() => iota.page.commands.run("home in vr"));
@@ -65,7 +65,7 @@ describe("a headset", () => {
     const study = await WorldServer.start([name], await freePort());
     try {
       const me = await HeadsetTab.open(browser, study.url);
-      await me.tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+      await me.tab.drawn();
       await me.enter();
       await me.frames(3);
       await me.picture(`xr-study-${name}`);
@@ -127,8 +127,6 @@ describe("a headset", () => {
     try {
       const me = await HeadsetTab.open(browser, entities.url);
       await me.enter();
-      await me.point("left", [-0.2, 1.32, -0.38], [-0.2, 1.32, -2]);
-      await me.look(0.3, -0.25);
       await me.pointAtPanel("right", [0.12, 1.38, -0.2], "less gravity");
       await me.click("right", "trigger");
       await expect.poll(() => entities.output).toContain('{"slider": 8.8');

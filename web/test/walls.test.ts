@@ -3,9 +3,9 @@ import { BoxGeometry, Mesh, PerspectiveCamera, SphereGeometry, Vector3 } from "t
 import { describe, expect, it } from "vitest";
 import { Navigation } from "../src/navigate/navigation.ts";
 import { wallsOf } from "../src/page/walking.ts";
-import { BodyKind } from "../src/protocol/generated.ts";
+import { BodyKind, NO_BODY, NO_COLOR, type SurfaceEntity } from "../src/protocol/generated.ts";
 import { Walls, type Obstacle } from "../src/scene/walls.ts";
-import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
 
 /** A room of 4 x 3 x 6 m about the origin, times `size`, of walls of 5 cm, turned; with a ball in the middle. */
 function room(size: number): { walls: Walls; turned: (x: number, y: number, z: number) => Vector3 } {
@@ -176,6 +176,32 @@ describe("static bodies", () => {
     const walls = made();
     expect(walls.floorBelow(new Vector3(4, 5, 0))).toBeCloseTo(1, 2);
     expect(walls.floorBelow(new Vector3(1, 5, 0))).toBe(-Infinity);
+  });
+});
+
+describe("surfaces, as those of a room from a file,", () => {
+  const wall: SurfaceEntity = {
+    id: id(0), at: { body: NO_BODY, point: [4, 0, 0] }, bodies: new Uint32Array(0), points: Float32Array.of(0, -3, -9, 0, -3, 9, 0, 3, 9, 0, 3, -9),
+    triangles: Uint32Array.of(0, 1, 2, 0, 2, 3), coordinates: new Float32Array(0), material: "paint", color: NO_COLOR,
+  };
+  /** How far along x a walk from x = 2 gets before it. */
+  function reached(surface: SurfaceEntity): number {
+    const tested = new TestWorld();
+    tested.set("style", style(0, "ball", part("sphere", [0.1])));
+    tested.set("body", bodyEntity(0));
+    tested.poses([body(0, 4)]);
+    tested.world.entities.surface.create(surface);
+    tested.world.entities.surface.draw();
+    const at = new Vector3(2, 0, 0);
+    walk(wallsOf(tested.world), at, 0.05, 80);
+    return at.x;
+  }
+
+  it("stop a walk from either side; those on bodies, and those that bend, do not", () => {
+    expect(reached(wall)).toBeCloseTo(4 - 0.12, 2);
+    expect(reached({ ...wall, triangles: Uint32Array.of(0, 2, 1, 0, 3, 2) })).toBeCloseTo(4 - 0.12, 2);
+    expect(reached({ ...wall, at: { body: 0, point: [0, 0, 0] } })).toBeCloseTo(6, 5);
+    expect(reached({ ...wall, bodies: new Uint32Array(4).fill(NO_BODY) })).toBeCloseTo(6, 5);
   });
 });
 

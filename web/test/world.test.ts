@@ -47,6 +47,13 @@ describe("the world", () => {
     expect([...bodies.pickable.subarray(0, bodies.pickableCount)]).toEqual([0, 7]);
   });
 
+  it.each(["(solid)", "class 3"])("names bodies of the class %s, which no script has named, by their number alone", (name) => {
+    const test = told();
+    test.set("style", style(2, name, part("sphere", [0.1])));
+    test.set("body", bodyEntity(4, { style: 2 }));
+    expect(test.world.entities.body.nameOf(4)).toBe("body 4");
+  });
+
   it("keeps what its own user chose when the script's look changes", () => {
     const { world } = told();
     world.take(settings("chain"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The obstacles of a page's world, for walks and teleports.
 
-import { Vector3 } from "three";
+import { Vector3, type Mesh } from "three";
 import { toBody } from "../interact/picking.ts";
 import { bodyDistance } from "../scene/shapes/shape.ts";
 import { Walls, type Solid } from "../scene/walls.ts";
@@ -25,11 +25,11 @@ class FixedBody implements Solid {
   }
 }
 
-/** Everything that is fixed: shapes without physics, and static bodies. */
+/** Everything that is fixed: shapes and surfaces without physics, and static bodies. */
 export function wallsOf(world: World): Walls {
   // One object for all, as they are looked at one after the other.
   const solid = new FixedBody(world);
-  const { body, staticShape } = world.entities;
+  const { body, staticShape, surface } = world.entities;
   function* solids(): Iterable<Solid> {
     for (const slot of body.slots()) {
       if (!body.isFixed(slot) || !body.has(slot)) continue;
@@ -39,5 +39,9 @@ export function wallsOf(world: World): Walls {
       yield solid;
     }
   }
-  return new Walls(() => staticShape.meshes(), solids, () => world.ground);
+  function* meshes(): Iterable<Mesh> {
+    yield* staticShape.meshes();
+    yield* surface.fixed();
+  }
+  return new Walls(meshes, solids, () => world.ground);
 }

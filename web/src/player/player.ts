@@ -5,7 +5,7 @@
 import "./player.css";
 import { makeDebug } from "../app/debug.ts";
 import { ScreenInput } from "../interact/screen_input.ts";
-import { makePage } from "../page/page.ts";
+import { makePage, type Page } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
 import { MessageType, Role } from "../protocol/generated.ts";
 import { byId, make } from "../ui/dom.ts";
@@ -72,6 +72,21 @@ function addControls(playback: Playback): () => void {
   };
 }
 
+/** Recordings carry no code, so that whoever plays one trusts nobody: says what is therefore missing. */
+function tellLeftOut({ events, world }: Page): void {
+  const note = make("p", "note");
+  note.hidden = true;
+  document.body.append(note);
+  events.add({
+    changed: (what) => {
+      if (what !== "settings") return;
+      const names = world.settings.modules.map((path) => path.slice(path.lastIndexOf("/") + 1));
+      note.hidden = names.length === 0;
+      note.textContent = `Not in this recording: what the script's own code draws (${names.join(", ")}).`;
+    },
+  });
+}
+
 async function main(): Promise<void> {
   const frames = readFrames(await unpack(byId("recording", HTMLElement).textContent ?? ""));
   const playback = new Playback(frames, (data) => RecordedSocket.current?.onmessage?.({ data }));
@@ -86,6 +101,7 @@ async function main(): Promise<void> {
   page.setTheme(theme.matches ? "dark" : "light");
   theme.addEventListener("change", () => page.setTheme(theme.matches ? "dark" : "light"));
   const show = addControls(playback);
+  tellLeftOut(page);
   page.viewer.add(new Resolution(page.viewer), {
     update: (seconds) => {
       playback.pass(seconds);

@@ -4,7 +4,7 @@
 
 import {
   BackSide, BoxGeometry, CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial, SphereGeometry, Vector3,
+  MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial, Sphere, SphereGeometry, Vector3,
   type PerspectiveCamera, type Texture, type WebGLRenderer,
 } from "three";
 import { ContactShadow } from "./contact_shadow.ts";
@@ -42,6 +42,8 @@ const tileSize = 2;
 const contactStrength = 0.75;
 /** Ambient light on the ground, also in shadows. */
 const groundAmbient = 1.15;
+/** Shadows are drawn on a ground that is so far below, in sizes of the scene. */
+const farGround = 3;
 const fogNear = 4;
 const fogFar = 26;
 
@@ -194,11 +196,11 @@ export class Stage {
   private readonly ambient_ = { value: groundAmbient };
   private readonly contact_: ContactShadow;
   private readonly middle_ = new Vector3(0, 1, 0);
-  private readonly lit_ = new Vector3();
+  /** What is lit with shadows. */
+  private readonly lit_ = new Sphere();
   private size_ = 1;
   private hasGround_ = true;
   private passthrough_ = false;
-  private reach_ = 0;
   private theme_: Theme = themes.light;
   private surroundings_: Surroundings = { sky: null, horizon: null, ground: null, light: 1 };
 
@@ -274,7 +276,7 @@ export class Stage {
     this.hasGround_ = height !== null;
     this.ground.visible = this.hasGround_ && !this.passthrough_;
     if (height !== null) this.ground.position.y = height;
-    this.reach_ = 0;
+    this.lit_.makeEmpty();
   }
 
   get gridShown(): boolean {
@@ -309,11 +311,18 @@ export class Stage {
     this.ground.scale.setScalar(this.size_);
     this.ground.position.x = tileSize * this.size_ * Math.round(middle[0] / (tileSize * this.size_));
     this.ground.position.z = tileSize * this.size_ * Math.round(middle[2] / (tileSize * this.size_));
-    const drift = this.lit_.distanceTo(this.middle_);
-    if (size + drift <= this.reach_ && size > 0.4 * this.reach_) return;
-    this.lit_.copy(this.middle_);
-    this.reach_ = 1.35 * size;
-    this.contact_.aim(middle[0], this.ground.position.y, middle[2], this.reach_);
+    // What is lit goes down to the ground not far below, where shadows are.
+    const gap = this.hasGround_ ? middle[1] - size - this.ground.position.y : 0;
+    const below = gap > 0 && gap < farGround * size ? gap / 2 : 0;
+    const scene = new Sphere(new Vector3(middle[0], middle[1] - below, middle[2]), size + below);
+    const lit = this.lit_;
+    const isLit = scene.radius + lit.center.distanceTo(scene.center) <= lit.radius;
+    if (isLit && scene.radius > 0.4 * lit.radius) return;
+    scene.radius *= 1.35;
+    // A scene that leaves the light, as one that falls does, takes along what was lit, so that no shadow ends.
+    const both = scene.clone().union(lit);
+    lit.copy(!isLit && both.radius < 2 * scene.radius ? both : scene);
+    this.contact_.aim(lit.center.x, this.ground.position.y, lit.center.z, lit.radius);
     this.light_(this.key_, 0.55, 1.35, 0.75);
   }
 
@@ -354,9 +363,9 @@ export class Stage {
   }
 
   private light_(light: DirectionalLight, x: number, y: number, z: number): void {
-    const reach = this.reach_;
-    light.target.position.copy(this.lit_);
-    light.position.set(x, y, z).multiplyScalar(reach).add(this.lit_);
+    const { center, radius: reach } = this.lit_;
+    light.target.position.copy(center);
+    light.position.set(x, y, z).multiplyScalar(reach).add(center);
     const { camera } = light.shadow;
     camera.left = camera.bottom = -reach;
     camera.right = camera.top = reach;

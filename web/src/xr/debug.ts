@@ -16,8 +16,8 @@ export interface IotaXR {
   rig(): { position: [number, number, number]; yaw: number; scale: number };
   /** World, m. */
   head(): [number, number, number];
-  /** State of each hand; bodies are -1 for none. */
-  inputs(): { name: string; hand: boolean; hovered: number; held: number; near: boolean; panelButton: string }[];
+  /** State of each hand; bodies are -1 for none; `force` is what is written above it. */
+  inputs(): { name: string; hand: boolean; hovered: number; held: number; near: boolean; panelButton: string; force: string }[];
   /** Names of the wrist panel's buttons. */
   panelButtons(): string[];
   /** Middle of a button in the reference space, m, and the direction it faces; null while the panel is hidden. */
@@ -54,6 +54,7 @@ export function makeXrDebug({ viewer }: Pick<Page, "viewer">, headset: Headset, 
       hovered: input.pointer.hovered,
       held: input.pointer.grab?.body ?? -1,
       near: input.pointer.near,
+      force: headset.forceText(input),
       panelButton: input.board === panel.board && input.button >= 0 ? panel.layout.buttons[input.button].command.name : "",
     })),
     panelButtons: () => panel.layout.buttons.map((button) => button.command.name),

@@ -12,6 +12,8 @@ import { rayOnPlate, Spot, type Plate } from "./plate.ts";
 type Side = "left" | "right";
 
 const walkSpeed = 1.2;
+/** Of the left hand that shows its wrist panel. */
+const wristAt = new Vector3(-0.16, -0.2, -0.42);
 const handAt = { left: new Vector3(-0.2, -0.26, -0.4), right: new Vector3(0.2, -0.24, -0.4) } as const;
 /** Distance at which the ray of a hand meets the line of sight under the mouse if there is no body or panel, m. */
 const meetsAt = 1.6;
@@ -19,6 +21,7 @@ const meetsAt = 1.6;
 const tolerance = 0.012;
 const forward = new Vector3(0, 0, -1);
 const upward = new Vector3(0, 1, 0);
+const sideways = new Quaternion(0, -Math.SQRT1_2, 0, Math.SQRT1_2);
 const walkKeys: Record<string, readonly [number, number, number]> = {
   w: [0, 0, -1], s: [0, 0, 1], a: [-1, 0, 0], d: [1, 0, 0], q: [0, -1, 0], e: [0, 1, 0],
 };
@@ -37,6 +40,7 @@ export class DeskControls implements FramePart {
   private readonly down_ = new Set<string>();
   private readonly mouse_ = { x: 0, y: 0, known: false };
   private side_: Side = "right";
+  private isWristUp_ = false;
   private pressed_ = false;
   private distance_ = meetsAt;
   /** Pose of the head in the device. */
@@ -46,6 +50,8 @@ export class DeskControls implements FramePart {
   private readonly at_ = new Vector3();
   private readonly flat_ = new Vector3();
   private readonly aim_ = new Quaternion();
+  private readonly wrist_ = new Quaternion();
+  private readonly back_ = new Vector3();
   private readonly sight_ = new Vector3();
   private readonly origin_ = new Float32Array(3);
   private readonly direction_ = new Float32Array(3);
@@ -156,8 +162,13 @@ export class DeskControls implements FramePart {
       controller?.updateButtonValue(id, down ? 1 : 0);
       return true;
     }
-    if (key !== "h" && key !== "v" && key !== "Escape") return false;
+    if (key !== "h" && key !== "v" && key !== "x" && key !== "Escape") return false;
     if (!down || repeat) return true;
+    if (key === "x") {
+      this.isWristUp_ = !this.isWristUp_;
+      this.readHead_();
+      this.moveHands_();
+    }
     if (key === "h") this.device_.primaryInputMode = this.device_.primaryInputMode === "hand" ? "controller" : "hand";
     if (key === "v") this.device_.stereoEnabled = !this.device_.stereoEnabled;
     if (key === "Escape") void this.device_.activeSession?.end();
@@ -172,7 +183,11 @@ export class DeskControls implements FramePart {
 
   private placeHand_(side: Side, turn: Quaternion): void {
     const { position } = this.device_;
-    this.at_.copy(handAt[side]).applyQuaternion(this.turn_);
+    const isRaised = side === "left" && this.isWristUp_;
+    this.at_.copy(isRaised ? wristAt : handAt[side]);
+    // Its back, which is up at rest, towards the eyes, and its fingers to the right.
+    if (isRaised) turn = this.wrist_.setFromUnitVectors(upward, this.back_.copy(wristAt).negate().normalize()).multiply(sideways).premultiply(this.turn_);
+    this.at_.applyQuaternion(this.turn_);
     for (const part of [this.device_.controllers[side], this.device_.hands[side]]) {
       part?.position.set(position.x + this.at_.x, position.y + this.at_.y, position.z + this.at_.z);
       part?.quaternion.set(turn.x, turn.y, turn.z, turn.w);

@@ -12,6 +12,7 @@ import type { Pointer } from "../interact/gestures.ts";
 import type { Board } from "./board.ts";
 import { ControllerView } from "./controllers.ts";
 import { HandView } from "./hands.ts";
+import { ForceLabel } from "./force_label.ts";
 import { headsetCommands, ratioOf } from "./headset_commands.ts";
 import { Input, type FaceButton } from "./input.ts";
 import { Locomotion, turns } from "./locomotion.ts";
@@ -25,6 +26,7 @@ import { WristPanel } from "./wrist_panel.ts";
 
 interface View {
   readonly ray: RayView;
+  readonly force: ForceLabel;
   readonly body: ControllerView | HandView | null;
 }
 
@@ -171,6 +173,11 @@ export class Headset implements PageListener, FramePart {
     await this.session_?.end();
   }
 
+  /** What is written above a hand that holds; empty: nothing. */
+  forceText(input: Input): string {
+    return this.views_.get(input.pointer.name)?.force.text ?? "";
+  }
+
   // --- FramePart
 
   aim(seconds: number, frame: XRFrame | null): void {
@@ -205,6 +212,8 @@ export class Headset implements PageListener, FramePart {
       const view = this.views_.get(input.pointer.name);
       if (view === undefined) continue;
       view.ray.root.visible = true;
+      const { grab } = input.pointer;
+      view.force.update(input, grab === null ? -1 : this.page_.selection.forceOf(grab), this.headLocal_, seconds);
       view.ray.update(input, this.eye_, this.locomotion.aiming !== input, this.page_.viewer.room.scale.x, seconds);
       if (view.body !== null) {
         view.body.root.visible = input.tracked;
@@ -276,16 +285,19 @@ export class Headset implements PageListener, FramePart {
 
   private makeView_(input: Input): View {
     const ray = new RayView();
+    const force = new ForceLabel();
     this.page_.viewer.scene.add(ray.root);
+    this.page_.viewer.room.add(force.board.mesh);
     const body = !input.hasBody ? null : input.isHand ? new HandView() : new ControllerView(input.source.handedness);
     if (body !== null) this.page_.viewer.room.add(body.root);
-    return { ray, body };
+    return { ray, force, body };
   }
 
   private hide_(input: Input): void {
     const view = this.views_.get(input.pointer.name);
     if (view === undefined) return;
     view.ray.root.visible = false;
+    view.force.board.hide();
     if (view.body !== null) view.body.root.visible = false;
   }
 
@@ -314,7 +326,7 @@ export class Headset implements PageListener, FramePart {
     if (this.helped_) return;
     this.helped_ = true;
     this.notices.show(0, hands ? "Pinch to grab" : "Pull the trigger to grab",
-      hands ? "A near body, or a far one along the ray. Everything else is on the panel at your left hand." : "A near body, or a far one along the ray. A stick to the side turns you, forward teleports. Everything else is on the panel at your left hand.",
+      hands ? "A near body, or a far one along the ray. Look at your left wrist, as at a watch, for everything else." : "A near body, or a far one along the ray. A stick to the side turns you, forward teleports. Look at your left wrist, as at a watch, for everything else.",
       "", helpCard);
   }
 

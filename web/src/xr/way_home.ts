@@ -23,6 +23,7 @@ export class WayHome {
 
   constructor() {
     this.mesh.material.color.copy(palette.selected);
+    this.mesh.name = "way home";
     this.mesh.renderOrder = 19;
     this.mesh.visible = false;
   }
@@ -39,7 +40,7 @@ export class WayHome {
     if (!mesh.visible) return;
     mesh.position.copy(at).addScaledVector(ahead, away);
     mesh.position.y -= below;
-    mesh.quaternion.setFromUnitVectors(forward, way.normalize());
+    mesh.quaternion.setFromUnitVectors(forward, way.subVectors(goal, mesh.position).normalize());
   }
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's bar on the left wrist. It stands above the hand and faces the reader; without a left hand
-// it floats at the left of where the user stands.
+// The page's bar on the left wrist. It appears when the user looks at the back of the left hand, as at a watch, stands above the hand and
+// faces the reader; without a left hand it floats at the left of where the user stands.
 
-import { Vector3, type Matrix4 } from "three";
+import { Matrix4, Vector3 } from "three";
 import { isChoice } from "../commands/command.ts";
 import type { Page } from "../page/page.ts";
 import { Board, fitText, font, roundedBox, type Colors } from "./board.ts";
-import { middleKnuckle } from "./hand_joints.ts";
+import { middleKnuckle, wrist } from "./hand_joints.ts";
 import type { Input } from "./input.ts";
 import { controlRows } from "./controls.ts";
 import { headHeight, layoutPanel, panelWidth, type Layout, type PanelButton } from "./panel_layout.ts";
@@ -15,6 +15,10 @@ import { headHeight, layoutPanel, panelWidth, type Layout, type PanelButton } fr
 const density = panelWidth / 0.25;
 const easeSeconds = 0.05;
 const readEverySeconds = 0.25;
+/** Cosines of the angles from the back of the hand to the eyes, and from where they look to the panel: it comes where both are above
+ * the first, and goes where one is below the second. A hand that only points ahead is below both. */
+const comesAbove = 0.8;
+const goesBelow = 0.5;
 
 type PanelPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "commands">;
 
@@ -44,6 +48,9 @@ export class WristPanel {
   private readonly up_ = new Vector3(0, 1, 0);
   private readonly back_ = new Vector3();
   private readonly head_ = new Vector3();
+  private readonly wrist_ = new Matrix4();
+  private readonly toward_ = new Vector3();
+  private readonly axis_ = new Vector3();
 
   constructor(page: PanelPage) {
     this.page_ = page;
@@ -85,8 +92,8 @@ export class WristPanel {
   /** `head`: viewer in the reference space. `left`: the hand that carries it, or null. */
   update(left: Input | null, head: Matrix4, seconds: number): void {
     this.mounted_ = left;
-    this.board.shown = left === null || (left.tracked && left.pointer.grab === null);
     this.place_(left, head, seconds);
+    this.board.shown = left === null || (left.tracked && left.pointer.grab === null && this.isLookedAt_(left, head));
     this.read_(seconds);
   }
 
@@ -112,6 +119,17 @@ export class WristPanel {
     this.placed_ = true;
     faceReader(this.at_, this.head_, this.board.mesh.matrix);
     this.board.mesh.updateMatrixWorld(true);
+  }
+
+  private isLookedAt_(left: Input, head: Matrix4): boolean {
+    const { joints } = left;
+    if (joints !== null && joints.tracked) this.wrist_.fromArray(joints.matrices, 16 * wrist);
+    else this.wrist_.copy(left.rayLocal);
+    this.toward_.setFromMatrixPosition(this.wrist_).sub(this.head_).normalize();
+    const turned = -this.toward_.dot(this.axis_.setFromMatrixColumn(this.wrist_, 1));
+    this.toward_.subVectors(this.goal_, this.head_).normalize();
+    const seen = -this.toward_.dot(this.axis_.setFromMatrixColumn(head, 2));
+    return Math.min(turned, seen) > (this.board.shown ? goesBelow : comesAbove);
   }
 
   /** Checks the shown values without allocating, the force a few times a second. */

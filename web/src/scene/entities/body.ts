@@ -338,8 +338,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     const entity = this.bodies_.get(body)?.entity;
     if (entity === undefined) return "";
     const name = this.styles_.nameOf(entity.style);
-    // Those that the world makes up mean nothing to users.
-    return `${/^class \d+$/.test(name) ? "body" : name} ${body}`;
+    // Those that the world or the server makes up mean nothing to users.
+    return `${/^class \d+$|^\(/.test(name) ? "body" : name} ${body}`;
   }
 
   addOutline(outline: Outline): void {

@@ -283,7 +283,7 @@ export class CustomView implements EntityView<CustomEntity>, Cover {
   /** Calls a function of a class; one that throws is told once and not called again. */
   private call_<Result>(name: string, what: keyof CustomClass, run: (made: CustomClass) => Result): Result | undefined {
     const made = classes.get(name);
-    if (made === undefined || (this.told_.has(`${name} ${what}`) && what !== "make")) return undefined;
+    if (made === undefined || (this.told_.size > 0 && what !== "make" && this.told_.has(`${name} ${what}`))) return undefined;
     try {
       return run(made);
     } catch (error) {

@@ -90,6 +90,11 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
     }
   }
 
+  /** The rigid ones at places of the world, as those of a room: obstacles for walks. */
+  *fixed(): Iterable<Mesh> {
+    for (const { mesh, bends, entity } of this.surfaces_.values()) if (!bends && entity.at.body === NO_BODY) yield mesh;
+  }
+
   // --- Cover
 
   hitByRay(origin: ArrayLike<number>, direction: ArrayLike<number>, _tolerance: number, hit: CoverHit): void {
@@ -118,9 +123,11 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
     }
   }
 
-  /** Turns a place and a direction of the world into the frame of a rigid surface; false for one that is not drawn. */
-  private intoFrame_({ mesh, bends }: Surface, place: Vector3, direction: Vector3): boolean {
+  /** Turns a place and a direction of the world into the frame of a rigid surface; false for one that is not drawn, or on nothing
+   * that can be held. */
+  private intoFrame_({ entity: { at }, mesh, bends }: Surface, place: Vector3, direction: Vector3): boolean {
     if (bends || !mesh.visible) return mesh.visible;
+    if (!this.canHold_(at.body)) return false;  // before a look at each triangle of a room
     this.turn_.copy(mesh.quaternion).invert();
     place.sub(mesh.position).applyQuaternion(this.turn_);
     direction.applyQuaternion(this.turn_);
@@ -140,7 +147,6 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
   private take_({ entity: { at, bodies, points, triangles }, bends }: Surface, corner: number, distance: number, hit: CoverHit): void {
     if (distance >= hit.distance) return;
     if (!bends) {
-      if (!this.canHold_(at.body)) return;
       hit.body = at.body;
       hit.distance = distance;
       for (let axis = 0; axis < 3; axis++) hit.localPoint[axis] = at.point[axis] + this.point_.getComponent(axis);

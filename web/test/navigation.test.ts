@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+import { PerspectiveCamera, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import { Navigation } from "../src/navigate/navigation.ts";
+
+const size = 3;
+
+function make() {
+  const camera = new PerspectiveCamera(42, 1.6);
+  const navigation = new Navigation(camera);
+  navigation.setScene([0, 1, 0], size);
+  const rest = () => {
+    for (let frame = 0; frame < 400; frame++) navigation.update(1 / 60);
+    camera.updateMatrixWorld();
+  };
+  rest();
+  return { camera, navigation, rest, screen: (point: Vector3) => point.clone().project(camera) };
+}
+
+describe("zooming", () => {
+  it.each([0.5, 0.8, 1.5])("by %s keeps what is under the pointer under it", (factor) => {
+    const { camera, navigation, screen, rest } = make();
+    const depth = navigation.goal.distance;
+    const pointer = [0.6, -0.4] as const;
+    const along = new Vector3(...pointer, 0.5).unproject(camera).sub(camera.position);
+    const ahead = camera.getWorldDirection(new Vector3());
+    const point = along.multiplyScalar(depth / along.dot(ahead)).add(camera.position);
+    expect(screen(point).x).toBeCloseTo(pointer[0], 6);
+    navigation.zoom(factor, ...pointer);
+    rest();
+    expect(navigation.goal.distance).toBeCloseTo(depth * factor, 6);
+    expect(screen(point).x).toBeCloseTo(pointer[0], 3);
+    expect(screen(point).y).toBeCloseTo(pointer[1], 3);
+  });
+
+  it("ends before the scene is passed through or lost from sight", () => {
+    const { navigation, screen, rest } = make();
+    for (let turn = 0; turn < 100; turn++) navigation.zoom(1.5);
+    rest();
+    const height = 2 * Math.abs(screen(new Vector3(0, 1 + size / 2, 0)).y - screen(new Vector3(0, 1, 0)).y);
+    expect(height, "2 is the whole window").toBeGreaterThan(0.1);
+    for (let turn = 0; turn < 200; turn++) navigation.zoom(0.7);
+    rest();
+    expect(navigation.goal.distance).toBeGreaterThan(0.01 * size);
+  });
+});
