@@ -491,6 +491,26 @@ def test_what_names_a_body_that_is_gone_is_answered_by_a_notice(system: iota.Sys
         page.wait_for(lambda: asked == [new])
 
 
+def test_an_action_on_the_world_is_done_although_the_body_under_the_mouse_is_gone(
+    system: iota.System, run_world: Runner
+) -> None:
+    bodies = [system.body() for _ in range(2)]
+    for index, body in enumerate(bodies):
+        body.particle((index, 1, 0))
+    world, asked = iota.World(system), []
+
+    @world.action("look", on="world")
+    def look() -> None:
+        asked.append("look")
+
+    with PageClient(run_world(world)) as page:
+        old = page.body(1)
+        world.call(bodies[1].destroy)
+        page.send("action", name="look", body=old)  # as of a page that has not been told yet
+        page.wait_for(lambda: asked == ["look"])
+        assert page.notices == []
+
+
 def test_worlds_may_share_a_server() -> None:
     server = iota.Server(port=0)
     worlds = {}

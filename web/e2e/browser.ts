@@ -93,10 +93,20 @@ export class Tab {
     try {
       await this.page.waitForFunction(condition as (argument: unknown) => unknown, argument, { timeout, polling: 50 });
     } catch (error) {
-      const state = await this.page.evaluate(() => (globalThis.iota === undefined ? "no page" : JSON.stringify({
-        connected: iota.connected, step: iota.step, held: iota.held, selected: iota.selected, articulates: new Set(iota.articulates().values()).size, paused: iota.paused,
-        holds: iota.holds().map((hold) => ({ ...hold, at: iota.bodyPosition(hold.body) })),
-      })));
+      const state = await this.page.evaluate(async () => {
+        if (globalThis.iota === undefined) return "no page";
+        const from = iota.step;
+        let pictures = 0;
+        const draws = () => void (requestAnimationFrame(draws), pictures++);
+        draws();
+        await new Promise((resolve) => setTimeout(resolve, 1000));
+        return JSON.stringify({
+          connected: iota.connected, step: iota.step, stepsPerSecond: iota.step - from, pictures, held: iota.held, selected: iota.selected,
+          articulates: new Set(iota.articulates().values()).size, paused: iota.paused, focus: document.activeElement?.outerHTML.slice(0, 80),
+          eye: iota.page.viewer.camera.position.toArray(), settings: iota.page.world.settings,
+          holds: iota.holds().map((hold) => ({ ...hold, at: iota.bodyPosition(hold.body) })),
+        });
+      });
       throw new Error(`waited in vain until ${what}; ${state}`, { cause: error });
     }
   }

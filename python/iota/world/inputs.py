@@ -54,7 +54,7 @@ class Inputs:
                     text = "A page can run 30 actions a second. The others were left out."
                     self._state.notices.send("Too fast", text, client=event.client)
                 continue
-            if event.names_body and body is None:
+            if event.names_body and body is None and not self._is_on_world(event):
                 if event.kind == "pointer":
                     continue
                 text = "It was destroyed, or combined with another body."
@@ -195,6 +195,11 @@ class Inputs:
             return
         meant = state.clients.held(event.client) or state.clients.selected(event.client)
         self.act(action, event.client, named or ([] if meant is None else [meant]))
+
+    def _is_on_world(self, event: InputEvent) -> bool:
+        """Whether it is an action that needs no body: what was under the mouse may be gone, as in a world that locks bodies."""
+        action = self._state.actions.get(event.name) if event.kind == "action" else None
+        return action is not None and action.on == "world"
 
     def act(self, action: Action, client: int, bodies: list[Any]) -> None:
         """client: 0 for none."""
