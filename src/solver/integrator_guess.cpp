@@ -2,6 +2,8 @@
 // Where Newton's method starts.
 #include "solver/integrator.h"
 
+#include "solver/row_masses.h"
+
 #include <algorithm>
 
 namespace iota::solver {
@@ -11,8 +13,7 @@ namespace iota::solver {
 std::span<const double> Integrator::lumped_masses(const Problem& problem) {
   if (problem.mass_couplings.empty()) return problem.mass;
   if (lumped_mass_.empty()) {
-    lumped_mass_.assign(problem.mass.begin(), problem.mass.end());
-    for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
+    lumped_mass_ = row_masses(problem);
     for (std::size_t i = 0; i < lumped_mass_.size(); ++i)
       if (lumped_mass_[i] < 1e-6 * problem.mass[i]) lumped_mass_[i] = 0;
   }

@@ -2,6 +2,7 @@
 #include "solver/wheels.h"
 
 #include "solver/holds.h"
+#include "solver/row_masses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +62,7 @@ bool may_have_wheels(const Problem& problem) {
   });
   if (std::any_of(rows.begin(), rows.end(), [](std::uint8_t count) { return count >= 3; })) return true;
   if (problem.mass_couplings.empty()) return false;
-  std::vector<double> sum(problem.mass);
-  for (const auto& c : problem.mass_couplings) sum[c.a] += c.mass, sum[c.b] += c.mass;
+  const std::vector<double> sum = row_masses(problem);
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (rows[i] == 2 && sum[i] <= 1e-6 * problem.mass[i]) return true;
   return false;
