@@ -125,10 +125,17 @@ export class HeadsetTab {
       const length = Math.hypot(0.2, 0.24, 0.38);
       const [x, y, z] = [0.2 / length, 0.24 / length, 0.38 / length];
       const half = Math.SQRT2 * Math.hypot(1 + y, x, z);
-      for (const part of [controllers.left, hands.left]) {
-        part?.position.set(from.x, from.y, from.z);
-        part?.quaternion.set((z - x) / half, -(1 + y) / half, -(x + z) / half, (1 + y) / half);
+      const turn = iota.page.viewer.camera.quaternion.clone().set((z - x) / half, -(1 + y) / half, -(x + z) / half, (1 + y) / half);
+      for (const part of [controllers.left, hands.left]) part?.position.set(from.x, from.y, from.z);
+      controllers.left?.quaternion.set(turn.x, turn.y, turn.z, turn.w);
+      // The ray of a bare hand is not along its wrist.
+      const bare = iotaXR!.headset.inputs.find(({ source, joints }) => source.handedness === "left" && joints !== null);
+      if (bare !== undefined) {
+        const wrist = iota.page.viewer.camera.matrix.clone().fromArray(bare.joints!.matrices, 0);
+        const [ofRay, ofWrist] = [bare.rayLocal, wrist].map((matrix) => turn.clone().setFromRotationMatrix(matrix));
+        turn.multiply(ofWrist.invert().multiply(ofRay));
       }
+      hands.left?.quaternion.set(turn.x, turn.y, turn.z, turn.w);
     });
     await this.look(0.3, -0.25);
     await this.tab.until("the panel is at the wrist", () => iotaXR!.panelButtons().some((name) => iotaXR!.panelButton(name) !== null));

@@ -347,6 +347,19 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
     await reports("it is joined", (now) => now.plugged && !now.ghost);
   });
 
+  it.skipIf(name === "keyboard" || name === "mouse")("two hands move and turn a body", async () => {
+    await user.pressBoth!([[0.7, 1.46, 0], [0.7, 1.24, 0]]);
+    await tab.until("both hold it", (id) => iota.holds().length === 2 && iota.holds().every(({ body }) => body === id), plug);
+    await user.moveBoth!([[0.4, 1.2, 0], [0.62, 1.2, 0]]);
+    await tab.until("it lies level, at the left", (id) => {
+      const [x, y] = iota.bodyPosition(id);
+      const [qx, qy, qz, qw] = iota.bodyRotation(id);
+      return x < 0.6 && y < 1.3 && Math.abs(2 * (qx * qy + qz * qw)) < 0.4;  // the sine of its slope
+    }, plug);
+    await user.releaseBoth!();
+    await tab.until("it is let go", () => iota.holds().length === 0);
+  });
+
   it("an arm is broken and joined", async () => {
     await reports("it is whole", (now) => now.arm === 2);
     await user.act("break", lower);
@@ -368,19 +381,6 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
     await user.act("measure", ball);
     await user.act("measure", stone);
     await reports("the distance is told", (now) => Math.abs(Number.parseFloat(now.measured) - 0.4) < 0.02);
-  });
-
-  it.skipIf(name === "keyboard" || name === "mouse")("two hands move and turn a body", async () => {
-    await user.pressBoth!([[0.7, 1.46, 0], [0.7, 1.24, 0]]);
-    await tab.until("both hold it", (id) => iota.holds().length === 2 && iota.holds().every(({ body }) => body === id), plug);
-    await user.moveBoth!([[0.4, 1.2, 0], [0.62, 1.2, 0]]);
-    await tab.until("it lies level, at the left", (id) => {
-      const [x, y] = iota.bodyPosition(id);
-      const [qx, qy, qz, qw] = iota.bodyRotation(id);
-      return x < 0.6 && y < 1.3 && Math.abs(2 * (qx * qy + qz * qw)) < 0.4;  // the sine of its slope
-    }, plug);
-    await user.releaseBoth!();
-    await tab.until("it is let go", () => iota.holds().length === 0);
   });
 
   it.skipIf(name !== "controller" && name !== "hand")("two hands on nothing hold the world, and scale it", async () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { Matrix4, Object3D, Vector3 } from "three";
+import { Matrix4, Object3D, Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { Entry, ScriptCommand } from "../src/commands/command.ts";
 import { Commands } from "../src/commands/commands.ts";
@@ -8,6 +8,7 @@ import { controlRows } from "../src/xr/controls.ts";
 import { ratioOf } from "../src/xr/headset_commands.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
 import { fitScale, standBefore, type Standing } from "../src/xr/standing.ts";
+import { isWatched } from "../src/xr/wrist_panel.ts";
 
 const settings: Standing = { scale: 1, ground: 0.5, eye: [3, 1.7, 4], target: [0.2, 1.5, 0] };
 
@@ -95,6 +96,51 @@ describe("the height of the eyes at first", () => {
 
 it("the ratio of sizes is told as on a map", () => {
   expect([1, 0.24, 45.5, 2e-9, 1.25].map(ratioOf)).toEqual(["1 : 1", "4.2 : 1", "1 : 46", "5e8 : 1", "1 : 1.3"]);
+});
+
+describe("the back of the left hand is looked at as a watch", () => {
+  const eyes = new Vector3(0, 1.6, 0);
+  const lookAt = (from: Vector3, to: Vector3) => new Matrix4().lookAt(from, to, new Vector3(0, 1, 0)).setPosition(from);
+  /** `turn`: of the hand, whose fingers are along -z and whose back is along y. */
+  const hand = (at: readonly [number, number, number], turn: Quaternion) => new Matrix4().makeRotationFromQuaternion(turn).setPosition(...at);
+  const above = (at: Matrix4) => new Vector3().setFromMatrixPosition(at).add(new Vector3(0, 0.15, 0));
+  const watched = (at: Matrix4, looksTo: Vector3, before: boolean) => isWatched(at, above(at), lookAt(eyes, looksTo), before);
+  const ahead = new Vector3(0, 1.5, -2);
+  /** The wrist of a relaxed bare hand whose ray points ahead, as a headset tells it: bent up by 30 degrees. */
+  const relaxed = new Quaternion().setFromRotationMatrix(new Matrix4().set(
+    0.962, 0.001, -0.274, 0, -0.138, 0.865, -0.483, 0, 0.237, 0.502, 0.832, 0, 0, 0, 0, 1,
+  ));
+  /** Fingers to the right, and the back to the eyes as far as `share`. */
+  const atAWatch = (share: number) => {
+    const at: [number, number, number] = [-0.1, 1.3, -0.35];
+    const tilt = Math.atan2(0.35, 0.3) * share;
+    return hand(at, new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), tilt).multiply(new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), -Math.PI / 2)));
+  };
+
+  it("where its arm is across and the user looks there", () => {
+    const at = atAWatch(1);
+    expect(watched(at, above(at), false)).toBe(true);
+    expect(watched(at, new Vector3(2, 1.6, -1), true)).toBe(false);
+    expect(watched(atAWatch(-0.5), above(at), true)).toBe(false);
+  });
+
+  it("not where it points ahead or works, with or without a controller, whether or not it was before", () => {
+    for (const turn of [new Quaternion(), relaxed]) {
+      for (const height of [1.1, 1.3, 1.45]) {
+        const at = hand([-0.2, height, -0.4], turn);
+        expect(watched(at, above(at), false), `${height} m, looked at`).toBe(false);
+        expect(watched(at, ahead, true), `${height} m, with the eyes ahead, after it was`).toBe(false);
+      }
+    }
+  });
+
+  it("goes on a little further than it begins, so that it does not flicker", () => {
+    const turned = [1, 0.7, 0.5, 0.3, 0, -0.3].map(atAWatch);
+    const states = (before: boolean) => turned.map((at) => watched(at, above(at), before));
+    const [begins, goesOn] = [states(false), states(true)];
+    expect(goesOn.filter(Boolean).length).toBeGreaterThan(begins.filter(Boolean).length);
+    begins.forEach((does, index) => expect(does && !goesOn[index]).toBe(false));
+  });
 });
 
 describe("the wrist panel's layout", () => {

@@ -51,6 +51,10 @@ export class DeskControls implements FramePart {
   private readonly flat_ = new Vector3();
   private readonly aim_ = new Quaternion();
   private readonly wrist_ = new Quaternion();
+  /** Of the left wrist of a bare hand, in the frame of its ray. */
+  private readonly wristInRay_ = new Quaternion();
+  private readonly wristOfRay_ = new Quaternion();
+  private readonly ofRay_ = new Quaternion();
   private readonly back_ = new Vector3();
   private readonly sight_ = new Vector3();
   private readonly origin_ = new Float32Array(3);
@@ -74,8 +78,10 @@ export class DeskControls implements FramePart {
     take("keyup", (event) => this.key_(event as KeyboardEvent, false));
   }
 
-  aim(seconds: number): void {
-    if (!this.on_ || this.down_.size === 0) return;
+  aim(seconds: number, frame: XRFrame | null): void {
+    if (!this.on_) return;
+    this.readWrist_(frame);
+    if (this.down_.size === 0) return;
     this.flat_.set(0, 0, 0);
     for (const key of this.down_) {
       const walk = walkKeys[key] as readonly [number, number, number] | undefined;
@@ -181,6 +187,16 @@ export class DeskControls implements FramePart {
     this.angles_.setFromQuaternion(this.turn_);
   }
 
+  private readWrist_(frame: XRFrame | null): void {
+    const source = this.device_.hands.left?.inputSource as XRInputSource | undefined;
+    const joint = source?.hand?.get("wrist");
+    if (frame === null || source === undefined || joint === undefined) return;
+    const pose = frame.getJointPose?.(joint, source.targetRaySpace);
+    if (pose === undefined || pose === null) return;
+    const { x, y, z, w } = pose.transform.orientation;
+    this.wristInRay_.set(x, y, z, w);
+  }
+
   private placeHand_(side: Side, turn: Quaternion): void {
     const { position } = this.device_;
     const isRaised = side === "left" && this.isWristUp_;
@@ -188,10 +204,15 @@ export class DeskControls implements FramePart {
     // Its back, which is up at rest, towards the eyes, and its fingers to the right.
     if (isRaised) turn = this.wrist_.setFromUnitVectors(upward, this.back_.copy(wristAt).negate().normalize()).multiply(sideways).premultiply(this.turn_);
     this.at_.applyQuaternion(this.turn_);
-    for (const part of [this.device_.controllers[side], this.device_.hands[side]]) {
+    const { controllers: { [side]: controller }, hands: { [side]: hand } } = this.device_;
+    for (const part of [controller, hand]) {
       part?.position.set(position.x + this.at_.x, position.y + this.at_.y, position.z + this.at_.z);
       part?.quaternion.set(turn.x, turn.y, turn.z, turn.w);
     }
+    if (!isRaised) return;
+    // A bare hand's ray is not along its wrist.
+    const { x, y, z, w } = this.ofRay_.copy(turn).multiply(this.wristOfRay_.copy(this.wristInRay_).invert());
+    hand?.quaternion.set(x, y, z, w);
   }
 
   /** Hands move with the head. */

@@ -16,9 +16,13 @@ const density = panelWidth / 0.25;
 const easeSeconds = 0.05;
 const readEverySeconds = 0.25;
 /** Cosines of the angles from the back of the hand to the eyes, and from where they look to the panel: it comes where both are above
- * the first, and goes where one is below the second. A hand that only points ahead is below both. */
+ * the first, and goes where one is below the second. */
 const comesAbove = 0.8;
 const goesBelow = 0.5;
+/** How far the fingers point ahead, level, 0 to 1: it comes below the first, and goes above the second. A hand that points ahead or works
+ * also has its back up, towards the eyes, and a bare one more than a controller; but a watch is looked at with the arm across. */
+const comesAcross = 0.5;
+const goesAhead = 0.75;
 
 type PanelPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "commands">;
 
@@ -37,6 +41,7 @@ export class WristPanel {
   private speed_ = 1;
   private body_ = -1;
   private active_ = 0;
+  private renamed_ = 0;
   private newton_ = -1;
   private sinceRead_ = 0;
   private controlsSeen_ = 0;
@@ -49,8 +54,6 @@ export class WristPanel {
   private readonly back_ = new Vector3();
   private readonly head_ = new Vector3();
   private readonly wrist_ = new Matrix4();
-  private readonly toward_ = new Vector3();
-  private readonly axis_ = new Vector3();
 
   constructor(page: PanelPage) {
     this.page_ = page;
@@ -125,11 +128,7 @@ export class WristPanel {
     const { joints } = left;
     if (joints !== null && joints.tracked) this.wrist_.fromArray(joints.matrices, 16 * wrist);
     else this.wrist_.copy(left.rayLocal);
-    this.toward_.setFromMatrixPosition(this.wrist_).sub(this.head_).normalize();
-    const turned = -this.toward_.dot(this.axis_.setFromMatrixColumn(this.wrist_, 1));
-    this.toward_.subVectors(this.goal_, this.head_).normalize();
-    const seen = -this.toward_.dot(this.axis_.setFromMatrixColumn(head, 2));
-    return Math.min(turned, seen) > (this.board.shown ? goesBelow : comesAbove);
+    return isWatched(this.wrist_, this.goal_, head, this.board.shown);
   }
 
   /** Checks the shown values without allocating, the force a few times a second. */
@@ -146,8 +145,9 @@ export class WristPanel {
     else if (this.sinceRead_ > readEverySeconds) newton = Math.round(selection.forceOf(grab) * 10);
     if (
       world.paused === this.paused_ && world.speed === this.speed_ && body === this.body_ && newton === this.newton_
-      && active === this.active_
+      && active === this.active_ && world.entities.body.renamed === this.renamed_
     ) return;
+    this.renamed_ = world.entities.body.renamed;
     this.paused_ = world.paused;
     this.speed_ = world.speed;
     this.body_ = body;
@@ -245,6 +245,21 @@ function paintSign(context: CanvasRenderingContext2D, path: string, x: number, y
 const right = new Vector3();
 const up = new Vector3();
 const out = new Vector3();
+const toward = new Vector3();
+const axis = new Vector3();
+
+/** Whether the user looks at the back of a hand as at a watch. `hand`: y from its back, -z along its fingers; `panel`: where the panel is;
+ * `head`: of the viewer, in the same frame; `before`: the answer of the last frame. */
+export function isWatched(hand: Matrix4, panel: Vector3, head: Matrix4, before: boolean): boolean {
+  toward.setFromMatrixPosition(hand).sub(out.setFromMatrixPosition(head)).normalize();
+  const turned = -toward.dot(axis.setFromMatrixColumn(hand, 1));
+  toward.subVectors(panel, out).normalize();
+  const seen = -toward.dot(axis.setFromMatrixColumn(head, 2));
+  // Level: who looks down on a hand that points ahead sees its fingers point up.
+  axis.setY(0).normalize();
+  const ahead = axis.dot(toward.setFromMatrixColumn(hand, 2));
+  return Math.min(turned, seen) > (before ? goesBelow : comesAbove) && ahead < (before ? goesAhead : comesAcross);
+}
 
 /** Writes the transform of a panel at a place that faces a reader and stays level. */
 export function faceReader(at: Vector3, head: Vector3, matrix: Matrix4): void {
