@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
 #include <span>
 #include <tuple>
@@ -83,9 +84,10 @@ void set_actions(RoomObject& self, const std::vector<ActionTuple>& actions) {
   self.use().set(message);
 }
 
-void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const SceneChanges& changes) {
+void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const SceneChanges& changes,
+                     const net::Presenter::NameOf& name_of) {
   // Entities that the script attached to bodies are sent after them.
-  net::EntityChanges out = self.presenter.present(changes);
+  net::EntityChanges out = self.presenter.present(changes, name_of);
   out.append(std::exchange(self.own, {}));
   self.use().publish(snapshot, std::move(out));
 }
@@ -94,7 +96,7 @@ void publish(RoomObject& self, SystemObject& system, bool effects) {
   System& engine = system.use();
   const SceneChanges changes =
       engine.viewer().take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
-  publish_changes(self, engine.viewer().poses(), changes);
+  publish_changes(self, engine.viewer().poses(), changes, [&](BodyId body) { return engine.bodies().name(body); });
   if (!effects) return;
   for (const ViewEvent& event : changes.events)
     self.use().effect(event.kind == ViewEvent::Kind::join ? "join" : "break", narrow(event.position));
@@ -102,10 +104,10 @@ void publish(RoomObject& self, SystemObject& system, bool effects) {
 
 // ---------------------------------------------------------------------------------------- a simulator of the script's
 
-/// slot, generation, kind, articulate, number of particles, lines from place to place, solids (shape, place, turn): all in
-/// the body's frame.
+/// slot, generation, kind, name, articulate, number of particles, lines from place to place, solids (shape, place,
+/// turn): all in the body's frame.
 using SimulatedBodyTuple =
-    std::tuple<std::uint32_t, std::uint32_t, std::string, std::uint32_t, std::uint32_t,
+    std::tuple<std::uint32_t, std::uint32_t, std::string, std::string, std::uint32_t, std::uint32_t,
                std::vector<std::pair<Vec3, Vec3>>, std::vector<std::tuple<nb::object, Vec3, Quat4>>>;
 using HoldTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, Vec3, Vec3, double>;
 
@@ -117,7 +119,7 @@ DrawnLine line_between(const Vec3& from, const Vec3& to) {
 SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double extent) {
   SceneChanges changes;
   changes.extent = extent;
-  for (const auto& [slot, generation, kind, articulate, particles, lines, solids] : bodies) {
+  for (const auto& [slot, generation, kind, name, articulate, particles, lines, solids] : bodies) {
     DrawnBody& body = changes.bodies.set.emplace_back();
     body.id = {slot, generation};
     body.is_new = false;
@@ -160,10 +162,13 @@ void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBody
     std::copy_n(narrow(point).data(), 3, pose.point);
     std::copy_n(narrow(target).data(), 3, pose.target);
   }
-  if (bodies)
-    publish_changes(self, snapshot, scene_of(*bodies, extent));
-  else
+  if (bodies) {
+    std::map<std::uint32_t, std::string> names;
+    for (const auto& body : *bodies) names.emplace(std::get<0>(body), std::get<3>(body));
+    publish_changes(self, snapshot, scene_of(*bodies, extent), [&](BodyId body) { return names[body.slot]; });
+  } else {
     self.use().publish(snapshot, std::exchange(self.own, {}));
+  }
 }
 
 // ---------------------------------------------------------------------------------------------- entities of the script

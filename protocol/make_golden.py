@@ -415,8 +415,8 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
     ),
     (
         "body",
-        b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125),
-        {"kind": 2, "style": 9, "odd": True, "length": 0.125},
+        b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125) + text("left \u00e4rm"),
+        {"kind": 2, "style": 9, "odd": True, "length": 0.125, "name": "left \u00e4rm"},
     ),
     ("membership", pack("<I", 40000), {"articulate": 40000}),
     (

@@ -32,9 +32,10 @@ class SimulatedParticle:
 
 class SimulatedBody:
     """A body that is drawn and can be grabbed. slot: its number on the page, unique at a time. generation:
-    distinguishes successive bodies of one slot."""
+    distinguishes successive bodies of one slot. name: shown on the page, at most 63 bytes."""
 
     generation = 1
+    name = ""
     kind = "dynamic"  # or "static", "inactive"
     is_spark = False  # see `Body.is_spark`
     solids: Sequence[Solid] = ()  # its drawn shapes; without them its particles are drawn

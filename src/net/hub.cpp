@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/hub.h"
 
+#include "net/fit_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -24,21 +26,6 @@ constexpr float farthest = 1e9F;                       // m, as the engine's lim
 template <class Message>
 Frame make_frame(const Message& message) {
   return std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message));
-}
-
-/// As much of `text` as fits, in whole UTF-8 characters; invalid bytes become '?'. A notice often reports an error, so
-/// it must not fail itself.
-std::string fit_text(std::string_view text, std::size_t max_bytes) {
-  std::string out(text);
-  if (!protocol::detail::is_utf8(out)) {
-    std::replace_if(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '?');
-  }
-  if (out.size() <= max_bytes) return out;
-  constexpr std::string_view ellipsis = "...";
-  std::size_t size = max_bytes - ellipsis.size();
-  while (size > 0 && (static_cast<unsigned char>(out[size]) & 0xC0) == 0x80) --size;
-  out.resize(size);
-  return out.append(ellipsis);
 }
 
 /// Coordinates of one place or several.

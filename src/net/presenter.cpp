@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/presenter.h"
 
+#include "net/fit_text.h"
 #include "shape/shape.h"
 #include "shape/shape_list.h"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double finest = 1e-6;
 constexpr std::size_t most_triangles = 50'000;
 constexpr std::size_t most_record_bytes = 8 << 20;
+constexpr std::size_t max_name = 63;  // of a body, bytes
 constexpr double usual_thickness = 0.03;
 constexpr const char* every_look = "*";
 constexpr double of_body = 0.1;  // length of a look that fits its body, m: any value
@@ -176,7 +178,7 @@ void Presenter::forget(std::uint32_t slot) {
   out_.destroy(kind, {slot, known.generation});
 }
 
-EntityChanges Presenter::present(const SceneChanges& changes) {
+EntityChanges Presenter::present(const SceneChanges& changes, const NameOf& name_of) {
   out_ = {};
   if (changes.is_whole)
     for (std::vector<Told>& kind : told_)
@@ -192,7 +194,7 @@ EntityChanges Presenter::present(const SceneChanges& changes) {
     }
   }
   assigned_.clear();
-  for (const DrawnBody& body : changes.bodies.set) present_body(body);
+  for (const DrawnBody& body : changes.bodies.set) present_body(body, name_of);
   for (const auto& [body, articulate] : changes.memberships) tell(body, protocol::MembershipEntity{{}, articulate});
   for_each_simple_kind(changes, [&](const auto& items, auto entity_of) {
     for (const auto& item : items.set) tell(item.slot, entity_of(item));
@@ -231,7 +233,7 @@ void Presenter::for_each_simple_kind(const SceneChanges& changes, Visit visit) c
         [](const DrawnParticleSet& set) { return protocol::ParticleSetEntity{{}, set.active, set.capacity}; });
 }
 
-void Presenter::present_body(const DrawnBody& body) {
+void Presenter::present_body(const DrawnBody& body, const NameOf& name_of) {
   const std::uint32_t slot = body.id.slot;
   if (bodies_.size() <= slot) bodies_.resize(slot + std::size_t{1});
   DrawnAs& drawn = bodies_[slot];
@@ -240,7 +242,13 @@ void Presenter::present_body(const DrawnBody& body) {
   const bool is_assigned = assignment != assignments_.end();
   const std::uint32_t style = style_of(body, is_assigned ? &assignment->second : nullptr);
   const double length = body.particles == 2 && body.lines.size() == 1 ? body.lines[0].length : 0;
-  tell(slot, protocol::BodyEntity{{}, kind_of(body.kind), style, is_assigned && assignment->second.odd, size(length)},
+  tell(slot,
+       protocol::BodyEntity{{},
+                            kind_of(body.kind),
+                            style,
+                            is_assigned && assignment->second.odd,
+                            size(length),
+                            name_of ? fit_text(name_of(body.id), max_name) : std::string()},
        is_other);
   if (drawn.style != protocol::no_style) release_style(drawn.style);
   drawn = {body.id, style};

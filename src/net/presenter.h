@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,8 +35,9 @@ class Presenter {
   /// Bodies that must be in the next changes.
   const std::vector<BodyId>& assigned() const { return assigned_; }
 
-  /// Converts the engine's changes to those of entities.
-  EntityChanges present(const SceneChanges& changes);
+  using NameOf = std::function<std::string(BodyId)>;
+  /// Converts the engine's changes to those of entities. name_of: the script's name of a body, empty without one.
+  EntityChanges present(const SceneChanges& changes, const NameOf& name_of = {});
   /// Sentences since the last call about things that could not be drawn exactly.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
@@ -80,7 +82,7 @@ class Presenter {
   /// kinds that the engine describes, except bodies, which have styles.
   template <class Visit>
   void for_each_simple_kind(const SceneChanges& changes, Visit visit) const;
-  void present_body(const DrawnBody& body);
+  void present_body(const DrawnBody& body, const NameOf& name_of);
   void forget_body(std::uint32_t slot);
   void present_statics();
 

@@ -38,6 +38,25 @@ def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list
         assert style["name"] == "link" and [part["look"] for part in style["parts"]] == ["rope", "chain"]
 
 
+def test_pages_are_told_the_names_that_the_script_gives_and_of_a_new_one_only_that_body(
+    system: iota.System, chain: list[iota.Body]
+) -> None:
+    chain[1].name = "left arm"
+    with show(system) as shown:
+        names = [shown.bodies[body.slot]["name"] for body in chain]
+        assert names == ["", "left arm", *[""] * (len(chain) - 2)]
+        before = {slot: dict(body) for slot, body in shown.bodies.items()}
+        chain[2].name = "Häns"
+        assert shown.look() == 1, "one record: that body's"
+        assert shown.bodies[chain[2].slot] == before[chain[2].slot] | {"name": "Häns"}
+        chain[2].name = ""
+        with system.edit():
+            chain[1].name = "right arm"
+        system.undo()
+        shown.look()
+        assert [shown.bodies[body.slot]["name"] for body in chain[1:3]] == ["left arm", ""]
+
+
 @pytest.mark.parametrize(
     "shape",
     [

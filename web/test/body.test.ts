@@ -124,6 +124,23 @@ describe("bodies", () => {
     expect(test.meshes()[0]).toBe(ball);
   });
 
+  it("have the script's name, else that of their class, and another name moves nothing", () => {
+    const test = told(2);
+    const { body: bodies } = test.world.entities;
+    expect([0, 1, 2].map((slot) => bodies.nameOf(slot))).toEqual(["link 0", "link 1", ""]);
+    const places = test.meshes()[0].instanceMatrix;
+    const members = [...test.meshes()].map((mesh) => mesh.count);
+    const made = madeBy(() => test.set("body", bodyEntity(1, { name: "left arm" })));
+    expect([0, 1].map((slot) => bodies.nameOf(slot))).toEqual(["link 0", "left arm"]);
+    expect([0, 1].map((slot) => bodies.ownNameOf(slot))).toEqual(["", "left arm"]);
+    expect(bodies.renamed).toBe(1);
+    expect(made).toEqual({ geometries: 0, objects: 0 });
+    expect(test.meshes()[0].instanceMatrix).toBe(places);
+    expect(test.meshes().map((mesh) => mesh.count)).toEqual(members);
+    test.set("body", bodyEntity(1, { name: "left arm" }), bodyEntity(0, { length: 0.3 }));
+    expect(bodies.renamed).toBe(1);
+  });
+
   it("wait for a style that comes after them", () => {
     const test = told(1);
     test.set("body", bodyEntity(4, { style: 8 }));

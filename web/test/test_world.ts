@@ -52,7 +52,7 @@ export function style(slot: number, name: string, ...parts: Part[]): StyleEntity
 }
 
 export function bodyEntity(slot: number, extra: Partial<BodyEntity> = {}): BodyEntity {
-  return { id: id(slot), kind: BodyKind.dynamic, style: 0, odd: false, length: 0, ...extra };
+  return { id: id(slot), kind: BodyKind.dynamic, style: 0, odd: false, length: 0, name: "", ...extra };
 }
 
 export class TestWorld implements WorldListener {

@@ -66,7 +66,7 @@ class Interacting(Drawing, Listening):
         world.offer("break", "join")
         """
         for name in parts or PARTS:
-            if name not in PARTS:
+            if not isinstance(name, str) or name not in PARTS:
                 raise ValueError(f"there are {', '.join(map(repr, PARTS))}, not {name!r}")
             PARTS[name](self)
 
@@ -108,6 +108,11 @@ class Interacting(Drawing, Listening):
         return Carry(self, bodies)
 
 
+def named(body: Body) -> str:
+    """A body in the words of a notice."""
+    return body.name or "this body"
+
+
 # --- parts --------------------------------------------------------------------------------------------------------------
 
 
@@ -118,7 +123,7 @@ def _break(world: Interacting) -> None:
     def break_it(event: Event) -> None:
         pair = hinge_above(event.body) or world._joins.under_way(event.body)
         if pair is None:
-            event.notice("Nothing to break", "No hinge is above this body.")
+            event.notice("Nothing to break", f"No hinge is above {named(event.body)}.")
             return
         above, own = pair
         with world.system.edit():
@@ -130,7 +135,9 @@ def _join(world: Interacting) -> None:
     def join(event: Event) -> None:
         pair = nearest_ends(event.body)
         if pair is None:
-            event.notice("Nothing to join", "Everything is connected already, or has no loose end.")
+            event.notice(
+                "Nothing to join", f"Everything is connected already, or {named(event.body)} has no loose end."
+            )
             return
         with world.system.edit():
             world._joins.begin(*pair, shortest=0.3)
@@ -175,7 +182,8 @@ def _measure(world: Interacting) -> None:
         if shown or not first or first[0] == event.body or not first[0].alive:
             clear()
             first.append(event.body)
-            event.notice("Measure from here", "Select the other body and press v again.")
+            title = f"Measure from {event.body.name or 'here'}"
+            event.notice(title, "Select the other body and press v again.")
             return
         line = world.line(first[0], event.body, color=READY)
         label = world.label("", at=event.body, color="#23272b")

@@ -14,7 +14,7 @@ from iota.world.frames import into_frame, relative_turn
 
 
 def describe(simulator: Simulator) -> list[tuple[Any, ...]]:
-    """Slot, generation, kind, articulate, number of particles, lines and solids of each body; places in its frame."""
+    """Slot, generation, kind, name, articulate, number of particles, lines and solids of each body; places in its frame."""
     articulates = dict(simulator.body_articulates())
     lines: dict[SimulatedBody, list[tuple[Any, Any]]] = {}
     for p, q in simulator.cosmetic_lines:
@@ -44,4 +44,4 @@ def _describe(body: SimulatedBody, articulate: int, lines: list[tuple[Any, Any]]
         )
         for solid in body.solids
     ]
-    return (body.slot, body.generation, body.kind, articulate, len(particles), local, solids)
+    return (body.slot, body.generation, body.kind, body.name, articulate, len(particles), local, solids)

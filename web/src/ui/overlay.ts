@@ -34,6 +34,7 @@ export class Overlay implements PageListener, FramePart {
   private readonly hint_ = byId("hint", HTMLElement);
   private readonly menu_ = byId("menu", HTMLElement);
   private readonly strip_ = byId("strip", HTMLElement);
+  private readonly chosen_ = byId("chosen", HTMLElement);
   private readonly bar_ = byId("bar", HTMLElement);
   private readonly meter_ = byId("meter", HTMLElement);
   private readonly welcome_ = byId("welcome", HTMLElement);
@@ -44,6 +45,7 @@ export class Overlay implements PageListener, FramePart {
   private pointerAt_ = { x: 0, y: 0, touch: false };
   private idle_: number | undefined;
   private paused_: boolean | null = null;
+  private renamed_ = 0;
   private hintText_ = "";
   private bodyHint_ = "drag";
   private everConnected_ = false;
@@ -111,6 +113,9 @@ export class Overlay implements PageListener, FramePart {
         return button;
       }),
     );
+    const name = this.page_.world.entities.body.nameOf(body);
+    this.menu_.setAttribute("aria-label", `Actions for ${name}`);
+    this.menu_.prepend(make("div", "about", name));
     this.menu_.hidden = false;
     placeNear(this.menu_, x, y, 14);
     this.showBar();
@@ -179,6 +184,7 @@ export class Overlay implements PageListener, FramePart {
 
   draw(): void {
     this.refreshHint_();
+    if (this.page_.world.entities.body.renamed !== this.renamed_) this.refreshStrip_();
     const { paused } = this.page_.world;
     if (paused === this.paused_) return;
     this.paused_ = paused;
@@ -255,10 +261,17 @@ export class Overlay implements PageListener, FramePart {
     this.closeMenu_();
   }
 
-  /** Buttons of the script: those for the world always, those for a body while one is selected. */
+  /** What is selected, and the script's buttons: those for the world always, those for a body while one is selected. */
   private refreshStrip_(): void {
-    const shown = this.page_.commands.script.filter((action) => action.offered?.() !== false);
-    this.strip_.replaceChildren(...shown.map((action) => makeActionButton(action)));
+    const { world: { entities: { body } }, selection, commands } = this.page_;
+    const { size: more } = selection.several;
+    this.renamed_ = body.renamed;
+    const name = body.nameOf(selection.selected) + (more > 0 ? ` and ${more} more` : "");
+    // For readers of the screen: the arrow keys select.
+    if (this.chosen_.textContent !== name) this.chosen_.textContent = name;
+    const shown: HTMLElement[] = commands.script.filter((action) => action.offered?.() !== false).map((action) => makeActionButton(action));
+    if (name !== "") shown.unshift(make("span", "about", name));
+    this.strip_.replaceChildren(...shown);
   }
 
   private refreshHint_(): void {
@@ -289,7 +302,8 @@ export class Overlay implements PageListener, FramePart {
     }
     const mouse = this.page_.gestures.pointers[0];
     if (!mouse.active || mouse.hovered < 0) return "";
-    return this.bodyHint_;
+    const name = this.page_.world.entities.body.ownNameOf(mouse.hovered);
+    return name === "" ? this.bodyHint_ : `${name}: ${this.bodyHint_}`;
   }
 
   private refreshMeter_(): void {

@@ -140,6 +140,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** Place of the camera, world, m; and px of a length at a distance of the same length. */
   readonly eye = new Vector3();
   pixels = 800;
+  /** Rises when the script gives a body another name. */
+  renamed = 0;
 
   private readonly styles_: Styles;
   private readonly bodyGone_: (body: number) => void;
@@ -201,6 +203,12 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   change(entity: BodyEntity): void {
     const body = this.bodies_.get(entity.id.slot);
     if (body === undefined) return;
+    const { kind, style, odd, length } = body.entity;
+    if (entity.kind === kind && entity.style === style && entity.odd === odd && entity.length === length) {
+      if (entity.name !== body.entity.name) this.renamed++;
+      body.entity = entity;
+      return;
+    }
     this.removeInstances_(body);
     body.entity = entity;
     this.addInstances_(body);
@@ -333,10 +341,16 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     return this.idOf(id.slot)?.generation === id.generation ? id.slot : -1;
   }
 
-  /** "link 12"; empty if there is no such body. */
+  /** The name that the script gave to a body; empty without one. */
+  ownNameOf(body: number): string {
+    return this.bodies_.get(body)?.entity.name ?? "";
+  }
+
+  /** That name, or "link 12"; empty if there is no such body. */
   nameOf(body: number): string {
     const entity = this.bodies_.get(body)?.entity;
     if (entity === undefined) return "";
+    if (entity.name !== "") return entity.name;
     const name = this.styles_.nameOf(entity.style);
     // Those that the world or the server makes up mean nothing to users.
     return `${/^class \d+$|^\(/.test(name) ? "body" : name} ${body}`;
