@@ -16,7 +16,7 @@ from iota import starting as starting  # noqa: I001  # first: the other imports 
 
 from collections.abc import Sequence
 
-from iota import builder, looks, types
+from iota import arguments, builder, looks, types
 from iota._core import (
     AngleSpring,
     Articulate,
@@ -119,3 +119,6 @@ __all__ = [
     "solver_names",
     "types",
 ]
+
+for _module in (builder.__name__, looks.__name__, types.__name__, __name__):
+    arguments.explain_module(_module)

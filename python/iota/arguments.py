@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Explains in a sentence why the arguments of a call are wrong; the engine calls it when a call fits no signature.
+"""Explains in a sentence why the arguments of a call are wrong: where a call fits no signature.
 
-The signatures come from the engine, as in the stub file.
+The signatures come from the engine, as in the stub file, or from the functions in Python.
 """
 
 from __future__ import annotations
 
 import ast
 import difflib
+import functools
+import inspect
+import linecache
 import re
 import reprlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, get_args
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import FunctionType, TracebackType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from iota import _core
+from iota._core import Vec3
 
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
@@ -65,6 +71,25 @@ def explain_assignment(kind: type, name: str) -> str | None:
         f": it is {a(result.__name__)}; assign {one_of(f'.{name}.{n}' for n in parts)}" if result and parts else ""
     )
     return f"{kind.__name__}.{name} can be read but not assigned{instead}"
+
+
+def refuse_unknown(thing: object, name: str) -> None:
+    """Raises AttributeError for a public attribute that the class of a thing does not have, or that cannot be assigned."""
+    kind = type(thing)
+    if (
+        name.startswith("_")
+        or not kind.__module__.startswith("iota.")
+        or any(name in vars(each).get("__annotations__", ()) for each in kind.__mro__)
+    ):
+        return
+    member = inspect.getattr_static(kind, name, None)
+    if member is None:
+        known = [n for n in dir(kind) if is_settable(kind, n)]
+        raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{suggestion(name, known)}")
+    if isinstance(member, property) and member.fset is None:
+        raise AttributeError(f"{kind.__name__}.{name} can be read but not assigned")
+    if isinstance(member, FunctionType):
+        raise AttributeError(f"{kind.__name__}.{name} is a method and cannot be assigned")
 
 
 class Signature:
@@ -120,8 +145,14 @@ class Signature:
                         value, [other for other in [*positional, *self.keywords] if other.arg not in places]
                     )
             elif argument.arg not in self.optional:
-                return f"{called(self.name)} needs {argument.arg}: {in_words(argument.annotation)}"
+                return self.needs(argument)
         return None
+
+    def needs(self, argument: ast.arg) -> str:
+        return f"{called(self.name)} needs {argument.arg}: {in_words(argument.annotation)}"
+
+    def result_class(self) -> type | None:
+        return class_of(self.result)
 
     def explain_value(self, argument: ast.arg, value: Any, label: str) -> str | None:
         if fits(argument.annotation, value):
@@ -148,12 +179,180 @@ class Signature:
 
     def unknown(self, word: str, words: Sequence[str]) -> str:
         text = f"{called(self.name)} has no argument '{word}'"
-        result = class_of(self.result)
+        result = self.result_class()
         near = suggestion(word, words)
         if not near and result and is_settable(result, word):
             return f"{text}; assign it to the result: {result.__name__.lower()}.{word} = ..."
         takes = f"t takes {', '.join(words) or 'none'}"
         return f"{text}{near} I{takes}" if near else f"{text}; i{takes}"
+
+
+# --- functions and classes in Python ------------------------------------------------------------------------------------
+
+
+class PythonSignature(Signature):
+    """That of a function in Python, of which only the words and the number of arguments are judged: it checks values itself."""
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        super().__init__(name, text_of(function))
+        self.globals = getattr(inspect.unwrap(function), "__globals__", {})
+
+    def explain_value(self, argument: ast.arg, value: Any, label: str) -> None:
+        return None
+
+    def needs(self, argument: ast.arg) -> str:
+        known = [
+            option for option in options_of(argument.annotation) if base_name(option) in PLAIN or classes_of(option)
+        ]
+        of_what = f": {in_words(argument.annotation)}" if known and known == [*options_of(argument.annotation)] else ""
+        return f"{called(self.name)} needs {argument.arg}{of_what}"
+
+    def result_class(self) -> type | None:
+        found = self.globals.get(base_name(self.result)) if self.result is not None else None
+        return found if isinstance(found, type) else None
+
+
+def text_of(function: Callable[..., Any]) -> str:
+    """A signature in the form of nanobind's: defaults do not matter."""
+    marks: dict[Any, str] = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    words, star = [], False
+    for parameter in inspect.signature(function).parameters.values():
+        star = star or parameter.kind is parameter.VAR_POSITIONAL
+        if parameter.kind is parameter.KEYWORD_ONLY and not star:
+            words.append("*")
+            star = True
+        mark, kind = marks.get(parameter.kind, ""), parameter.annotation
+        typed = f": {kind if isinstance(kind, str) else getattr(kind, '__name__', 'Any')}"
+        typed = "" if kind is parameter.empty else typed
+        words.append(f"{mark}{parameter.name}{typed}{'' if parameter.default is parameter.empty else ' = None'}")
+    result = inspect.signature(function).return_annotation
+    return f"def f({', '.join(words)})" + (f" -> {result}" if isinstance(result, str) else "")
+
+
+def explaining(function: Callable[..., Any], name: str) -> Callable[..., Any]:
+    """The function, which refuses arguments that do not fit in a sentence. They are looked at only after a call was
+    refused. name: as of `explain_call`."""
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except (TypeError, ValueError, AttributeError) as error:
+            # One that was raised inside of the function has its frame.
+            inner = None if error.__traceback__ is None else error.__traceback__.tb_next
+            if inner is None:
+                text = PythonSignature(name, function).explain(given, named)
+            else:
+                text = None if is_said(inner) else misfit(function, name, given, named)
+            if text is None:
+                raise
+            raise TypeError(text) from None
+
+    return call
+
+
+def is_said(trace: TracebackType) -> bool:
+    """Whether an error comes from a statement `raise`: then it is a sentence already, or the script's own."""
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    line = linecache.getline(trace.tb_frame.f_code.co_filename, trace.tb_lineno)
+    return line.lstrip().startswith("raise")
+
+
+def misfit(function: Callable[..., Any], name: str, given: Sequence[Any], named: Mapping[str, Any]) -> str | None:
+    """A sentence about the first argument that is not of the type of its annotation; None without one."""
+    try:
+        hints = get_type_hints(function)
+    except NameError:  # of types that only checkers import
+        return None
+    signature = inspect.signature(function)
+    for word, value in signature.bind(*given, **named).arguments.items():
+        kind = signature.parameters[word].kind
+        if word not in hints or kind in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD):
+            continue
+        if not is_of(hints[word], value):
+            return f"{called(name)}: {word} must be {hint_in_words(hints[word])}, not {SHORT.repr(value)}"
+    return None
+
+
+def is_of(hint: Any, value: Any) -> bool:
+    """Whether a value is of an annotated type, as far as that can be told; what cannot counts."""
+    origin, parts = get_origin(hint), get_args(hint)
+    if hint is Any:
+        return True
+    if origin in (Union, UnionType):
+        return any(is_of(part, value) for part in parts)
+    if origin is Literal:
+        return value in parts
+    if hint is None or hint is type(None):
+        return value is None
+    if hint is float:
+        return is_number(value)
+    if hint is int:
+        return hasattr(type(value), "__index__")
+    if origin is Callable:
+        return callable(value)
+    if origin in (Sequence, Iterable) and parts == (float,):
+        return isinstance(value, Iterable) and not isinstance(value, str | bytes) and all(map(is_number, value))
+    if origin is Iterable:
+        return isinstance(value, Iterable)
+    if isinstance(origin, type):
+        return isinstance(value, origin)
+    return isinstance(value, hint) if isinstance(hint, type) else True
+
+
+WORDS = {
+    float: "a number",
+    int: "a whole number",
+    str: "a text",
+    bool: "True or False",
+    bytes: "bytes",
+    type(None): "None",
+}
+
+
+def hint_in_words(hint: Any) -> str:
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin in (Union, UnionType):
+        return one_of(
+            dict.fromkeys(hint_in_words(part) for part in parts if Vec3 not in parts or part != Sequence[float])
+        )
+    if origin is Literal:
+        return f"one of {', '.join(map(repr, parts))}"
+    if origin in (Sequence, Iterable):
+        return "numbers" if parts == (float,) else "a list"
+    if origin is Callable:
+        return "a function"
+    kind = origin or hint
+    if kind is Vec3:
+        return "2 or 3 numbers"
+    return WORDS.get(kind) or a(getattr(kind, "__name__", str(kind)))
+
+
+def explain(*types: type) -> None:
+    """Lets all public functions of classes, and of those that they inherit, explain their arguments."""
+    own_kinds = (each for kind in types for each in kind.__mro__ if each.__module__.startswith("iota."))
+    for kind in dict.fromkeys(own_kinds):
+        for name, member in list(vars(kind).items()):
+            own = f"{kind.__name__}.{name}"
+            if (name != "__init__" and name.startswith("_")) or hasattr(member, "__wrapped__"):
+                continue
+            if isinstance(member, FunctionType):
+                setattr(kind, name, explaining(member, own))
+            elif isinstance(member, classmethod):
+                setattr(kind, name, classmethod(explaining(member.__func__, own)))
+
+
+def explain_module(name: str) -> None:
+    """Lets the public functions and classes of a module, those in its `__all__` or its own, explain their arguments."""
+    module = sys.modules[name]
+    own = [word for word, each in vars(module).items() if word[0] != "_" and getattr(each, "__module__", "") == name]
+    for public in getattr(module, "__all__", own):
+        found = getattr(module, public)
+        if isinstance(found, FunctionType) and not hasattr(found, "__wrapped__"):
+            setattr(module, public, explaining(found, public))
+        elif isinstance(found, type) and found.__module__.startswith("iota.") and not issubclass(found, BaseException):
+            explain(found)
 
 
 # --- annotations --------------------------------------------------------------------------------------------------------
@@ -200,8 +399,10 @@ def result_of(function: Any) -> type | None:
 
 
 def is_settable(kind: type, name: str) -> bool:
-    member = getattr(kind, name, None)
-    return not name.startswith("_") and isinstance(member, property) and member.fset is not None
+    member = inspect.getattr_static(kind, name, None)
+    if name.startswith("_") or member is None:
+        return False
+    return member.fset is not None if isinstance(member, property) else hasattr(type(member), "__set__")
 
 
 def fits(annotation: ast.expr | None, value: Any) -> bool:
@@ -304,6 +505,28 @@ def one_of(words: Iterable[str]) -> str:
     return f"{', '.join(most)} or {last}" if most else last
 
 
+# What other libraries call what an argument of ours means.
+MEANT = {
+    "position": ("eye", "location", "place", "center", "centre", "origin", "xyz", "translation"),
+    "at": ("position", "eye", "location", "place", "center", "centre", "origin", "xyz"),
+    "target": ("look_at", "lookat", "focus", "aim", "to", "center", "centre"),
+    "rotation": ("orientation", "quaternion", "quat", "angle", "euler"),
+    "orientation": ("rotation", "quaternion", "quat", "angle", "euler"),
+    "text": ("label", "title", "name", "caption", "string", "message"),
+    "label": ("text", "title", "name", "caption"),
+    "title": ("text", "label", "name", "caption"),
+    "value": ("initial", "default", "start"),
+    "color": ("paint", "fill", "rgb"),
+    "size": ("dimensions", "extents", "half_extents", "scale"),
+    "stiffness": ("k", "spring"),
+    "minimum": ("start", "low", "lower", "lowest"),
+    "maximum": ("stop", "end", "high", "upper", "highest"),
+}
+
+
 def suggestion(word: str, words: Sequence[str]) -> str:
+    """For a misspelled word, another library's, or the beginning of one."""
     near = difflib.get_close_matches(word, words, n=1)
+    near += [meant for meant, others in MEANT.items() if meant in words and word in others]
+    near += [each for each in words if len(word) > 2 and each.startswith(word)]
     return f"; did you mean '{near[0]}'?" if near else ""

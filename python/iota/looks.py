@@ -22,14 +22,15 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 import numpy as np
 
 from iota import shapes
 from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from iota.arguments import SHORT, is_number
 from iota.textures import Texture, check_image, material_name, texture_of
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
@@ -43,7 +44,7 @@ class Look:
 
     shape: Shape | None  #: None: the body's own shape, see `solid`
     material: str = "paint"
-    color: str | None = None  #: "#rrggbb", or "#rrggbbaa" with transparency; None: that of the material
+    color: Any = None  #: "#rrggbb" or "#rrggbbaa", 0xRRGGBB, or numbers from 0 to 1; None: that of the material
     offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
     rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
     turn: float = 0.0  #: of every other body with this look, about the body's x axis, rad
@@ -54,10 +55,20 @@ class Look:
     def __post_init__(self) -> None:
         if self.texture is not None:
             object.__setattr__(self, "texture", texture_of(self.texture, self.repeat))
-        object.__setattr__(self, "offset", tuple(float(v) for v in self.offset))
-        object.__setattr__(self, "rotation", tuple(float(v) for v in self.rotation))
+        if not (self.shape is None or isinstance(self.shape, get_args(Shape))):
+            raise TypeError(
+                f"a look is of a shape, as in Look(iota.Sphere(0.1), 'wood'), not of {SHORT.repr(self.shape)}"
+            )
+        for name, counts in (("offset", (2, 3)), ("rotation", (4,))):
+            object.__setattr__(self, name, _finite(name, getattr(self, name), counts))
+        size = math.hypot(*self.rotation)
+        if not size > 0:
+            raise ValueError("rotation must be a quaternion x y z w that is not zero")
+        if abs(size - 1) > 1e-9:
+            object.__setattr__(self, "rotation", tuple(part / size for part in self.rotation))
+        object.__setattr__(self, "turn", _finite("turn", (self.turn,), (1,))[0])
         if self.color is not None:
-            color_number(self.color)
+            object.__setattr__(self, "color", color_text(self.color))
         material_of(self.material)
         if isinstance(self.shape, Mesh) and len(self.shape.triangles) > MOST_TRIANGLES:
             raise ValueError(
@@ -102,6 +113,30 @@ def material_of(name: str) -> str:
     return name
 
 
+def _finite(name: str, values: Any, counts: Sequence[int]) -> tuple[float, ...]:
+    """As numbers; without the last of three, that is 0."""
+    parts = tuple(values) if isinstance(values, Iterable) else ()
+    if len(parts) not in counts or not all(is_number(part) and math.isfinite(part) for part in parts):
+        wanted = "a finite number" if counts == (1,) else f"{' or '.join(map(str, counts))} finite numbers"
+        raise ValueError(f"{name} must be {wanted}, not {SHORT.repr(values)}")
+    return tuple(float(part) for part in parts) + (0.0,) * (max(counts) - len(parts))
+
+
+def color_text(color: Any) -> str:
+    """As "#rrggbb" or "#rrggbbaa". Raises ValueError and TypeError."""
+    if isinstance(color, str):
+        color_number(color)
+        return color
+    if isinstance(color, int) and 0 <= color <= 0xFFFFFF:
+        return f"#{color:06x}"
+    if isinstance(color, int):
+        raise ValueError(f"a color is from 0 to 0xFFFFFF, not {color:#x}")
+    parts = tuple(color) if isinstance(color, Iterable) else ()
+    if len(parts) not in (3, 4) or not all(is_number(part) and math.isfinite(part) for part in parts):
+        raise TypeError(f'a color is "#rrggbb", 0xRRGGBB, or 3 or 4 numbers from 0 to 1, not {SHORT.repr(color)}')
+    return "#" + "".join(f"{round(255 * min(max(float(part), 0.0), 1.0)):02x}" for part in parts)
+
+
 def color_number(text: str) -> int:
     """0xRRGGBB of "#rrggbb"; of "#rrggbbaa" with the transparency in the highest byte. Raises ValueError."""
     digits = text.removeprefix("#")
@@ -131,12 +166,12 @@ def sphere(radius: float, material: str = "brass", **more: Any) -> Look:
 
 def cylinder(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Look:
     """A cylinder along local x. Without `length` it is as long as the body: from first to last particle."""
-    return Look(Cylinder(radius, length or UNKNOWN), material, fits=length is None, **more)
+    return Look(Cylinder(radius, UNKNOWN if length is None else length), material, fits=length is None, **more)
 
 
 def capsule(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Look:
     """A cylinder with half balls at its ends; `length` is that of the cylinder."""
-    return Look(Capsule(radius, length or UNKNOWN), material, fits=length is None, **more)
+    return Look(Capsule(radius, UNKNOWN if length is None else length), material, fits=length is None, **more)
 
 
 def torus(radius: float, tube: float, material: str = "steel", stretch: float = 0.0, **more: Any) -> Look:
@@ -162,11 +197,13 @@ def ellipsoid(size: Sequence[float], material: str = "paint", **more: Any) -> Lo
 
 def disc(radius: float, thickness: float | None = None, material: str = "paint", **more: Any) -> Look:
     """Normal to local x; default `thickness`: a hundredth of its radius."""
-    return Look(Cylinder(radius, thickness or radius / 100), material, **more)
+    return Look(Cylinder(radius, radius / 100 if thickness is None else thickness), material, **more)
 
 
 def pyramid(size: Sequence[float], material: str = "paint", **more: Any) -> Look:
     """Along local x: a base of size (y, z) at -x/2, its tip at +x/2. size: (x, y, z)."""
+    if len(size) != 3:
+        raise ValueError(f"pyramid: size must be 3 numbers, not {size!r}")
     x, y, z = (side / 2 for side in size)
     vertices = [(-x, -y, -z), (-x, y, -z), (-x, y, z), (-x, -y, z), (x, 0, 0)]
     return mesh(vertices, [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)], material, **more)
@@ -174,6 +211,8 @@ def pyramid(size: Sequence[float], material: str = "paint", **more: Any) -> Look
 
 def half_sphere(radius: float, material: str = "paint", segments: int = 32, **more: Any) -> Look:
     """Round towards +x, flat at x = 0."""
+    if segments < 4:
+        raise ValueError(f"half_sphere: segments must be at least 4, not {segments}")
     angles = np.linspace(0, math.pi / 2, segments // 4 + 1)[:-1]
     profile = [(radius * math.sin(a), radius * math.cos(a)) for a in angles]
     return _revolved([(0.0, 0.0), *profile, (radius, 0.0)], segments, material, **more)
@@ -185,6 +224,8 @@ def polygon(corners: Sequence[Sequence[float]], thickness: float, material: str 
     outline = np.array(corners, float)
     if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
         raise ValueError("a polygon needs at least three corners (x, y)")
+    if not (math.isfinite(thickness) and thickness > 0):
+        raise ValueError(f"the thickness of a polygon must be above 0 m, not {thickness}")
     x, y = outline.T
     if np.dot(x, np.roll(y, -1)) < np.dot(y, np.roll(x, -1)):
         outline = outline[::-1]

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from iota.arguments import SHORT
+
 MOST_BYTES = 1 << 20
 RATES = (8_000, 96_000)  # samples a second
 # The first bytes of a file, and where they are.
@@ -45,7 +47,7 @@ def sound_file(source: Any, rate: float = 44_100) -> SoundFile:
     if isinstance(source, np.ndarray):
         return SoundFile(make_wav(source, rate))
     if not isinstance(source, str | os.PathLike):
-        raise TypeError(f"a sound is the path of a file, or an array of samples, not {type(source).__name__}")
+        raise TypeError(f"a sound is the path of a file, or an array of samples, not {SHORT.repr(source)}")
     try:
         _check_bytes(os.stat(source).st_size)  # before it is read
         data = Path(source).read_bytes()

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from iota.arguments import SHORT
+
 MOST_BYTES = 4 << 20
 MOST_SIDE = 4096  # pixels: the limit of phones
 MOST_REPEATS = 10_000.0
@@ -46,7 +48,7 @@ def texture_of(image: Any, repeat: float | Sequence[float] = 1.0) -> Texture:
     if isinstance(image, np.ndarray):
         return Texture(make_png(image), times)
     if not isinstance(image, str | os.PathLike):
-        raise TypeError(f"a texture is the path of a PNG or JPEG file, or an array, not {type(image).__name__}")
+        raise TypeError(f"a texture is the path of a PNG or JPEG file, or an array, not {SHORT.repr(image)}")
     try:
         _check_bytes(os.stat(image).st_size)  # before it is read
         data = Path(image).read_bytes()

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import inspect
+import math
 import re
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -12,7 +14,7 @@ import pytest
 import sweep
 
 import iota
-from iota import _core
+from iota import _core, builder, looks
 
 # What nanobind, C++ and Python's object system say, and scripts do not.
 RAW = re.compile(
@@ -155,3 +157,182 @@ def test_good_calls_cost_nothing_more() -> None:
     particle = system.body().particle((0, 1, 0))
     particle.velocity = np.array([1.0, 2.0, 3.0])
     assert particle.velocity == (1, 2, 3)
+
+
+# --- functions in Python -------------------------------------------------------------------------------------------------
+
+# What Python and numpy say of wrong arguments, and scripts do not.
+RAW_PYTHON = re.compile(
+    RAW.pattern
+    + r"|unexpected keyword|positional argument|unsupported operand|not iterable|real number|could not convert"
+    r"|not callable|object has no attribute|truth value|argument after|to unpack|setting an array|argument must be"
+    r"|not supported between|cannot convert|has no len|not subscriptable|unhashable|inhomogeneous|ufunc|no attribute '__"
+)
+# They run the world, or open files or ports; `call` and `at` of a frame call the script's own.
+RUN = {
+    "run",
+    "start",
+    "serve",
+    "step",
+    "advance",
+    "call",
+    "stop",
+    "close",
+    "client_module",
+    "record",
+    "act",
+    "screenshot",
+    "ears",
+}
+
+
+def public_functions(thing: Any) -> Iterator[tuple[str, Callable[..., Any]]]:
+    for name in getattr(thing, "__all__", None) or dir(thing):
+        member = getattr(thing, name)
+        if thing is looks and getattr(member, "__module__", "") != looks.__name__:
+            continue
+        if not name.startswith("_") and name not in RUN | LEFT_OUT and callable(member):
+            if inspect.isfunction(member) or (
+                inspect.isclass(member) and not issubclass(member, BaseException | tuple)
+            ):
+                yield name, member
+
+
+def given_wrongly(function: Callable[..., Any], rest: dict[str, Any]) -> Iterator[Callable[[], Any]]:
+    """Calls with too much, too little, unknown words, and each argument of each wrong kind beside good ones in `rest`."""
+    yield function
+    yield lambda: function(no_such_argument=1)
+    yield lambda: function(*range(12))
+    words = [
+        p for p in inspect.signature(function).parameters.values() if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+    ]
+    good = {p.name: rest[p.name] for p in words if p.name in rest and p.default is p.empty}
+    for parameter in words:
+        if parameter.kind is not parameter.POSITIONAL_ONLY:
+            yield from (lambda w=parameter.name, v=value: function(**(good | {w: v})) for value in WRONG)
+    yield from (lambda v=value: function(v) for value in WRONG)
+
+
+@pytest.mark.parametrize("of", ["world", "looks", "builder", "iota"])
+@pytest.mark.filterwarnings("ignore::numpy.exceptions.VisibleDeprecationWarning", "ignore::RuntimeWarning")
+def test_no_call_of_the_script_layer_is_refused_with_a_raw_text(of: str) -> None:
+    scene = sweep.Scene()
+    rest = {
+        "at": (0, 1, 0), "to": (0, 2, 0), "text": "word", "label": "word", "minimum": 0, "maximum": 1, "look": looks.sphere(0.1),
+        "position": (0, 1, 0), "target": (0, 0, 0), "positions": [(0, 0, 0)], "points": [(0, 0, 0)], "radius": 0.1,
+        "material": "wood", "length": 1.0, "size": (1, 1, 1), "options": ["a"], "name": "word", "shape": iota.Sphere(1),
+        "bodies": [scene.box], "place": scene.point, "plugs": [scene.p], "origin": (0, 5, 0), "direction": (0, -1, 0),
+        "kind": "spring", "start": (0, 0, 0), "end": (0, 1, 0), "title": "word", "particles": [scene.point], "system": scene.system,
+    }  # fmt: skip
+    raw = []
+    names = [
+        name
+        for name, _ in public_functions({"world": iota.World, "looks": looks, "builder": builder, "iota": iota}[of])
+    ]
+    for name in names:
+        thing: Any = {"world": iota.World(sweep.Scene().system), "looks": looks, "builder": builder, "iota": iota}[of]
+        if isinstance(function := getattr(thing, name), type) and function.__module__ == "iota._core":
+            continue
+        for call in given_wrongly(function, rest):
+            if RAW_PYTHON.search(text := refusal(call)):
+                raw.append(f"{of}.{name}: {text[:160]}")
+    assert not raw, f"{len(raw)}\n" + "\n".join(dict.fromkeys(raw))
+
+
+PYTHON_MISTAKES: dict[str, tuple[Callable[[iota.World], Any], str]] = {
+    "another library's word": (
+        lambda w: iota.Camera(eye=(0, 1, 2)),
+        r"Camera has no argument 'eye'; did you mean 'position'\? It takes position, target",
+    ),
+    "a misspelled word": (lambda w: w.label("a", colour="#fff"), "label has no argument 'colour'; did you mean 'color'"),
+    "the beginning of a word": (lambda w: w.shape(looks.sphere(1), pos=V), "shape has no argument 'pos'; did you mean 'position'"),
+    "a word of the result": (lambda w: w.label("a", visible=False), r"assign it to the result: label.visible = \.\.\."),
+    "a word of a look": (lambda w: looks.sphere(0.1, colour="#ffffff"), "has no argument 'colour'; did you mean 'color'"),
+    "a missing one": (lambda w: w.slider("a"), "slider needs minimum: a number"),
+    "too many": (lambda w: w.on_reset(1, 2), r"on_reset takes 1 argument by place \(function\), not 2"),
+    "a decorator without parentheses": (lambda w: w.every(print), "every: period must be a number, not <built-in function"),
+    "a number for a place": (lambda w: w.label("a", at=5), "at: must be a particle, a body, .* or 2 or 3 numbers, not 5"),
+    "a text for a number": (lambda w: w.slider("a", 0, "ten"), "maximum:? must be a number, not 'ten'"),
+    "a camera without depth": (lambda w: iota.Camera((1,)), r"position: must be 2 or 3 numbers, not \(1,\)"),
+    "a camera nowhere": (lambda w: iota.Camera((math.nan, 0, 0)), "position: must be finite"),
+    "a misspelled attribute of a thing": (
+        lambda w: setattr(w.label("a"), "txt", "b"), "a Label has no attribute 'txt'; did you mean 'text'",
+    ),
+    "a misspelled attribute of a world": (
+        lambda w: setattr(w, "pause", True), "World.pause|a World has no attribute 'pause'; did you mean 'paused'",
+    ),
+    "a method": (lambda w: setattr(w, "reset", 1), "World.reset is a method and cannot be assigned"),
+    "what can only be read": (lambda w: setattr(w, "url", "x"), "World.url can be read but not assigned"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PYTHON_MISTAKES)
+def test_a_mistake_in_the_script_layer_is_named(name: str) -> None:
+    world = iota.World(iota.System())
+    things = len(world.things)
+    use, text = PYTHON_MISTAKES[name]
+    with pytest.raises((TypeError, ValueError, AttributeError), match=text):
+        use(world)
+    assert len(world.things) - things <= 1
+
+
+def test_an_error_of_the_scripts_own_function_is_left_as_it_is() -> None:
+    def mine(a: int) -> None:
+        raise TypeError("mine")
+
+    world = iota.World(iota.System())
+    with pytest.raises(TypeError, match=r"^mine$"):
+        world.call(lambda: mine(1))
+    with pytest.raises(TypeError, match="missing 1 required"):
+        world.call(lambda: mine())  # type: ignore[call-arg]
+
+
+def test_a_class_derived_from_a_world_may_have_attributes_of_its_own() -> None:
+    class Game(iota.World):
+        pass
+
+    game = Game(iota.System())
+    game.score = 3  # type: ignore[attr-defined]
+    assert game.score == 3  # type: ignore[attr-defined]
+
+
+DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
+    "a cylinder without length": (lambda w: looks.cylinder(0.1, length=0), "length of a cylinder must be between"),
+    "half a ball of three segments": (lambda w: looks.half_sphere(1, segments=3), "segments must be at least 4, not 3"),
+    "a polygon of one corner": (lambda w: looks.polygon([(0, 0)], 0.1), "at least three corners"),
+    "a polygon in a line": (lambda w: looks.polygon([(0, 0), (1, 0), (2, 0)], 0.1), "encloses no volume"),
+    "a polygon without thickness": (lambda w: looks.polygon([(0, 0), (1, 0), (0, 1)], 0), "thickness of a polygon"),
+    "a look that is nowhere": (lambda w: looks.sphere(1, offset=(math.nan, 0, 0)), "offset must be 2 or 3 finite numbers"),
+    "a look without a rotation": (lambda w: looks.sphere(1, rotation=(0, 0, 0, 0)), "quaternion x y z w that is not zero"),
+    "a look turned by nothing": (lambda w: looks.sphere(1, turn=math.nan), "turn must be a finite number"),
+    "a look of a word": (lambda w: looks.Look("ball"), "a look is of a shape.*not of 'ball'"),  # type: ignore[arg-type]
+    "a camera in its target": (lambda w: iota.Camera(V, V), "a target elsewhere than its position"),
+    "a camera of numbers": (lambda w: setattr(w, "camera", V), "camera must be a Camera"),
+    "a strut without length": (lambda w: w.add_strut(V, V, looks.cylinder(1)), "two different ends"),
+    "a wall without a shape": (lambda w: w.add_static(looks.solid("wood"), V), "look must be a Look with a shape"),
+    "a slider beyond its end": (lambda w: w.slider("a", 0, 1, 5), "value: must be from 0 to 1, not 5"),
+    "a function that is none": (lambda w: w.on_step(None), "a callback is a function, not None"),
+    "a key that is none": (lambda w: w.on_key(5), "a key needs a name"),
+    "a world of a number": (lambda w: iota.World(5), "a System or another Simulator, not 5"),  # type: ignore[arg-type]
+    "a ground of a word": (lambda w: iota.World(iota.System(), ground="floor"), "ground must be"),  # type: ignore[arg-type]
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DEGENERATE)
+def test_what_cannot_be_is_refused_where_it_is_written(name: str) -> None:
+    use, text = DEGENERATE[name]
+    with pytest.raises((TypeError, ValueError), match=text):
+        use(iota.World(iota.System()))
+
+
+@pytest.mark.parametrize("places", [(), (V,), (V, V), ([V],), ([],)])
+def test_lines_of_no_length_are_there_and_show_nothing_or_a_point(places: Any) -> None:
+    world = iota.World(iota.System())
+    for thing in (world.line(*places), world.tube(*places, radius=0.1)):
+        record = thing._record()
+        assert record is not None and len(record["points"]) == len(np.reshape(np.array(places, float), (-1, 3)))
+
+
+@pytest.mark.parametrize("color", ["#ff8000", 0xFF8000, (1, 0.502, 0), [1.0, 0.502, 0.0]])
+def test_a_look_takes_colors_as_all_drawings_do(color: Any) -> None:
+    assert looks.sphere(0.1, color=color).describe()["color"] == "#ff8000"

@@ -236,7 +236,7 @@ def test_shapes_refuse_what_they_do_not_know() -> None:
         looks.sphere(0.1, "gold")
     with pytest.raises(ValueError, match=r"the radius of a sphere must be between .* got -1"):
         looks.sphere(-1)
-    with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
+    with pytest.raises(TypeError, match="no argument 'colour'; did you mean 'color'"):
         looks.capsule(0.1, colour="#ff0000")
 
 

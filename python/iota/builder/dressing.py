@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from iota.arguments import is_number
 from iota.builder.points import Vector
 from iota.builder.structure import Structure
 from iota.looks import Drawn
@@ -39,8 +40,11 @@ def check_counts(least: int = 1, **counts: int) -> None:
 
 
 def place(name: str, vector: Vector) -> NDArray[np.float64]:
-    """A finite vector. Raises ValueError."""
-    found = np.array([*vector, 0.0][:3], float)
+    """A finite vector. Raises TypeError and ValueError."""
+    parts = tuple(vector)
+    if len(parts) not in (2, 3) or not all(map(is_number, parts)):
+        raise TypeError(f"{name} must be 2 or 3 numbers, not {vector!r}")
+    found = np.array([*parts, 0.0][:3], float)
     if not np.isfinite(found).all():
         raise ValueError(f"{name} must be finite, not {tuple(vector)}")
     return found

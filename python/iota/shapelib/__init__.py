@@ -9,6 +9,7 @@
 Some formats need `pip install 'iota[shapelib]'`. docs/shapelib.md is the tutorial.
 """
 
+from iota.arguments import explain_module
 from iota.shapelib.files import FileError
 from iota.shapelib.imported import Imported
 from iota.shapelib.mechanisms import mechanism
@@ -29,3 +30,5 @@ __all__ = [
     "read_model",
     "read_surface",
 ]
+
+explain_module(__name__)

@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from iota.arguments import SHORT
 from iota.world.costs import Costs
 
 SLOW = 0.5  # s, of a function
@@ -29,6 +30,8 @@ Tell = Callable[[str, str, str], None]  # title, text, hint
 
 def wants_event(function: Callable[..., Any]) -> bool:
     """Whether the function takes an argument; decided when it is registered."""
+    if not callable(function):
+        raise TypeError(f"a callback is a function, not {SHORT.repr(function)}")
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):

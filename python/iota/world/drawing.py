@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
+from iota._core import Vec3
+from iota.arguments import SHORT, is_number
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
 from iota.sounds import sound_file
@@ -40,8 +42,12 @@ Color = Any  # "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None
 
 
 def _listed(points: tuple[Any, ...]) -> Any:
-    """Whether it is one array, not a list of places."""
-    return points[0] if len(points) == 1 and not isinstance(points[0], Attachable) else points
+    """An array or a list that is given alone, else the places."""
+    if len(points) != 1 or isinstance(points[0], Attachable):
+        return points
+    (only,) = points
+    is_place = isinstance(only, Vec3) or (isinstance(only, Sequence) and len(only) > 0 and all(map(is_number, only)))
+    return points if is_place else only
 
 
 def _triangles_of(surface: Any) -> tuple[Any, Any]:
@@ -220,6 +226,8 @@ class Drawing:
         """
         shown = []
         for surface in surfaces:
+            if not hasattr(surface, "notes"):
+                raise TypeError(f"a model is a result of iota.shapelib.read_model, not of {SHORT.repr(surface)}")
             for note in surface.notes:
                 warnings.warn(note, stacklevel=2)
                 self._state.notices.warn_once(note)
@@ -400,5 +408,7 @@ class Drawing:
         elif curves is None or callable(curves):
             named = {label: curves}
         else:
+            if not all(isinstance(name, str) for name in curves):
+                raise TypeError(f"curves must be a function, several by name, or names, not {SHORT.repr(curves)}")
             named = dict.fromkeys(curves)
         return Plot(self._state.things, label, named, unit, seconds)

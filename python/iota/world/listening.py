@@ -92,8 +92,8 @@ class Listening:
     def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
         """Decorator: a key is pressed, or released; the page then does not use this key. key: by its name in browsers:
         "k", " ", "ArrowUp", "Enter". Actions also have a button and a line in the help: see `action`."""
-        if not key:
-            raise ValueError("a key needs a name")
+        if not isinstance(key, str) or not key:
+            raise ValueError(f"a key needs a name, as 'k' or 'ArrowUp', not {key!r}")
         return self._add("key", key=key, on_release=release)
 
     def on_join(self, function: Callback) -> Callback:

@@ -11,6 +11,7 @@ from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus, 
 from iota.looks import Look, Looks, color_number
 from iota.simulator import SimulatedBody
 from iota.textures import Texture
+from iota.world.things import vector
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,15 @@ class Camera:
 
     position: Sequence[float] = (2.5, 1.6, 3.5)
     target: Sequence[float] = (0.0, 1.2, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("position", "target"):
+            try:
+                object.__setattr__(self, name, tuple(vector(getattr(self, name))))
+            except (TypeError, ValueError) as error:
+                raise type(error)(f"{name}: {error}") from None
+        if self.position == self.target:
+            raise ValueError(f"a camera needs a target elsewhere than its position, not {self.position} twice")
 
 
 @dataclass(frozen=True, eq=False)

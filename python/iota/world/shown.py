@@ -4,14 +4,15 @@ the protocol."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Vec3
 from iota._protocol import ENTITIES, NO_BODY, NO_COLOR, LightKind
+from iota.arguments import SHORT
 from iota.looks import Look
 from iota.simulator import SimulatedBody
 from iota.textures import Texture, lay_flat, material_name, texture_of
@@ -24,8 +25,10 @@ from iota.world.things import (
     anchor,
     color,
     ends,
+    flag,
     length,
     number,
+    numbers,
     place,
     points,
     text,
@@ -70,6 +73,8 @@ def _limited(check: Callable[[Any], Rows], kind: str, field: str) -> Callable[[A
 
 def _points(value: Any) -> Any:
     """An array, or a list of places."""
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"must be places or an array of them, not {SHORT.repr(value)}")
     if isinstance(value, np.ndarray) or not any(isinstance(at, Attachable) for at in value):
         return points(value)
     return [place(at) for at in value]
@@ -89,7 +94,7 @@ def _on_bodies(given: Any) -> dict[str, Any] | None:
 class _Curve(Thing):
     """Through points, each a particle, body or place."""
 
-    points, color, closed = Field(_points), Field(color), Field(bool)
+    points, color, closed = Field(_points), Field(color), Field(flag)
 
     def _record(self) -> dict[str, Any] | None:
         placed = _on_bodies(self.points)
@@ -156,8 +161,11 @@ def _colors(value: Any) -> NDArray[np.uint32]:
     if isinstance(value, np.ndarray) and value.ndim == 2:
         parts = np.round(255 * np.clip(value.astype(float), 0, 1)).astype(np.uint32)
         return np.asarray(parts[:, 0] << 16 | parts[:, 1] << 8 | parts[:, 2], np.uint32)
+    if not (value is None or isinstance(value, str | int | Sequence | np.ndarray)):
+        raise TypeError(f"must be a color or a list of them, not {SHORT.repr(value)}")
     is_one = value is None or isinstance(value, str | int) or (len(value) == 3 and isinstance(value[0], float))
-    return np.array([any_color(each) for each in ([value] if is_one else value)], np.uint32)
+    listed: Iterable[Any] = [value] if is_one else cast("Iterable[Any]", value)
+    return np.array([any_color(each) for each in listed], np.uint32)
 
 
 class Points(Thing):
@@ -169,7 +177,7 @@ class Points(Thing):
 
     @staticmethod
     def _radii(value: Any) -> NDArray[np.float32]:
-        radii = np.atleast_1d(np.array(value, np.float32))
+        radii = np.atleast_1d(numbers(value)).astype(np.float32)
         if radii.ndim != 1 or not (radii >= 0).all() or not np.isfinite(radii).all():
             raise ValueError("must be one radius, or one for each point, of 0 m or more")
         return radii
@@ -269,14 +277,14 @@ class Shapes(Thing):
 
     @staticmethod
     def _rotations(value: Any) -> NDArray[np.float64]:
-        rows = np.zeros((0, 4)) if value is None else np.array(value, float)
+        rows = np.zeros((0, 4)) if value is None else numbers(value)
         if rows.ndim != 2 or rows.shape[1] != 4 or not (np.linalg.norm(rows, axis=1) > 1e-9).all():
             raise ValueError("must have the shape (n, 4), each row a quaternion that is not zero")
         return rows
 
     @staticmethod
     def _sizes(value: Any) -> NDArray[np.float64]:
-        sizes = np.zeros(0) if value is None else np.atleast_1d(np.array(value, float))
+        sizes = np.zeros(0) if value is None else np.atleast_1d(numbers(value))
         if sizes.ndim > 2 or sizes.shape[1:] not in ((), (3,)) or not np.isfinite(sizes).all():
             raise ValueError("must be one number, (n,) or (n, 3), all finite")
         return sizes
@@ -319,6 +327,7 @@ class Surface(Thing):
 
     @staticmethod
     def _triangles(value: Any) -> NDArray[np.int64]:
+        numbers(value)  # refuses what has rows of several lengths
         rows = np.array(value)
         if rows.size == 0:
             rows = np.zeros((0, 3), np.int64)
@@ -332,7 +341,7 @@ class Surface(Thing):
 
     @staticmethod
     def _coordinates(value: Any) -> NDArray[np.float32] | None:
-        rows = None if value is None else np.array(value, np.float32)
+        rows = None if value is None else numbers(value).astype(np.float32)
         if rows is not None and (rows.ndim != 2 or rows.shape[1] != 2 or not np.isfinite(rows).all()):
             raise ValueError("must have the shape (n, 2), all finite")
         return rows
@@ -463,6 +472,7 @@ class Light(Thing):
     spot, from its axis to its edge, rad. shadow: things cast shadows in it, not for a point."""
 
     kind = "light"
+    lamp: str
     shadow: bool
     at, color, angle = Field(place), Field(color), Field(number(0.01, 1.5))
     to = Field(lambda value: None if value is None else place(value))

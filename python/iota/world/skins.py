@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, cast
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Particle
 from iota._protocol import NO_BODY
+from iota.arguments import SHORT
 from iota.implicit import skin
 from iota.looks import material_of
 from iota.world.callbacks import Guard
@@ -22,6 +23,8 @@ Source = Callable[[], Any] | list[Particle | Body]
 def _source(value: Any) -> Source:
     if callable(value):
         return cast("Callable[[], Any]", value)
+    if not isinstance(value, Iterable):
+        raise TypeError(f"must be particles or bodies, or a function, not {SHORT.repr(value)}")
     particles = [value] if isinstance(value, Particle | Body) else list(value)
     for particle in particles:
         if not isinstance(particle, Particle | Body):

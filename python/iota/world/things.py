@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from iota._core import Body, Bond, Particle, Room, Vec3
 from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
+from iota.arguments import SHORT, is_number, refuse_unknown
 from iota.looks import color_number
 from iota.simulator import SimulatedBody, SimulatedParticle
 from iota.textures import Texture
@@ -62,7 +63,12 @@ class Thing:
         self._things = things
         things.add(self)
 
-    visible = Field(bool)
+    def __setattr__(self, name: str, value: Any) -> None:
+        """A misspelled attribute would change nothing on the page."""
+        refuse_unknown(self, name)
+        super().__setattr__(name, value)
+
+    visible = Field(lambda value: flag(value))
 
     @property
     def alive(self) -> bool:
@@ -255,6 +261,8 @@ class Things:
 
 def number(least: float = -math.inf, most: float = math.inf) -> Callable[[Any], float]:
     def check(value: Any) -> float:
+        if not is_number(value):
+            raise TypeError(f"must be a number, not {SHORT.repr(value)}")
         found = float(value)
         if not (math.isfinite(found) and least <= found <= most):
             bounds = f" from {least:g} to {most:g}" if math.isfinite(least) or math.isfinite(most) else ""
@@ -271,9 +279,28 @@ def text(value: Any) -> str:
     return str(value)
 
 
+def flag(value: Any) -> bool:
+    if not isinstance(value, bool | np.bool_ | int):
+        raise TypeError(f"must be True or False, not {SHORT.repr(value)}")
+    return bool(value)
+
+
+def numbers(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """An array of them, copied."""
+    try:
+        return np.array(value, np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"must be numbers, all rows of one length, not {SHORT.repr(value)}") from None
+
+
 def vector(value: Any) -> Vec3:
     """World, m, or a direction."""
-    found = Vec3(*value)
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"must be 2 or 3 numbers, not {SHORT.repr(value)}")
+    parts = tuple(value)
+    if len(parts) not in (2, 3) or not all(map(is_number, parts)):
+        raise TypeError(f"must be 2 or 3 numbers, not {SHORT.repr(value)}")
+    found = Vec3(*parts)
     if not all(math.isfinite(x) and abs(x) <= FARTHEST for x in (found.x, found.y, found.z)):
         raise ValueError(f"must be finite and within {FARTHEST:g} m, not {found}")
     return found
@@ -283,7 +310,11 @@ def place(value: Any) -> Place:
     """A particle, body or bond, or a place in the world (m)."""
     if isinstance(value, Attachable):
         return value
-    return vector((0, 0, 0) if value is None else value)
+    try:
+        return vector((0, 0, 0) if value is None else value)
+    except TypeError:
+        what = "a particle, a body, a bond, a frame, or 2 or 3 numbers"
+        raise TypeError(f"must be {what}, not {SHORT.repr(value)}") from None
 
 
 def place_of(value: Any) -> Vec3:
@@ -305,13 +336,16 @@ def color(value: Any) -> int:
         if value == NO_COLOR or 0 <= value <= 0xFFFFFF:
             return int(value)
         raise ValueError(f"a color is from 0 to 0xFFFFFF, not {value:#x}")
-    red, green, blue, *alpha = (round(255 * min(max(float(part), 0.0), 1.0)) for part in value)
+    parts = tuple(value) if isinstance(value, Iterable) else ()
+    if len(parts) not in (3, 4) or not all(is_number(part) and math.isfinite(part) for part in parts):
+        raise TypeError(f'must be "#rrggbb", 0xRRGGBB, or 3 or 4 numbers from 0 to 1, not {SHORT.repr(value)}')
+    red, green, blue, *alpha = (round(255 * min(max(float(part), 0.0), 1.0)) for part in parts)
     return (255 - alpha[0] if alpha else 0) << 24 | red << 16 | green << 8 | blue
 
 
 def unit_quaternion(value: Any) -> tuple[float, ...]:
     """x y z w, normalized."""
-    turn = np.array(value, float)
+    turn = numbers(value)
     size = np.linalg.norm(turn)
     if turn.shape != (4,) or not size > 1e-9 or not np.isfinite(size):
         raise ValueError(f"a rotation is a quaternion x y z w that is not zero, not {value}")
@@ -320,7 +354,7 @@ def unit_quaternion(value: Any) -> tuple[float, ...]:
 
 def points(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Shape (n, 2) or (n, 3), m."""
-    rows = np.array(value, np.float64)
+    rows = numbers(value)
     if rows.size == 0:
         rows = rows.reshape(0, 3)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3):

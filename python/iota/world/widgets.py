@@ -9,9 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from iota._protocol import WidgetKind
+from iota.arguments import is_number
 from iota.world.callbacks import Guard, Hook
 from iota.world.event import Event
-from iota.world.things import Field, Thing, Things, color, number, text
+from iota.world.things import Field, Thing, Things, color, flag, number, text
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 CURVES = ("#2f9d92", "#e8452c", "#3f7fd0", "#f2a324", "#8d6fd1", "#4c9a52")
@@ -24,7 +25,7 @@ class Widget(Thing):
 
     kind = "widget"
     form: WidgetKind
-    label, help, enabled = Field(text), Field(text), Field(bool)
+    label, help, enabled = Field(text), Field(text), Field(flag)
     client = Field(lambda value: int(number(0, 2**32 - 1)(value)))
 
     def __init__(self, things: Things, label: str, **values: Any) -> None:
@@ -72,6 +73,8 @@ class Slider(Widget):
     def __init__(self, things: Things, label: str, minimum: float, maximum: float, value: float, **values: Any) -> None:
         if not minimum < maximum:
             raise ValueError(f"a slider needs a minimum below its maximum, not {minimum} and {maximum}")
+        if is_number(value) and not minimum <= float(value) <= maximum:
+            raise ValueError(f"value: must be from {minimum:g} to {maximum:g}, not {value}")
         super().__init__(things, label, minimum=minimum, maximum=maximum, value=value, **values)
 
     def _set(self, value: float, typed: str) -> None:
@@ -84,7 +87,7 @@ class Checkbox(Widget):
     """A check box."""
 
     form = WidgetKind.CHECKBOX
-    value = Field(bool)
+    value = Field(flag)
 
     def _set(self, value: float, typed: str) -> None:
         self.value = value != 0

@@ -16,8 +16,9 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
+from iota.arguments import SHORT, is_number, refuse_unknown
 from iota.looks import Drawn, Look, Looks, by_style
-from iota.simulator import Simulator
+from iota.simulator import SimulatedBody, Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
 from iota.world.asking import Asking
@@ -80,8 +81,15 @@ class World(Interacting, Asking):
         ground: float | Literal["auto"] | None = "auto",
         camera: Camera | None = None,
     ) -> None:
+        if not isinstance(system, System | Simulator):
+            raise TypeError(f"a world shows a System or another Simulator, not {SHORT.repr(system)}")
+        if not isinstance(title, str):
+            raise TypeError(f"title must be a text, not {SHORT.repr(title)}")
+        if ground not in ("auto", None) and not (is_number(ground) and math.isfinite(float(ground))):
+            raise ValueError(f'ground must be "auto", a height or None, not {SHORT.repr(ground)}')
         # Typed as System for scripts; this class uses only the interface of Simulator.
-        self._state = State(cast(System, system), Clock(dt), title, style, None if ground == "auto" else ground, camera)
+        self._state = State(cast(System, system), Clock(dt), title, style, None if ground == "auto" else ground, None)
+        self.camera = camera
         self._finds_ground = ground == "auto"
         self._guard = Guard(
             self._state.notices.error, self._state.notices.warning, self._state.notices.over, self._state.costs
@@ -95,6 +103,11 @@ class World(Interacting, Asking):
         self._background: threading.Thread | None = None
         self._stopping = False
         self._stop_at = math.inf
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """A misspelled attribute would change nothing."""
+        refuse_unknown(self, name)
+        super().__setattr__(name, value)
 
     # --- properties -----------------------------------------------------------------------------------------------
 
@@ -125,6 +138,10 @@ class World(Interacting, Asking):
 
     @camera.setter
     def camera(self, camera: Camera | None) -> None:
+        if not (camera is None or isinstance(camera, Camera)):
+            raise TypeError(
+                f"camera must be a Camera, as in iota.Camera((3, 2, 3), (0, 1, 0)), not {SHORT.repr(camera)}"
+            )
         self._state.camera = camera
         self._state.is_changed = True
 
@@ -170,8 +187,11 @@ class World(Interacting, Asking):
             world.draw(wheel, looks.solid("brass"))
             world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
         """
-        name = self._state.class_of(by_style(look))
-        self._state.scene.assign(bodies if isinstance(bodies, Iterable) else [bodies], name)
+        drawn = list(bodies) if isinstance(bodies, Iterable) else [bodies]
+        for body in drawn:
+            if not isinstance(body, Body | SimulatedBody):
+                raise TypeError(f"draw: bodies must be a body or several, not {SHORT.repr(body)}")
+        self._state.scene.assign(drawn, self._state.class_of(by_style(look)))
         self._state.is_changed = True
 
     def look_of(self, body: Body) -> Looks | None:
@@ -189,6 +209,8 @@ class World(Interacting, Asking):
     def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Static:
         """Adds a shape without physics: a beam, a stand. Walks end at it, and `ray` meets it. position: m. rotation: quaternion
         x y z w."""
+        if not isinstance(look, Look) or look.shape is None:
+            raise TypeError(f"add_static: look must be a Look with a shape, not {SHORT.repr(look)}")
         added = Static(look, vector(position), unit_quaternion(rotation))
         self._state.statics.append(added)
         if look.texture is not None:
