@@ -106,8 +106,8 @@ class Suite:
     folder: Path = ROOT
 
 
-def pytest(folder: str) -> list[str]:
-    return [str(BIN / "python"), "-m", "pytest", folder, "--junitxml={result}", "-q", "--durations=5"]
+def pytest(folder: str, *arguments: str) -> list[str]:
+    return [str(BIN / "python"), "-m", "pytest", folder, *arguments, "--junitxml={result}", "-q", "--durations=5"]
 
 
 def vitest(*arguments: str) -> list[str]:
@@ -120,7 +120,8 @@ def vitest(*arguments: str) -> list[str]:
 SUITES = [
     Suite("folders", [str(BIN / "python"), "tools/folder_graph.py"], 60),
     Suite("cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest),
-    Suite("python", pytest("tests/python"), 900, read_junit),
+    # Most tests keep one core busy; a few are long, so a worker that is done takes over tests of another.
+    Suite("python", pytest("tests/python", "-n=auto", "--maxprocesses=4", "--dist=worksteal"), 900, read_junit),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, ROOT / "web"),
     Suite("page", vitest(), 300, read_vitest, ROOT / "web"),
     Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 1200, read_vitest, ROOT / "web"),
