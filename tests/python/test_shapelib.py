@@ -526,6 +526,37 @@ def test_one_tetrahedron_in_every_format(write: Write) -> None:
         assert tuple(body.center_of_mass) == pytest.approx((0, 1, 0), abs=1e-6)
 
 
+def test_endings_may_be_in_capitals(write: Write) -> None:
+    files = {
+        "A.PDB": ETHANOL_PDB, "A.MOL": CARBON_MONOXIDE_MOL, "A.XYZ": WATER_XYZ, "A.OBJ": OBJ, "A.STL": STL, "B.STL": triangles_of(STL),
+        "A.PLY": PLY, "A.GLTF": gltf(*TETRAHEDRON, moved=[0.0, 0, 0]), "A.URDF": PENDULUM_URDF, "A.XML": MJCF, "A.MJCF": MJCF,
+    }  # fmt: skip
+    for name, contents in files.items():
+        large, small = shapelib.load(write(name, contents)), shapelib.load(write(name.lower(), contents))
+        assert large.counts == small.counts and large.counts, name
+    text = gltf(*TETRAHEDRON, moved=[0.0, 0, 0]).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text), len(text), 0x4E4F534A)
+    for path in (write("C.GLB", head + text), write("C.GLTF", text)):
+        assert len(shapelib.read_model(path)[0].faces) == 4
+    assert shapelib.molecule(str(write("D.XYZ", WATER_XYZ))).counts["atoms"] == 3
+    assert shapelib.polyhedron(str(write("D.OBJ", OBJ))).counts["faces"] == 4
+
+
+def test_a_truncated_ply_file_of_text_is_refused_with_its_first_short_row(write: Write) -> None:
+    lines = PLY.splitlines()
+    first = lines.index("end_header") + 2  # line of the first vertex
+    for end, line, what in (
+        (first + 1, first + 1, "vertex 3 (of 4) is missing"),
+        (first + 5, first + 5, "face 3 (of 4)"),
+    ):
+        fails(write("a.ply", "\n".join(lines[:end])), f"line {line}: {what}")
+    short = "\n".join([*lines[:first], lines[first].split()[0]])
+    fails(write("b.ply", short), f"line {first + 1}: vertex 2 (of 4) has 1 of 3 values")
+    short = "\n".join([*lines[: first + 3], "3 0 2"])
+    fails(write("c.ply", short), f"line {first + 4}: face 1 (of 4) has 3 of 4 values")
+
+
 def test_polygons_stay_polygons_and_pieces_become_bodies(write: Write) -> None:
     cube = shapelib.polyhedron(write("cube.off", CUBE_OFF))
     assert (cube.counts["faces"], cube.counts["triangles"], cube.counts["edges"]) == (6, 12, 12)
@@ -822,6 +853,38 @@ def test_an_mjcf_file_includes_neither_itself_nor_what_is_outside_of_its_folder(
     for part in ('<compiler meshdir="../meshes"/>', '<asset><mesh file="/tmp/part.stl"/></asset>'):
         fails(write("g.xml", f"<mujoco>\n{part}</mujoco>"), "line 2", out)
     fails(write("h.xml", around.replace("FILE", "none.xml")), "no such file", at="none.xml")
+    fails(write("i.xml", around.replace("FILE", "inner")), "is a folder", at="inner")
+
+
+def test_a_file_that_an_mjcf_file_includes_may_have_any_ending_and_lie_beside_the_one_that_includes_it(
+    write: Write, tmp_path: Path
+) -> None:
+    (tmp_path / "inner").mkdir()
+    inner = MJCF.replace('<mujoco model="arm">', "<mujoco>")
+    around = '<mujoco model="m">\n<include file="FILE"/></mujoco>'
+    write("inner/arm.txt", inner)
+    for name, via in (
+        ("a.xml", "arm.txt"),
+        ("b.xml", "inner/arm.txt"),
+    ):  # from the folder of the file, and of the model
+        write("inner/via.inc", f'<mujoco><include file="{via}"/></mujoco>')
+        assert shapelib.mechanism(write(name, around.replace("FILE", "inner/via.inc"))).counts["bodies"] == 2
+    write(
+        "inner/arm.txt",
+        '<mujoco><worldbody>\n<replicate count="20000"><geom size="1"/></replicate></worldbody></mujoco>',
+    )
+    fails(tmp_path / "b.xml", "line 2", "makes 20000 copies", at="inner/arm.txt")
+    write("inner/arm.txt", inner.replace("size=", "sise=", 1))
+    fails(tmp_path / "b.xml", "line 3", "unrecognized attribute: 'sise'", at="inner/arm.txt")
+
+
+def test_what_mujoco_warns_of_is_noted_and_not_written_into_a_file(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = write("arm.xml", MJCF.replace("</mujoco>", '<keyframe><key qpos="nan 0 0"/></keyframe></mujoco>'))
+    assert any("contains a 'NaN'" in note for note in shapelib.mechanism(path).notes)
+    assert [found.name for found in tmp_path.iterdir()] == ["arm.xml"]
 
 
 MJCF = """\

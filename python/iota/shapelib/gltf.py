@@ -85,7 +85,8 @@ def _split(data: bytes, path: PathLike) -> tuple[dict[str, Any], bytes | None]:
     try:
         head = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise FileError(path, f"is not glTF: {error}", getattr(error, "lineno", None)) from None
+        reason = "not a text file" if isinstance(error, UnicodeDecodeError) else error
+        raise FileError(path, f"is not glTF: {reason}", getattr(error, "lineno", None)) from None
     if not isinstance(head, dict):
         raise FileError(path, "is not glTF: an object with a list of required extensions must stand here")
     return head, binary

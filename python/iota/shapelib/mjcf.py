@@ -32,27 +32,48 @@ def read_mjcf(path: PathLike) -> Mechanism:
     root = read_tree(path)
     if root.tag != "mujoco":
         raise root.wrong(f"an MJCF file has <mujoco> at its top, not <{root.tag}>")
-    check(root, Path(path).parent, frozenset([Path(path)]))
+    included: list[Element] = []
+    check(root, Path(path).parent, frozenset([Path(path)]), included)
     try:
         import mujoco
     except ImportError:
         raise ImportError("MJCF files need MuJoCo: pip install 'iota[shapelib]'") from None
+    warnings: list[str] = []
+    # Without this it writes them into MUJOCO_LOG.TXT, in the folder where the script was started.
+    mujoco.set_mju_user_warning(lambda text: warnings.append(" ".join(str(text).split())))
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
+        state = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, state)
     except ValueError as error:
-        text = str(error)
-        line = re.search(r"line(?: number=)? ?(\d+)", text)
-        raise FileError(path, f"MuJoCo cannot read it: {text.split(chr(10))[0]}", line and int(line.group(1))) from None
-    state = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, state)
+        raise wrong(path, str(error), included) from None
+    finally:
+        mujoco.set_mju_user_warning(None)
     reader = _Reader(model, state, root.text("model", "") or Path(path).name.split(".")[0])
     reader.read()
+    reader.mechanism.notes += [f"MuJoCo warns: {text}" for text in warnings]
     return reader.mechanism
 
 
-def check(element: Element, folder: Path, seen: frozenset[Path], copies: int = 1) -> None:
+def wrong(path: PathLike, text: str, included: list[Element]) -> FileError:
+    """The error to raise for one of MuJoCo, which tells line 0 of an element from an included file: then the element is found by its tag
+    and the attribute that the error names."""
+    reason = f"MuJoCo cannot read it: {text.split(chr(10))[0]}"
+    line = re.search(r"line(?: number=)? ?(\d+)", text)
+    if line is None or line.group(1) != "0":
+        return FileError(path, reason, line and int(line.group(1)))
+    tag, name = (re.search(rf"{word}:? '(\w+)'", text) for word in ("Element", "attribute"))
+    for root in included:
+        for element in root.walk():
+            if tag and element.tag == tag.group(1) and (name is None or name.group(1) in element.attributes):
+                return FileError(element.path, reason, element.line)
+    return FileError(path, f"{reason}, in a file that it includes")
+
+
+def check(element: Element, folder: Path, seen: frozenset[Path], included: list[Element], copies: int = 1) -> None:
     """Raises FileError for what MuJoCo would take minutes or all memory to build, as it cannot be interrupted, and for files
-    outside of the model's folder; also in the files that it includes. seen: the files around the element."""
+    outside of the model's folder; also in the files that it includes, whose roots are added to `included`. folder: that of the
+    model; seen: the files around the element."""
     if element.tag in ("replicate", "flexcomp", "composite"):
         for word in element.text("count", "1").split():
             copies *= max(1, whole(word, element.path, element.line, "count"))
@@ -67,12 +88,16 @@ def check(element: Element, folder: Path, seen: frozenset[Path], copies: int = 1
         if name.startswith("file") or name in FOLDERS:
             if Path(value).is_absolute() or ".." in Path(value).parts:
                 raise element.wrong(f"{name} {value!r} leads out of the model's folder: copy what it needs into it")
-    if element.tag in ("include", "model") and (file := folder / element.text("file")).suffix.lower() == ".xml":
-        if file in seen:
-            raise element.wrong(f"{file.name} includes itself")
-        check(read_tree(file), folder, seen | {file}, copies)
+    if element.tag in ("include", "model"):
+        # MuJoCo takes a file of any ending, from the model's folder or from that of the file that includes it.
+        places = [at / element.text("file") for at in (folder, Path(element.path).parent)]
+        for file in dict.fromkeys(filter(Path.exists, places)) or places[:1]:
+            if file in seen:
+                raise element.wrong(f"{file.name} includes itself")
+            included.append(read_tree(file))
+            check(included[-1], folder, seen | {file}, included, copies)
     for child in element.children:
-        check(child, folder, seen, copies)
+        check(child, folder, seen, included, copies)
 
 
 class _Reader:

@@ -251,15 +251,42 @@ def _read_ply(path: PathLike) -> Surface:
             _check_count(counts[words[1]], words[1], path, at)
     if not counts.get("face"):
         raise FileError(path, "has points without faces")
-    mesh = _load(path)
+    try:
+        mesh = _load(path)
+    except FileError:
+        _check_rows(data, lines, path)
+        raise
     if not hasattr(mesh, "faces"):
         raise FileError(path, "has no faces that trimesh can read")
     if len(mesh.vertices) != counts.get("vertex", 0) or len(mesh.faces) < counts.get("face", 0):
+        _check_rows(data, lines, path)
         raise FileError(
             path, f"promises {counts.get('vertex', 0)} vertices and {counts.get('face', 0)} faces, but has "
             f"{len(mesh.vertices)} and {len(mesh.faces)}",
         )  # fmt: skip
     return _from_trimesh(mesh, path)
+
+
+def _check_rows(data: bytes, head: list[str], path: PathLike) -> None:
+    """Raises FileError for the first row of a text PLY file that is missing or too short. head: its lines before end_header."""
+    if not any(line.split()[:2] == ["format", "ascii"] for line in head):
+        return
+    rows = data.decode("latin-1").splitlines()
+    at = len(head) + 1
+    for element in "\n".join(head).split("\nelement ")[1:]:
+        first, *others = element.splitlines()
+        kind, count = first.split()[:2]
+        properties = [line.split()[1] for line in others if line.split()[:1] == ["property"]]
+        for row in range(int(count)):
+            words = rows[at].split() if at < len(rows) else []
+            needed = 0
+            for kind_of in properties:
+                has_length = kind_of == "list" and needed < len(words) and words[needed].isdigit()
+                needed += 1 + int(words[needed]) if has_length else 1
+            at += 1
+            if len(words) < needed:
+                found = f"has {len(words)} of {needed} values" if words else "is missing"
+                raise FileError(path, f"{kind} {row + 1} (of {count}) {found}: it is truncated", min(at, len(rows)))
 
 
 @apart()

@@ -28,6 +28,12 @@ class Element:
         """Its children of that tag."""
         return (child for child in self.children if child.tag == tag)
 
+    def walk(self) -> Iterator[Element]:
+        """It and all elements within it."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
     def first(self, tag: str) -> Element | None:
         """Its first child of that tag, None without one."""
         return next(self.all(tag), None)
