@@ -13,6 +13,7 @@ the environment for everything else.
 from __future__ import annotations
 
 import argparse
+import ast
 import fcntl
 import hashlib
 import os
@@ -357,12 +358,25 @@ def command_line() -> Step:
 
     script = VENV / "bin" / "iota"
 
+    def described() -> str:
+        project = (ROOT / "pyproject.toml").read_text()
+        lines = ["Metadata-Version: 2.1", "Name: iota", f"Version: {version()}"]
+        (needs,) = re.findall(r"^dependencies = (\[.*\])$", project, re.M)
+        lines += [f"Requires-Dist: {need}" for need in ast.literal_eval(needs)]
+        extras = project.partition("[project.optional-dependencies]\n")[2].partition("\n[")[0]
+        for extra, packages in re.findall(r"^(\w+) = (\[.*\])$", extras, re.M):
+            lines.append(f"Provides-Extra: {extra}")
+            lines += [f"Requires-Dist: {package}; extra == '{extra}'" for package in ast.literal_eval(packages)]
+        return "\n".join([*lines, ""])
+
     def metadata() -> Path:
         return site_packages() / f"iota-{version()}.dist-info"
 
     def needed() -> bool:
         links = [name_of(part) for part in parts()]
-        return not (script.exists() and (metadata() / "RECORD").exists() and all(path.exists() for path in links))
+        if not (script.exists() and (metadata() / "RECORD").exists() and all(path.exists() for path in links)):
+            return True
+        return (metadata() / "METADATA").read_text() != described()
 
     def work(log: Path) -> None:
         for old in [*PACKAGE.glob("_*.*"), PACKAGE / "page"]:
@@ -376,9 +390,9 @@ def command_line() -> Step:
         (packages / "iota.pth").write_text(f"{PACKAGE.parent}\n")
         script.write_text(f"#!{PYTHON}\nimport sys\n\nfrom iota.cli import main\n\nsys.exit(main())\n")
         script.chmod(0o755)
-        # For `importlib.metadata` and `pip list`.
+        # For `importlib.metadata`, `pip list` and `pip install 'iota[film]'`.
         metadata().mkdir()
-        (metadata() / "METADATA").write_text(f"Metadata-Version: 2.1\nName: iota\nVersion: {version()}\n")
+        (metadata() / "METADATA").write_text(described())
         (metadata() / "INSTALLER").write_text("make\n")
         (metadata() / "entry_points.txt").write_text("[console_scripts]\niota = iota.cli:main\n")
         recorded = ["iota.pth", "../../../bin/iota"]

@@ -3,9 +3,11 @@
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import time
+from importlib.metadata import distribution
 from pathlib import Path
 from types import ModuleType
 
@@ -132,6 +134,14 @@ def test_the_environment_has_its_own_node_of_the_pinned_version() -> None:
         [ROOT / ".venv" / "bin" / "npm", "exec", "--offline", "-c", "node --version"], capture_output=True, text=True
     )
     assert npm.stdout.strip() == f"v{pinned}", npm.stderr
+
+
+def test_an_extra_can_be_asked_for_where_iota_was_built() -> None:
+    project = (ROOT / "pyproject.toml").read_text()
+    extras = re.findall(r"^(\w+) = \[", project.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.M)
+    found = distribution("iota")
+    assert extras and found.metadata.get_all("Provides-Extra") == extras
+    assert any(need.startswith("mujoco") and "shapelib" in need for need in found.requires or [])
 
 
 def test_make_help_names_every_goal_of_the_readme() -> None:
