@@ -138,7 +138,9 @@ def test_the_environment_has_its_own_node_of_the_pinned_version() -> None:
 
 def test_an_extra_can_be_asked_for_where_iota_was_built() -> None:
     project = (ROOT / "pyproject.toml").read_text()
-    extras = re.findall(r"^(\w+) = \[", project.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.M)
+    extras = re.findall(
+        r"^(\w+) = \[", project.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.M
+    )
     found = distribution("iota")
     assert extras and found.metadata.get_all("Provides-Extra") == extras
     assert any(need.startswith("mujoco") and "shapelib" in need for need in found.requires or [])
