@@ -107,7 +107,8 @@ struct Row {
 
 TEST(Many, a_hinge_that_would_close_a_rod_to_a_point_leaves_nothing_of_the_others) {
   Row row;
-  row.p.push_back(row.end_of(0, 0)), row.q.push_back(row.end_of(1, 0));  // where the other end of the first one is by then
+  row.p.push_back(row.end_of(0, 0)),
+      row.q.push_back(row.end_of(1, 0));  // where the other end of the first one is by then
   row.expect_refused();
 }
 
