@@ -16,11 +16,11 @@ namespace iota::solver {
 
 namespace {
 
-/// Not quadratic in the points: the mean of two gradients is not an exact discrete gradient.
+/// Not quadratic in the points: the mean of two gradients is not an exact discrete gradient, or does not turn with the bodies.
 template <class C>
-constexpr bool is_curved =
-    std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
-    std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
+constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CouplingConstraint> ||
+                           std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
+                           std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
 
 /// Two to four points, each at a fixed distance from each other, and nothing else that holds them or turns them.
 bool is_free_body(const Problem& problem) {
@@ -137,7 +137,8 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     problem.set_multipliers(multipliers_saved_);
     return false;
   }
-  // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second.
+  // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
+  // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
   commit(problem, stage, energy, report);
   if (free) {
