@@ -8,13 +8,17 @@
     world = iota.World(system, title="chain")
     world.run()          # prints the address of a page that shows it
 
-This module has the names that scripts use; types of returned values are in `iota.types`. SI units; right-handed, y up.
+This module has the names that scripts use; types of returned values are in `iota.types`. `iota.effects`, `film`, `implicit`,
+`shapelib` and `testing` are imported when they are first used. SI units; right-handed, y up.
 Vectors are any 2 or 3 numbers (default z: 0) and are returned as `Vec3`. docs/conventions.md has the rules.
 """
 
 from iota import starting as starting  # noqa: I001  # first: the other imports take time
 
 from collections.abc import Sequence
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 from iota import arguments, builder, looks, types
 from iota._core import (
@@ -61,6 +65,15 @@ from iota.errors import (
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, solve, solver, solver_names
 from iota.world import Camera, Event, Server, View, World
+
+if TYPE_CHECKING:
+    from iota import effects as effects
+    from iota import film as film
+    from iota import implicit as implicit
+    from iota import shapelib as shapelib
+    from iota import testing as testing
+
+_LATER = ("effects", "film", "implicit", "shapelib", "testing")
 
 Sequence.register(Vec3)
 
@@ -122,3 +135,10 @@ __all__ = [
 
 for _module in (builder.__name__, looks.__name__, types.__name__, __name__):
     arguments.explain_module(_module)
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Parts that take long to import, or need more packages, when they are first used."""
+    if name in _LATER:
+        return import_module(f"iota.{name}")
+    raise AttributeError(f"module 'iota' has no attribute {name!r}", name=name, obj=import_module("iota"))

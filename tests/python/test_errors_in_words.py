@@ -6,6 +6,8 @@ from __future__ import annotations
 import inspect
 import math
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -336,3 +338,15 @@ def test_lines_of_no_length_are_there_and_show_nothing_or_a_point(places: Any) -
 @pytest.mark.parametrize("color", ["#ff8000", 0xFF8000, (1, 0.502, 0), [1.0, 0.502, 0.0]])
 def test_a_look_takes_colors_as_all_drawings_do(color: Any) -> None:
     assert looks.sphere(0.1, color=color).describe()["color"] == "#ff8000"
+
+
+def test_parts_of_the_package_are_imported_when_they_are_first_used() -> None:
+    script = """
+import iota, sys
+assert "iota.shapelib" not in sys.modules
+print(len(iota.shapelib.polyhedron_names()))
+iota.Shpere
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert int(done.stdout) > 100, done.stderr
+    assert done.stderr.endswith("module 'iota' has no attribute 'Shpere'. Did you mean: 'Sphere'?\n")
