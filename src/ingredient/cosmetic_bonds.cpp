@@ -13,6 +13,15 @@ DrawnLine line(const Vec3& from, const Vec3& to) {
   return {0.5 * (from + to), length > 0 ? shortest_turn({1, 0, 0}, (1 / length) * (to - from)) : Quaternion{}, length};
 }
 
+/// A massless point that a joint made for itself: of its axis, say, which may be far from the body.
+bool is_of_joint(const Model& model, std::uint32_t p) {
+  if (!model.particles[p].is_marker()) return false;
+  bool owned = false;
+  model.for_each_constraint_of(
+      p, [&](std::uint32_t slot, int place) { owned = owned || (model.constraints[slot].owned >> place & 1) != 0; });
+  return owned;
+}
+
 }  // namespace
 
 std::uint32_t CosmeticBonds::add(Model& model, const CosmeticBond& bond) {
@@ -73,6 +82,10 @@ void CosmeticBonds::draw(const SceneView& view, std::uint32_t body, DrawnBody& d
   if (!drawn.lines.empty()) return;
   std::uint32_t before = none;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (is_of_joint(model, p)) {
+      --drawn.particles;
+      return;
+    }
     if (before != none) drawn.lines.push_back(line(local(before), local(p)));
     before = p;
   });

@@ -117,6 +117,23 @@ std::pair<Vec3, Box> box_around(const Mesh& mesh) {
   return {0.5 * (low + high), Box{high - low}};
 }
 
+/// Parts with a length are as long as a rod, on whose line they belong: with unequal masses its middle is not at its
+/// center of mass. The place is rounded, so that many rods share a style.
+std::vector<protocol::Part> on_line(std::vector<protocol::Part> parts, const DrawnBody& body) {
+  constexpr double visible = 1e-3;  // share of the length
+  if (body.particles != 2 || body.lines.size() != 1 || !body.solids.empty()) return parts;
+  const DrawnLine& line = body.lines[0];
+  const float x = round_to(visible * line.length, line.center.x);
+  if (x == 0) return parts;
+  for (protocol::Part& part : parts)
+    shape::for_each_shape([&](const Shape& shape) {
+      if (shape::name(shape) != part.shape.kind) return;
+      const std::vector<std::string> names = shape::size_names(shape);
+      if (std::ranges::find(names, "length") != names.end()) part.offset[0] += x;
+    });
+  return parts;
+}
+
 /// The looks for which a class has parts, and the first part of each.
 std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std::vector<protocol::Part>& parts) {
   std::vector<std::pair<std::string, const protocol::Part*>> first;
@@ -295,10 +312,10 @@ std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assig
     return use_style("(solid)", parts_of_solids(body, own));
   if (assignment && !own) return protocol::no_style;
   if (own && ((body.particles <= 2 && body.balls.empty()) || !body.solids.empty()))
-    return own->is_solid ? protocol::no_style : use_style(assignment->name, own->parts);
+    return own->is_solid ? protocol::no_style : use_style(assignment->name, on_line(own->parts, body));
   if (body.particles == 1) return use_style("(particle)", {part_of_particle(body)});
   if (body.particles == 2 && body.balls.empty())
-    return use_style("(rod)", {make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel")});
+    return use_style("(rod)", on_line({make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel")}, body));
   return use_style("(body)", parts_along_lines(body, own));
 }
 

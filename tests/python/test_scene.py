@@ -27,6 +27,31 @@ def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.Syste
         assert round_["shape"]["kind"] == "sphere" and round_["look"] == "*"
 
 
+def test_a_rod_is_drawn_from_end_to_end_whatever_its_masses_and_joints(system: iota.System) -> None:
+    """With the drawn frame's origin at the center of mass and x from the first end to the second."""
+    scene = Scene()
+    scene.classes["rod"] = looks.by_style([looks.cylinder(0.01), looks.sphere(0.1)])
+    rods = []
+    for drawn, masses in ((True, (0.1, 1.9)), (False, (3.0, 1.0)), (True, (1.0, 1.0))):
+        rod = system.body()
+        for x, mass in zip((0, 2), masses, strict=True):
+            rod.particle((x, 0, 0), mass)
+        rods.append(rod)
+        if drawn:
+            scene.assign([rod], "rod")
+    block = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=1, position=(2, 0, 0))
+    for rod in rods:
+        system.revolute(block, rod, at=(2, 0, 0), axis=(0, 0, 1))
+    with show(system, scene) as shown:
+        for rod in rods:
+            assert len(rod.particles) > 2, "the joint has points of its own on the rod"
+            assert shown.bodies[rod.slot]["length"] == pytest.approx(2)
+            line, *more = shown.parts(rod)
+            middle = rod.center_of_mass.x + line["offset"][0]
+            assert middle == pytest.approx(1, abs=2e-3)
+            assert [part["offset"] for part in more] == [(0, 0, 0)] * len(more), "what has no length is where it was"
+
+
 def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list[iota.Body]) -> None:
     scene = Scene()
     scene.classes["link"] = {"rope": looks.cylinder(0.01, "rope"), "chain": looks.chain_link(0.1)}
