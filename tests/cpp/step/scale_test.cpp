@@ -192,6 +192,39 @@ TEST(Scale, of_places_to_ten_million_meters_lets_a_chain_swing_as_at_home) {
   }
 }
 
+// Both know the distance of the two points from places that were rounded when they were made there.
+TEST(Scale, of_places_lets_bodies_that_share_two_points_move_accurately_as_at_home) {
+  const auto move = [](const Vec3& home, double width, std::vector<Vec3>& places) {
+    System system{SystemOptions{.mode = IntegrationMode::accurate, .tolerance = 1e-8}};
+    const auto box = [&](const Vec3& at, const Vec3& spin) {
+      return system.bodies().create(
+          Box{{0.41, 0.3, 0.23}},
+          {.mass = 1, .position = home + at, .orientation = {0.6 * at.x, 0.48, 0.64, 0.8 - at.x}, .spin = spin});
+    };
+    const BodyId first = box({}, {1, 2, 3}), second = box({0.8, 0.05, 0}, {-2, 1, 4});
+    for (const double side : {0.1, 0.1 - width}) {
+      const Vec3 at = home + Vec3{0.4, 0.013, side};
+      (void)system.edits().combine(system.bodies().create_attachment(first, at),
+                                   system.bodies().create_attachment(second, at));
+    }
+    system.particles().nail(system.bodies().create_attachment(first, home + Vec3{-0.1, 0.1, 0}));
+    int substeps = 0;
+    for (int i = 0; i < 60; ++i) substeps = std::max(substeps, system.step(1.0 / 120).substeps_max);
+    for (const BodyId body : {first, second}) places.push_back(system.bodies().center_of_mass(body) - home);
+    return substeps;
+  };
+  for (const double width : {0.12, 0.15, 0.18, 0.21, 0.24, 0.27}) {
+    std::vector<Vec3> at_home;
+    const int substeps = move({}, width, at_home);
+    for (const double far : {1e5, 1e6}) {
+      std::vector<Vec3> places;
+      EXPECT_LE(move({far, -far, 0.5 * far}, width, places), substeps + 1) << far << ", " << width;
+      for (std::size_t i = 0; i < places.size(); ++i)
+        EXPECT_LT(norm(places[i] - at_home[i]), 1e-6) << far << ", " << width << " substeps " << substeps;
+    }
+  }
+}
+
 TEST(Conflict, is_shared_by_all_links_of_a_chain_of_any_length) {
   for (const int links : {2, 20, 50, 100, 400}) {
     System system;
