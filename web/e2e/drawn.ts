@@ -45,9 +45,9 @@ export async function drawn(tab: Tab, what: readonly (typeof everything)[number]
     const panel = document.getElementById("panel")?.getBoundingClientRect();
     let [count, under] = [0, 0];
     let [left, right, low, top] = [width, -1, height, -1];
+    const differs = (at: number) => Math.abs(shown[at] - hidden[at]) >= 12;
     for (let index = 0; index < width * height; index++) {
-      const change = Math.max(...[0, 1, 2].map((channel) => Math.abs(shown[4 * index + channel] - hidden[4 * index + channel])));
-      if (change < 12) continue;
+      if (!differs(4 * index) && !differs(4 * index + 1) && !differs(4 * index + 2)) continue;
       count++;
       const [x, y] = [index % width, Math.floor(index / width)];
       const [across, down] = [(x / width) * innerWidth, (1 - y / height) * innerHeight];

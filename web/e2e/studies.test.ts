@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every study as its user has it: something is dragged by mouse, and each of its keys and controls does what its help
-// says, in the world (Python), on the page, and in the picture.
+// Every study as its user has it: something is dragged by mouse, by finger, and in a headset by a controller's ray or a bare hand, and each
+// of its keys and controls does what its help says, in the world (Python), on the page, and in the picture.
 
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser, distance, small, type Place, type Tab } from "./browser.ts";
 import { drawn } from "./drawn.ts";
+import { HeadsetTab } from "./headset.ts";
 import { freePort, studyNames, WorldServer } from "./server.ts";
 
 /** What study_probe.py tells. */
@@ -27,13 +28,43 @@ interface Facts {
 /** ms */
 const patience = 30_000;
 
+/** What takes hold of bodies, at places of the window. */
+interface Pointer {
+  down(at: Place): Promise<void>;
+  move(at: Place): Promise<void>;
+  up(): Promise<void>;
+}
+
+function mouseOf({ page: { mouse } }: Tab): Pointer {
+  return {
+    down: async (at) => {
+      await mouse.move(...at);
+      await mouse.down();
+    },
+    move: (at) => mouse.move(...at, { steps: 5 }),
+    up: () => mouse.up(),
+  };
+}
+
+function fingerOf(tab: Tab): Pointer {
+  return {
+    down: (at) => tab.touch("touchStart", [at]),
+    move: (at) => tab.touch("touchMove", [at]),
+    up: () => tab.lift(),
+  };
+}
+
 class Study {
   readonly server: WorldServer;
   readonly tab: Tab;
+  private pointer_: Pointer;
+  /** The first drag, which each pointer repeats. */
+  private first_: Parameters<Study["drag"]> | null = null;
 
   constructor(server: WorldServer, tab: Tab) {
     this.server = server;
     this.tab = tab;
+    this.pointer_ = mouseOf(tab);
   }
 
   get facts(): Facts {
@@ -86,9 +117,8 @@ class Study {
       store.pixelsBefore = pixels;
       if (before?.length !== pixels.length) return 1;
       let count = 0;
-      for (let at = 0; at < pixels.length; at += 4) {
-        if (Math.max(...[0, 1, 2].map((channel) => Math.abs(pixels[at + channel] - before[at + channel]))) > 12) count++;
-      }
+      const differs = (at: number) => Math.abs(pixels[at] - before[at]) > 12;
+      for (let at = 0; at < pixels.length; at += 4) if (differs(at) || differs(at + 1) || differs(at + 2)) count++;
       return count / (width * height);
     });
   }
@@ -112,11 +142,10 @@ class Study {
       const around = centers.slice(0, 1).flatMap(([x, y]) => [20, 40, 60, 80].flatMap((far) => [0, 1, 2, 3, 4, 5, 6, 7].map((way): Place => (
         [x + far * Math.cos((way * Math.PI) / 4), y + far * Math.sin((way * Math.PI) / 4)]))));
       for (const at of [...centers, ...around]) {
-        await page.mouse.move(...at);
-        await page.mouse.down();
+        await this.pointer_.down(at);
         const held = await page.evaluate(() => iota.held);
         if (held >= 0 && wanted(held)) return { body: held, at };
-        await page.mouse.up();
+        await this.pointer_.up();
       }
       await this.tab.pause(false);
       await this.tab.goOn(0.3);
@@ -124,29 +153,86 @@ class Study {
     throw new Error("nothing can be taken hold of");
   }
 
-  /** Drags a body by the mouse, and checks that it comes along in Python and in the picture. */
+  /** Drags a body, and checks that it comes along in Python and in the picture. */
   async drag(by: readonly [number, number], wanted?: (body: number) => boolean): Promise<number> {
     const { tab } = this;
+    this.first_ ??= [by, wanted];
     const { body, at } = await this.take(wanted);
     const from = await tab.position(body);
     await this.changed();
     await tab.pause(false);
     await this.knows("Python knows what is held", ({ held }) => held !== null);
-    await tab.page.mouse.move(at[0] + by[0], at[1] + by[1], { steps: 5 });
-    await tab.until("the body has come some way towards the hand", (was) => {
+    await this.pointer_.move([at[0] + by[0], at[1] + by[1]]);
+    await this.comesAlong(from);
+    expect(await this.changed(), "share of changed pixels").toBeGreaterThan(5e-4);
+    return body;
+  }
+
+  private async comesAlong(from: readonly [number, number, number]): Promise<void> {
+    await this.tab.until("the body has come some way towards the hand", (was) => {
       const [hold] = iota.holds();
       if (hold === undefined) return false;
       const [now, way] = [iota.bodyPosition(hold.body), hold.target.map((value, axis) => value - was[axis])];
       const moved = now.reduce((sum, value, axis) => sum + (value - was[axis]) * way[axis], 0);
       return moved > 0.1 * way.reduce((sum, value) => sum + value * value, 0);
     }, from, patience);
-    expect(await this.changed(), "share of changed pixels").toBeGreaterThan(5e-4);
-    return body;
   }
 
   async letGo(): Promise<void> {
-    await this.tab.page.mouse.up();
+    await this.pointer_.up();
     await this.knows("nothing is held", ({ held }) => held === null);
+  }
+
+  /** Repeats the first drag with a finger. */
+  async dragByFinger(): Promise<void> {
+    await this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
+    this.pointer_ = fingerOf(this.tab);
+    await this.drag(...this.first_!);
+    await this.letGo();
+  }
+
+  /** Repeats it in an emulated headset, by the ray of a controller or of a bare hand. */
+  async dragInHeadset(hands: boolean): Promise<void> {
+    const { tab } = this;
+    const me = new HeadsetTab(tab);
+    await me.enter();
+    if (hands) await me.useHands(true);
+    const close = (value: number) => (hands ? me.pinch("right", value) : me.button("right", "trigger", value));
+    const [[right, down], wanted = () => true] = this.first_!;
+    const rest = [0.2, 1.32, -0.38] as const;
+    const { body, at } = await this.pointAtOne(me, rest, wanted);
+    await close(1);
+    await tab.until("it is held", (id) => iota.held === id, body);
+    const from = await tab.position(body);
+    await tab.pause(false);
+    await this.knows("Python knows what is held", ({ held }) => held !== null);
+    // As far to the side, seen from the hand, as the mouse goes.
+    const share = 0.2 * Math.hypot(...at.map((value, axis) => value - rest[axis])) / Math.hypot(right, down);
+    await me.point("right", rest, [at[0] + share * right, at[1] - share * down, at[2]]);
+    await this.comesAlong(from);
+    await close(0);
+    await this.knows("nothing is held", ({ held }) => held === null);
+  }
+
+  /** Points at a body that can be taken in a paused world. Returns it, and where it is for the user. */
+  private async pointAtOne(me: HeadsetTab, rest: readonly [number, number, number], wanted: (body: number) => boolean): Promise<{ body: number; at: [number, number, number] }> {
+    const { tab } = this;
+    for (let trial = 0; trial < 20; trial++) {
+      await tab.freeze();
+      const places = await tab.page.evaluate(() => {
+        const { pickable, pickableCount } = iota.page.world.entities.body;
+        return [...pickable.subarray(0, pickableCount)].map((body) => ({ body, at: iotaXR!.toSpace(iota.bodyPosition(body)) }));
+      });
+      const ahead = places.filter(({ body, at: [x, y, z] }) => wanted(body) && z < -0.3 && Math.abs(x) < -0.6 * z && Math.abs(y - 1.5) < -0.6 * z);
+      for (const { at } of ahead.toSorted((a, b) => a.at[1] - b.at[1]).slice(0, 12)) {
+        await me.point("right", rest, at);
+        const body = await tab.page.evaluate(() => iotaXR!.inputs().find(({ name }) => name.startsWith("right"))!.hovered);
+        if (body >= 0 && wanted(body)) return { body, at };
+      }
+      await tab.pause(false);
+      await tab.goOn(0.3);
+    }
+    throw new Error("no ray meets anything that can be taken");
   }
 
   /** The first picture shows the study at a good size, and nothing that can be taken is cut by an edge or is under the panel of controls,
@@ -154,8 +240,9 @@ class Study {
   async isFramed(): Promise<void> {
     for (const window of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, small]) {
       await this.tab.page.setViewportSize(window);
-      await this.eye();
       await expect.poll(async () => {
+        // Without the camera's way to the view that it finds.
+        await this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
         const [all, bodies] = [await drawn(this.tab), await drawn(this.tab, ["body", "tie"])];
         return all.share > 0.004 && Math.max(all.wide, all.high) > 0.4 && !bodies.cut && (window === small || bodies.covered < 0.05) ? "framed" : { window, all, bodies };
       }, { message: "the first picture", timeout: patience }).toBe("framed");
@@ -342,22 +429,24 @@ afterAll(async () => {
 });
 
 describe("the study", () => {
-  it.each(Object.keys(studies))("%s moves, can be taken hold of, and obeys its keys and controls", async (name) => {
+  it.each(Object.keys(studies))("%s moves, can be taken by mouse, finger and ray, and obeys its keys and controls", async (name) => {
     const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: name });
     try {
-      const tab = await browser.open(server.url);
+      const tab = await browser.open(`${server.url}&emulate=quest3`);
       const study = new Study(server, tab);
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
       await study.isFramed();
       await studies[name](study);
+      await study.dragByFinger();
+      await study.dragInHeadset(Object.keys(studies).indexOf(name) % 2 === 1);
       expect(tab.complaints).toEqual([]);
       expect(server.output).not.toMatch(/Traceback|Error/);
     } finally {
       await server.stop();
     }
-  }, 180_000);
+  }, 300_000);
 
   it("that is listed is here", () => {
     expect(Object.keys(studies).toSorted()).toEqual(studyNames().toSorted());

@@ -71,7 +71,7 @@ export class Headset implements PageListener, FramePart {
   private readonly views_ = new Map<string, View>();
   private readonly headLocal_ = new Matrix4();
   private readonly eye_ = new Vector3();
-  private readonly goal_ = new Vector3();
+  private readonly scene_ = new Vector3();
   private readonly spot_ = new Spot();
 
   constructor(page: Page) {
@@ -196,9 +196,12 @@ export class Headset implements PageListener, FramePart {
     // Eyes that were not tracked anew have their scale.
     if (isNew) this.scaleEyes_();
     this.vignette.update(this.headLocal_, this.locomotion.gliding, seconds);
-    this.showWayHome_(seconds);
+    const { room, stage, size } = viewer;
+    const scene = room.worldToLocal(this.scene_.copy(stage.middle));
+    this.wayHome_.update(this.headLocal_, scene, size / room.scale.x, seconds);
     this.panel.update(this.wearer_(), this.headLocal_, seconds);
-    this.notices.update(this.headLocal_, seconds);
+    if (this.page_.gestures.grabs.length > 0) this.notices.remove(helpCard);
+    this.notices.update(this.headLocal_, scene, seconds);
     for (const board of this.boards) board.begin();
     for (const input of this.inputs) this.aim_(input);
     for (const board of this.boards) board.end(seconds);
@@ -368,11 +371,6 @@ export class Headset implements PageListener, FramePart {
   private headYaw_(): number {
     const { elements } = this.headLocal_;
     return this.page_.viewer.rig.rotation.y + Math.atan2(elements[8], elements[10]);
-  }
-
-  private showWayHome_(seconds: number): void {
-    const { room, stage, size } = this.page_.viewer;
-    this.wayHome_.update(this.headLocal_, room.worldToLocal(this.goal_.copy(stage.middle)), size / room.scale.x, seconds);
   }
 
   /** Who sits sees from the height of who stands; or back. */

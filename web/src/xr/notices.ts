@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's cards in the headset: a card in front of the user, above the work, which keeps its place and follows only
-// when the user has turned away from it.
+// The page's cards in the headset: a card in front of the user, above or below the work, which keeps its place and follows
+// only when the user has turned away from it.
 
 import { Vector3, type Matrix4, type Object3D } from "three";
 import { Board, font, roundedBox, wrapText, type Colors } from "./board.ts";
@@ -25,13 +25,35 @@ const density = width / 0.5;
 const shownSeconds = [6, 9, Infinity];
 const most = 3;
 const away = 0.95;
-/** The work is at the height of the eyes or below, see standing.ts: the card's lower edge is some 15 degrees above them. */
-const above = 0.34;
+/** Most work is below the eyes, see standing.ts: the card's lower edge is 15 degrees above them. Where the middle of the scene is above the
+ * eyes, as among fish, the card's upper edge is 15 degrees below them. */
+const apart = 0.265;
 /** To the right: the wrist panel is at the left. */
 const aside = 0.24;
 /** Cosine of the angle from which on it follows: 38 degrees. */
 const lostFromView = 0.79;
 const easeSeconds = 0.18;
+
+/** Middle of a card of a height, m, before a head; both in the room, as is the middle of the scene. */
+export function cardPlace(head: Matrix4, scene: Vector3, height: number, out: Vector3): Vector3 {
+  eyes.setFromMatrixPosition(head);
+  lookAhead(head);
+  out.copy(eyes).addScaledVector(ahead, away);
+  out.x -= aside * ahead.z;
+  out.z += aside * ahead.x;
+  out.y += (scene.y > eyes.y ? -1 : 1) * (apart + height / 2);
+  return out;
+}
+
+/** Sets `ahead` to where a head looks, level. */
+function lookAhead(head: Matrix4): void {
+  ahead.setFromMatrixColumn(head, 2).negate().setY(0);
+  if (ahead.lengthSq() < 1e-4) ahead.set(0, 0, -1);
+  ahead.normalize();
+}
+
+const eyes = new Vector3();
+const ahead = new Vector3();
 
 export class Notices {
   readonly board = new Board(density);
@@ -42,7 +64,6 @@ export class Notices {
   private readonly at_ = new Vector3();
   private readonly goal_ = new Vector3();
   private readonly head_ = new Vector3();
-  private readonly ahead_ = new Vector3();
   private readonly measure_: CanvasRenderingContext2D;
 
   constructor(rig: Object3D) {
@@ -66,9 +87,9 @@ export class Notices {
   }
 
   remove(key: string): void {
-    const before = this.cards_.length;
+    if (!this.cards_.some((card) => card.key === key)) return;
     this.cards_ = this.cards_.filter((card) => card.key !== key);
-    if (this.cards_.length !== before) this.arrange_();
+    this.arrange_();
   }
 
   clear(): void {
@@ -77,8 +98,8 @@ export class Notices {
     this.placed_ = false;
   }
 
-  /** `head`: viewer in the reference space. */
-  update(head: Matrix4, seconds: number): void {
+  /** `head`: viewer in the reference space; `scene`: middle of what is seen, in the same. */
+  update(head: Matrix4, scene: Vector3, seconds: number): void {
     let gone = false;
     for (const card of this.cards_) {
       card.left -= seconds;
@@ -92,21 +113,16 @@ export class Notices {
       this.placed_ = false;
       return;
     }
-    this.place_(head, seconds);
+    this.place_(head, scene, seconds);
   }
 
-  private place_(head: Matrix4, seconds: number): void {
+  private place_(head: Matrix4, scene: Vector3, seconds: number): void {
     this.head_.setFromMatrixPosition(head);
-    this.ahead_.setFromMatrixColumn(head, 2).negate().setY(0);
-    if (this.ahead_.lengthSq() < 1e-4) this.ahead_.set(0, 0, -1);
-    this.ahead_.normalize();
-    const apart = this.goal_.subVectors(this.at_, this.head_).setY(0).normalize().dot(this.ahead_);
-    if (!this.placed_ || apart < lostFromView) this.coming_ = true;
+    lookAhead(head);
+    const inView = this.goal_.subVectors(this.at_, this.head_).setY(0).normalize().dot(ahead);
+    if (!this.placed_ || inView < lostFromView) this.coming_ = true;
     if (this.coming_) {
-      this.goal_.copy(this.head_).addScaledVector(this.ahead_, away);
-      this.goal_.x -= aside * this.ahead_.z;
-      this.goal_.z += aside * this.ahead_.x;
-      this.goal_.y += above;
+      cardPlace(head, scene, this.board.height, this.goal_);
       if (this.placed_) this.at_.lerp(this.goal_, 1 - Math.exp(-seconds / easeSeconds));
       else this.at_.copy(this.goal_);
       this.placed_ = true;
