@@ -59,6 +59,7 @@ describe("iota run chain", () => {
     await page.goto(server.url.replace(/token=.*/, "token=wrong"));
     await page.waitForSelector(".card.error");
     expect(await page.textContent(".card.error")).toMatch(/token/);
+    expect(await page.locator("#welcome").isVisible(), "it would lie on the card").toBe(false);
     await page.close();
   });
 });
