@@ -22,6 +22,7 @@ describe("sparks", () => {
     view.takeSparks(columns([{ at: [1, 2, 3], radius: 0.5, color: 0xff8000 }, { at: [4, 5, 6], radius: 0, color: 0xffffff }]));
     const mesh = view.root.children[0] as InstancedMesh;
     expect(mesh.count).toBe(2);
+    expect(mesh.visible).toBe(true);
     const matrix = new Matrix4();
     mesh.getMatrixAt(0, matrix);
     expect(new Vector3().setFromMatrixPosition(matrix).toArray()).toEqual([1, 2, 3]);
