@@ -121,10 +121,10 @@ SUITES = [
     Suite("folders", [str(BIN / "python"), "tools/folder_graph.py"], 60),
     Suite("cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest),
     # Most tests keep one core busy; a few are long, so a worker that is done takes over tests of another.
-    Suite("python", pytest("tests/python", "-n=auto", "--maxprocesses=4", "--dist=worksteal"), 900, read_junit),
+    Suite("python", pytest("tests/python", "-n=auto", "--maxprocesses=4", "--dist=worksteal"), 1200, read_junit),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, ROOT / "web"),
     Suite("page", vitest(), 300, read_vitest, ROOT / "web"),
-    Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 1200, read_vitest, ROOT / "web"),
+    Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 2400, read_vitest, ROOT / "web"),
     Suite("packaging", pytest("tests/packaging"), 900, read_junit),
 ]
 
