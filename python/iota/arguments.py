@@ -76,20 +76,22 @@ def explain_assignment(kind: type, name: str) -> str | None:
 def refuse_unknown(thing: object, name: str) -> None:
     """Raises AttributeError for a public attribute that the class of a thing does not have, or that cannot be assigned."""
     kind = type(thing)
-    if (
-        name.startswith("_")
-        or not kind.__module__.startswith("iota.")
-        or any(name in vars(each).get("__annotations__", ()) for each in kind.__mro__)
-    ):
+    known: set[str] | None = kind.__dict__.get("_assigned")
+    if known is None:
+        kind._assigned = known = set()  # type: ignore[attr-defined]
+    if name in known:
         return
-    member = inspect.getattr_static(kind, name, None)
-    if member is None:
-        known = [n for n in dir(kind) if is_settable(kind, n)]
-        raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{suggestion(name, known)}")
-    if isinstance(member, property) and member.fset is None:
-        raise AttributeError(f"{kind.__name__}.{name} can be read but not assigned")
-    if isinstance(member, FunctionType):
-        raise AttributeError(f"{kind.__name__}.{name} is a method and cannot be assigned")
+    is_ours = kind.__module__.startswith("iota.") and name[0] != "_"
+    if is_ours and not any(name in vars(each).get("__annotations__", ()) for each in kind.__mro__):
+        member = inspect.getattr_static(kind, name, None)
+        if member is None:
+            settable = [n for n in dir(kind) if is_settable(kind, n)]
+            raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{suggestion(name, settable)}")
+        if isinstance(member, property) and member.fset is None:
+            raise AttributeError(f"{kind.__name__}.{name} can be read but not assigned")
+        if isinstance(member, FunctionType):
+            raise AttributeError(f"{kind.__name__}.{name} is a method and cannot be assigned")
+    known.add(name)
 
 
 class Signature:

@@ -65,8 +65,9 @@ class Thing:
 
     def __setattr__(self, name: str, value: Any) -> None:
         """A misspelled attribute would change nothing on the page."""
-        refuse_unknown(self, name)
-        super().__setattr__(name, value)
+        if name not in type(self).__dict__.get("_assigned", ()):  # as scripts assign thousands a frame
+            refuse_unknown(self, name)
+        object.__setattr__(self, name, value)
 
     visible = Field(lambda value: flag(value))
 
@@ -261,9 +262,12 @@ class Things:
 
 def number(least: float = -math.inf, most: float = math.inf) -> Callable[[Any], float]:
     def check(value: Any) -> float:
-        if not is_number(value):
+        try:
+            found = float(value)
+        except (TypeError, ValueError, OverflowError):
+            found = None
+        if found is None or isinstance(value, str | bytes):
             raise TypeError(f"must be a number, not {SHORT.repr(value)}")
-        found = float(value)
         if not (math.isfinite(found) and least <= found <= most):
             bounds = f" from {least:g} to {most:g}" if math.isfinite(least) or math.isfinite(most) else ""
             raise ValueError(f"must be a finite number{bounds}, not {value}")
@@ -295,12 +299,13 @@ def numbers(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 def vector(value: Any) -> Vec3:
     """World, m, or a direction."""
-    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+    try:
+        parts = tuple(value)
+        found = Vec3(*parts)
+    except TypeError:
+        parts = ()
+    if len(parts) not in (2, 3):
         raise TypeError(f"must be 2 or 3 numbers, not {SHORT.repr(value)}")
-    parts = tuple(value)
-    if len(parts) not in (2, 3) or not all(map(is_number, parts)):
-        raise TypeError(f"must be 2 or 3 numbers, not {SHORT.repr(value)}")
-    found = Vec3(*parts)
     if not all(math.isfinite(x) and abs(x) <= FARTHEST for x in (found.x, found.y, found.z)):
         raise ValueError(f"must be finite and within {FARTHEST:g} m, not {found}")
     return found
