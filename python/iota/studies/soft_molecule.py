@@ -24,7 +24,7 @@ def build() -> iota.World:
         if abs(p.position - q.position) > ROOM:
             system.bond(p, q, REPULSION, k=20, r0=ROOM)
     present(world)
-    world.draw_ties("spring", looks.capsule(0.022, "rubber", color="#c8842c"))
+    world.draw_ties("spring", looks.capsule(0.012, "rubber", color="#c8842c"))
 
     @world.action("nudge", key="n", help="nudges what you hold, or what you have selected")
     def nudge(event: iota.Event) -> None:
