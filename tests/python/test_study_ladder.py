@@ -179,7 +179,7 @@ def test_a_hand_turns_the_top_block_and_it_stays_as_it_is_left(monkeypatch: pyte
     block = watched.ladder.blocks[0]
     arm = abs(block.ends[1].position - ladder.TOP)
     grip = watched.system.grip(block.ends[0].body, (0, arm, 0), ladder.TOP + (0, arm, 0))
-    monkeypatch.setattr(watched.world, "held", lambda client=None: block.ends[0].body)
+    monkeypatch.setattr(iota.World, "held", lambda world, client=None: block.ends[0].body)
     for step in range(120):
         turn = 2.8 * step / 120
         grip.move(ladder.TOP + iota.Vec3(-math.sin(turn), math.cos(turn), 0) * (4 * arm))
