@@ -28,6 +28,12 @@ interface Facts {
 /** ms */
 const patience = 30_000;
 
+/** Places about a center, some shares of its distance away: the center of a ring is in its hole. */
+function around([x, y, z]: readonly [number, number, number]): [number, number, number][] {
+  return [0.05, 0.1, 0.16, 0.24].flatMap((share) => [0, 1, 2, 3, 4, 5, 6, 7].map((way): [number, number, number] => (
+    [x - z * share * Math.cos((way * Math.PI) / 4), y - z * share * Math.sin((way * Math.PI) / 4), z])));
+}
+
 /** What takes hold of bodies, at places of the window. */
 interface Pointer {
   down(at: Place): Promise<void>;
@@ -158,27 +164,32 @@ class Study {
 
   /** Drags a body, and checks that it comes along in Python and in the picture. */
   async drag(by: readonly [number, number], wanted?: (body: number) => boolean): Promise<number> {
-    const { tab } = this;
     this.first_ ??= [by, wanted];
     const { body, at } = await this.take(wanted);
-    const from = await tab.position(body);
     await this.changed();
-    await tab.pause(false);
-    await this.knows("Python knows what is held", ({ held }) => held !== null);
-    await this.pointer_.move([at[0] + by[0], at[1] + by[1]]);
-    await this.comesAlong(from);
+    await this.follows(() => this.pointer_.move([at[0] + by[0], at[1] + by[1]]));
     expect(await this.changed(), "share of changed pixels").toBeGreaterThan(5e-4);
     return body;
   }
 
-  private async comesAlong(from: readonly [number, number, number]): Promise<void> {
-    await this.tab.until("the body has come some way towards the hand", (was) => {
+  /** Lets the world go on, moves the hand that holds a body, and waits until that has come some way along. */
+  private async follows(move: () => Promise<void>): Promise<void> {
+    const { tab } = this;
+    await tab.pause(false);
+    await this.knows("Python knows what is held", ({ held }) => held !== null);
+    await tab.until("the page knows it too", () => iota.holds().length > 0);
+    const start = await tab.page.evaluate(() => {
+      const [{ body, target }] = iota.holds();
+      return { target: [...target], at: iota.bodyPosition(body) };
+    });
+    await move();
+    await tab.until("the body has come some way towards the hand", ({ target, at }) => {
       const [hold] = iota.holds();
       if (hold === undefined) return false;
-      const [now, way] = [iota.bodyPosition(hold.body), hold.target.map((value, axis) => value - was[axis])];
-      const moved = now.reduce((sum, value, axis) => sum + (value - was[axis]) * way[axis], 0);
+      const [now, way] = [iota.bodyPosition(hold.body), hold.target.map((value, axis) => value - target[axis])];
+      const moved = now.reduce((sum, value, axis) => sum + (value - at[axis]) * way[axis], 0);
       return moved > 0.1 * way.reduce((sum, value) => sum + value * value, 0);
-    }, from, patience);
+    }, start, patience);
   }
 
   async letGo(): Promise<void> {
@@ -209,13 +220,9 @@ class Study {
     const { body, at } = await this.pointAtOne(me, rest, wanted);
     await close(1);
     await tab.until("it is held", (id) => iota.held === id, body);
-    const from = await tab.position(body);
-    await tab.pause(false);
-    await this.knows("Python knows what is held", ({ held }) => held !== null);
-    // As far to the side, seen from the hand, as the mouse goes.
+    // Some way to the side, seen from the hand, in the direction of the mouse.
     const share = 0.2 * Math.hypot(...at.map((value, axis) => value - rest[axis])) / Math.hypot(right, down);
-    await me.point("right", rest, [at[0] + share * right, at[1] - share * down, at[2]]);
-    await this.comesAlong(from);
+    await this.follows(() => me.point("right", rest, [at[0] + share * right, at[1] - share * down, at[2]]));
     await close(0);
     await this.knows("nothing is held", ({ held }) => held === null);
   }
@@ -230,7 +237,8 @@ class Study {
         return [...pickable.subarray(0, pickableCount)].map((body) => ({ body, at: iotaXR!.toSpace(iota.bodyPosition(body)) }));
       });
       const ahead = places.filter(({ body, at: [x, y, z] }) => wanted(body) && z < -0.3 && Math.abs(x) < -z && Math.abs(y - 1.5) < -z);
-      for (const { at } of ahead.toSorted((a, b) => a.at[1] - b.at[1]).slice(0, 12)) {
+      const centers = ahead.map(({ at }) => at).toSorted((a, b) => a[1] - b[1]).slice(0, 12);
+      for (const at of [...centers, ...centers.slice(0, 1).flatMap(around)]) {
         await me.point("right", rest, at);
         const body = await tab.page.evaluate(() => iotaXR!.inputs().find(({ name }) => name.startsWith("right"))!.hovered);
         if (body >= 0 && wanted(body)) return { body, at };
