@@ -197,8 +197,15 @@ class Study {
     await this.knows("nothing is held", ({ held }) => held === null);
   }
 
+  /** Back to the start, paused: what keys and hands have torn off may lie out of reach. */
+  private async beginAnew(): Promise<void> {
+    await this.tab.pause(true);
+    await this.tab.backToStart();
+  }
+
   /** Repeats the first drag with a finger. */
   async dragByFinger(): Promise<void> {
+    await this.beginAnew();
     await this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
     this.pointer_ = fingerOf(this.tab);
     await this.drag(...this.first_!);
@@ -209,6 +216,7 @@ class Study {
   async dragInHeadset(hands: boolean): Promise<void> {
     const { tab } = this;
     const me = new HeadsetTab(tab);
+    await this.beginAnew();
     // A finger that rested a while has opened the menu of actions.
     await tab.page.keyboard.press("Escape");
     await tab.page.evaluate(() => iotaXR!.enter());
