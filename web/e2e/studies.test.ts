@@ -207,7 +207,7 @@ class Study {
   /** Repeats the first drag with a finger. */
   async dragByFinger(): Promise<void> {
     await this.beginAnew();
-    await this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
+    await this.jumpHome();
     this.pointer_ = fingerOf(this.tab);
     await this.drag(...this.first_!);
     await this.letGo();
@@ -265,11 +265,16 @@ class Study {
       await this.tab.page.setViewportSize(window);
       await expect.poll(async () => {
         // Without the camera's way to the view that it finds.
-        await this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
+        await this.jumpHome();
         const [all, bodies] = [await drawn(this.tab), await drawn(this.tab, ["body", "tie"])];
         return all.share > 0.004 && Math.max(all.wide, all.high) > 0.4 && !bodies.cut && (window === small || bodies.covered < 0.05) ? "framed" : { window, all, bodies };
       }, { message: "the first picture", timeout: patience }).toBe("framed");
     }
+  }
+
+  /** To the first view, at once. */
+  private jumpHome(): Promise<void> {
+    return this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
   }
 
   /** Place of the camera, m. */
