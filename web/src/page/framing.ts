@@ -100,8 +100,10 @@ export class Framing implements FramePart, PageListener {
     this.wait_ -= seconds;
     if (this.framed_ !== null && this.wait_ > 0 && !this.falling_) return;
     this.wait_ = lookEverySeconds;
+    // A first look at a part of the scene would be kept: light and ground do not shrink at once.
+    if (!this.world_.described || this.script_ === "") return;
     const bounds = this.look_();
-    if (bounds === null || this.script_ === "") return;
+    if (bounds === null) return;
     const before = this.framed_;
     const isOther = before === null || isAnother(bounds, before);
     if (isOther) {
@@ -242,7 +244,11 @@ export class Framing implements FramePart, PageListener {
     take(setting);
     setting.clear();
     this.addDrawn_(setting);
-    take(setting);
+    // One by one: a single thing far away leaves the others counted.
+    for (let at = 0; at < 3 * setting.count; at += 3) {
+      const [x, y, z] = setting.xyz.subarray(at, at + 3);
+      if (Math.hypot(x - moving.center[0], y - moving.center[1], z - moving.center[2]) < most) points.add(x, y, z);
+    }
     entities.staticShape.forEachCorners(setting, take);
     bounds = points.bounds()!;
     // The place of the shadow below.

@@ -72,6 +72,7 @@ export class World {
   private look_ = "";
   private lookChosen_ = false;
   private joined_ = false;
+  private described_ = false;
 
   constructor(listener: WorldListener) {
     this.listener_ = listener;
@@ -81,6 +82,11 @@ export class World {
       changed: () => listener.changed("look"),
     });
     this.store_ = new EntityStore(this.entities, warn);
+  }
+
+  /** The first complete description has come, with poses. Before it, entities can be there without the bodies among them. */
+  get described(): boolean {
+    return this.described_;
   }
 
   /** Height of the ground, m; null: none. */
@@ -147,6 +153,7 @@ export class World {
     if (this.joined_) {
       // The first frame of a connection follows the complete description; earlier poses may be of another time.
       this.joined_ = false;
+      this.described_ = true;
       this.store_.endPicture();
       this.poses.clear();
     }
