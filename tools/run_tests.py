@@ -7,6 +7,10 @@
 Counts come from each runner's machine-readable results in build/test-results. A suite that crashes, runs out of time or
 runs no test counts as one failure. The output of a suite is in build/logs/test-SUITE.log; the end of a failed one is
 shown. Exit code 0 only if nothing failed.
+
+A browser test that fails is repeated once with its file, in a fresh browser: it draws in software on a few busy cores,
+so that some of its time limits pass by chance. What passed only then is named in the closing lines, and a defect of
+that kind is to be found too. With more than a few failed files nothing is repeated.
 """
 
 from __future__ import annotations
@@ -19,7 +23,7 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -37,12 +41,15 @@ class Count:
     failed: int = 0
     skipped: int = 0
     failures: list[str] = field(default_factory=list)
+    #: Those that failed once and passed when they were repeated.
+    repeated: list[str] = field(default_factory=list)
 
     def add(self, other: Count) -> None:
         self.passed += other.passed
         self.failed += other.failed
         self.skipped += other.skipped
         self.failures += other.failures
+        self.repeated += other.repeated
 
     def fail(self, why: str) -> None:
         self.failed += 1
@@ -104,6 +111,8 @@ class Suite:
     limit_s: int
     read: Callable[[Path], Count] | None = None
     folder: Path = ROOT
+    #: At most so many files with failed tests are run once more, each `FILE: TITLE` in the failures of `read`.
+    repeats: int = 0
 
 
 def pytest(folder: str, *arguments: str) -> list[str]:
@@ -124,7 +133,7 @@ SUITES = [
     Suite("python", pytest("tests/python", "-n=auto", "--maxprocesses=4", "--dist=worksteal"), 1200, read_junit),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, ROOT / "web"),
     Suite("page", vitest(), 300, read_vitest, ROOT / "web"),
-    Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 2400, read_vitest, ROOT / "web"),
+    Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 2400, read_vitest, ROOT / "web", repeats=4),
     Suite("packaging", pytest("tests/packaging"), 900, read_junit),
 ]
 
@@ -168,6 +177,20 @@ def run(suite: Suite) -> Count:
     return count
 
 
+def run_with_repeats(suite: Suite) -> Count:
+    """Runs a suite, and its files with failed tests once more if they are few."""
+    count = run(suite)
+    files = sorted({failure.split(":")[0] for failure in count.failures})
+    if not 0 < len(files) <= suite.repeats:
+        return count
+    again = run(replace(suite, name=f"{suite.name}-again", command=[*suite.command, *files]))
+    repeated = [failure for failure in count.failures if failure not in again.failures]
+    if again.passed < len(repeated):
+        return count
+    ran = count.passed + count.failed
+    return Count(ran - again.failed, again.failed, count.skipped, again.failures, repeated)
+
+
 def end_group(leader: int) -> None:
     """Ends the remaining processes of a suite's group."""
     for how, wait_s in ((signal.SIGTERM, 1.0), (signal.SIGKILL, 0.0)):
@@ -179,7 +202,8 @@ def end_group(leader: int) -> None:
 
 
 def show_failure(suite: Suite, count: Count) -> None:
-    log = LOGS / f"test-{suite.name}.log"
+    again = LOGS / f"test-{suite.name}-again.log"
+    log = again if suite.repeats and again.is_file() else LOGS / f"test-{suite.name}.log"
     lines = log.read_text(errors="replace").splitlines()
     print(f"--- the end of {log.relative_to(ROOT)} ---", *lines[-SHOWN_LINES:], "---", sep="\n")
     for name in count.failures:
@@ -200,15 +224,19 @@ def main(names: list[str]) -> int:
     for suite in [known[name] for name in names] or SUITES:
         print(f"{suite.name:12} ", end="", flush=True)
         began = time.monotonic()
-        count = run(suite)
+        (LOGS / f"test-{suite.name}-again.log").unlink(missing_ok=True)
+        count = run_with_repeats(suite)
         skipped = f"{count.skipped:4} skipped" if count.skipped else " " * 12
         elapsed = time.monotonic() - began
         print(f"{count.passed:5} passed {count.failed:4} failed {skipped} {elapsed:8.1f} s", flush=True)
         if count.failed:
             show_failure(suite, count)
+        for name in count.repeated:
+            print(f"  failed once, passed when repeated: {suite.name}: {name}")
         total.add(count)
     skipped = f", {total.skipped} skipped" if total.skipped else ""
-    print(f"{total.passed} passed, {total.failed} failed{skipped}", flush=True)
+    repeated = f", {len(total.repeated)} only when repeated" if total.repeated else ""
+    print(f"{total.passed} passed{repeated}, {total.failed} failed{skipped}", flush=True)
     return 1 if total.failed else 0
 
 

@@ -107,6 +107,46 @@ def test_python_results_count_errors_as_failures(runner: ModuleType, tmp_path: P
     assert (count.passed, count.failed, count.skipped) == (1, 1, 1)
 
 
+def vitest(**states: str) -> dict[str, object]:
+    """Results of one test for each file."""
+    return {
+        "testResults": [
+            {"name": f"{name}.test.ts", "status": state, "assertionResults": [{"status": state, "fullName": "draws"}]}
+            for name, state in states.items()
+        ]
+    }
+
+
+def repeating(runner: ModuleType, first: object, again: object) -> object:
+    """A suite with these results, the second ones if files are named in its arguments."""
+    script = f"import sys\nif len(sys.argv) > 1: {writes(again)}\nelse: {writes(first)}"
+    return runner.Suite("made-up", [sys.executable, "-c", script], 60, runner.read_vitest, ROOT, repeats=2)
+
+
+def test_a_file_that_fails_once_is_repeated_and_named(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    made = repeating(runner, vitest(a="passed", b="failed"), vitest(b="passed"))
+    runner.SUITES = [made]
+    assert runner.main([]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-2] == "  failed once, passed when repeated: made-up: b.test.ts: draws"
+    assert lines[-1] == "2 passed, 1 only when repeated, 0 failed"
+
+
+def test_a_file_that_fails_twice_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    made = repeating(runner, vitest(a="passed", b="failed", c="failed"), vitest(b="failed", c="passed"))
+    assert closing_line(runner, made, capsys) == (1, "2 passed, 1 only when repeated, 1 failed")
+
+
+def test_many_failed_files_are_not_repeated(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    made = repeating(runner, vitest(a="failed", b="failed", c="failed"), vitest(a="passed", b="passed", c="passed"))
+    assert closing_line(runner, made, capsys) == (1, "0 passed, 3 failed")
+
+
+def test_a_repetition_that_runs_nothing_changes_nothing(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    made = repeating(runner, vitest(a="passed", b="failed"), vitest())
+    assert closing_line(runner, made, capsys) == (1, "1 passed, 1 failed")
+
+
 def test_an_unknown_suite_is_named(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     assert runner.main(["no-such-suite"]) == 2
     assert "no-such-suite" in capsys.readouterr().err
