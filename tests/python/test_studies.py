@@ -4,10 +4,14 @@
 from __future__ import annotations
 
 import os
+import re
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import iota
 from iota import studies
 
 SECONDS = float(os.environ.get("IOTA_STUDY_SECONDS", "5"))  # tools/soak.py asks for ten minutes
@@ -38,3 +42,26 @@ def test_something_moves_within_two_seconds(name: str) -> None:
         world.step()
         farthest = max(abs(particle.position - place) for particle, place in begin.items() if particle.alive)
     assert farthest >= 0.02 * size, f"{farthest / size:.3f} of its size"
+
+
+@pytest.mark.parametrize("name", studies.names())
+def test_its_title_says_how_large_it_is(name: str) -> None:
+    assert re.search(r": .*\b\d+(\.\d+)? (nm|mm|cm|m)\b", studies.module(name).build().title)
+
+
+@pytest.mark.parametrize("name", sorted(set(studies.names()) - {"bucky"}))  # whose nail is the middle of the ball
+def test_what_is_nailed_is_at_something_that_is_seen(name: str) -> None:
+    world = studies.module(name).build()
+    held = [p for p in world.system.particles if p.is_nailed]
+    held += [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
+    for thing in held:
+        near = world.overlap(iota.Sphere(0.03), thing.position)
+        assert any(not isinstance(each, iota.Body) for each in near), thing
+
+
+def test_the_scripts_of_the_thesis_are_less_than_half_as_long_and_their_table_is_up_to_date() -> None:
+    tables = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "study_tables.py"))
+    lines = tables["line_table"]()
+    assert lines in tables["PAGE"].read_text(), "run tools/study_tables.py"
+    ours, theirs = re.search(r"those of the thesis.*?(\d+)\D+(\d+)\*\* \|", lines).groups()  # type: ignore[union-attr]
+    assert int(ours) < int(theirs) / 2

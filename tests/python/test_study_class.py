@@ -15,6 +15,7 @@ from iota import studies
 from iota.studies import appendix_e1, appendix_e2, appendix_e3, fireworks, physics_class
 from iota.studies._story import Story
 from iota.world.actions import PAGE_KEYS
+from iota.world.widgets import Plot
 
 
 def run(world: iota.World, seconds: float) -> None:
@@ -82,6 +83,26 @@ def test_the_class_measures_what_the_formulas_say() -> None:
     before = system.energy.total
     run(world, 5.0)
     assert system.energy.total == pytest.approx(before, abs=1e-6)
+
+
+def test_the_plots_of_the_class_show_what_moves() -> None:
+    world = physics_class.build()
+    run(world, 2.0)
+    system = world.system
+    newest = {}
+    for plot in world.things:
+        if isinstance(plot, Plot):
+            plot.sample(system.time, world._guard)  # as before each picture
+            newest[plot.label] = plot._record()["values"][-1]  # type: ignore[index]
+    bob, planet, weight = (p.position for p in system.particles if not p.is_nailed)
+    arm = bob - physics_class.PIVOT
+    for label, value in {
+        "energy": system.energy.total,
+        "pendulum": math.degrees(math.atan2(arm.x, -arm.y)),
+        "orbit": abs(planet - physics_class.SUN),
+        "spring": physics_class.BEAM.y - weight.y,
+    }.items():
+        assert newest[label] == pytest.approx(value, rel=1e-9), label
 
 
 def test_the_sliders_of_the_class_do_what_they_say() -> None:

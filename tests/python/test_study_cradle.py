@@ -10,6 +10,7 @@ from page_client import PageClient
 
 import iota
 from iota.studies import cradle
+from iota.world.frames import turned
 
 
 def build(left: int, right: int, balls: int = 5) -> tuple[iota.World, cradle.Cradle]:
@@ -66,6 +67,12 @@ def test_balls_touch_at_rest_and_hang_from_the_bars() -> None:
         assert abs(q.center_of_mass - p.center_of_mass) == pytest.approx(2 * cradle.RADIUS, abs=1e-12)
     joints = [joint for joint in world.system.constraints if joint.a in made.balls]
     assert [joint.position.y for joint in joints] == pytest.approx([cradle.HEIGHT] * 5)
+    (drawn,) = world.look_of(made.balls[0]).values()  # type: ignore[union-attr]
+    _, *strings = drawn
+    for string, side in zip(strings, (-1, 1), strict=True):
+        half = turned(string.rotation, iota.Vec3(string.shape.length / 2, 0, 0))
+        ends = sorted((tuple(iota.Vec3(*string.offset) + half * way) for way in (-1, 1)), key=lambda end: end[1])
+        assert ends == [pytest.approx((0, 0, 0)), pytest.approx((0, cradle.STRING, side * cradle.SPREAD))]
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,8 @@ import time
 
 import numpy as np
 import pytest
+from conftest import Runner
+from page_client import PageClient
 
 import iota
 from iota.studies import _laboratory, cradle, lab, ladder
@@ -72,6 +74,27 @@ def test_the_ladder_goes_on_by_itself_only_while_nobody_plays_with_the_cradle() 
     assert axle.angle.value == pytest.approx(math.pi, abs=0.02)
     run(9.5 + ladder.PATIENCE)
     assert axle.angle.value == pytest.approx(0, abs=0.02)
+
+
+def test_a_hand_on_a_page_drags_a_ball_and_turns_the_cradle_on_its_desk(run_world: Runner) -> None:
+    world = lab.build()
+    balls = [body for body in world.system.bodies if isinstance(getattr(body.solids[0], "shape", None), iota.Sphere)]
+    (frame,) = (body for body in world.system.bodies if body.kind == "static" and body not in balls)
+    start, out = balls[-1].center_of_mass, list[float]()
+    world.on_step(lambda: out.append(balls[-1].center_of_mass.x - start.x))
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(balls[-1].slot), local_point=(0, 0, 0), target=tuple(start))
+        page.send("grab_move", hold=1, target=tuple(start + (0.06, 0.02, 0)))
+        page.wait_for(lambda: len(out) > 240 and min(out[-240:]) > 0.05)  # a second, in which it would swing back
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: out[-1] < 0.01)
+        at = world.call(lambda: tuple(frame.position))
+        page.send(
+            "grab_start", hold=2, body=page.body(frame.slot), local_point=(0, 0, 0), target=(at[0] + 0.1, *at[1:])
+        )
+        page.send("grab_move", hold=2, target=(at[0] + 0.1, at[1], at[2] - 0.1))
+        page.wait_for(lambda: world.call(lambda: abs(abs(frame.orientation[1]) - math.sin(math.pi / 8)) < 1e-3))
+        page.send("grab_end", hold=2)
 
 
 def test_together_they_cost_little_more_than_alone() -> None:

@@ -233,3 +233,12 @@ def test_ribbons_lie_on_their_blocks_whatever_is_locked() -> None:
             for strip in (strip for face in block.strips for kind in face.values() for strip in kind):
                 along = turned(block.ends[0].body.orientation, turned(strip.rotation, iota.Vec3(0, 1, 0)))
                 assert abs(along.dot(way)) > 1 - 1e-6
+        # Thesis, Fig. 5.7: between two neighbors there are two outer ribbons and an inner one, on the faces that their hinge is at.
+        for pair in watched.ladder.pairs:
+            shown = [
+                (kind, end)
+                for end, block in enumerate((pair.upper, pair.lower))
+                for kind, strips in block.strips[pair.hinge >> 1].items()
+                if all(strip.visible for strip in strips)
+            ]
+            assert ("outer", 1 - (pair.hinge & 1)) in shown and ("inner", pair.hinge & 1) in shown

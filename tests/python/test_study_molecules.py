@@ -104,11 +104,13 @@ def test_it_begins_anew_four_seconds_after_the_second_bond_broke() -> None:
 
 
 def test_the_soft_molecule_settles_longer_than_the_rigid_one() -> None:
-    lengths = []
+    lengths, starts = [], []
     for study in (molecule, soft_molecule):
         system = study.build().system  # type: ignore[attr-defined]
+        starts.append(system.positions)
         settle(system)
         lengths.append(molecule.NAIL.y - min(particle.position.y for particle in system.particles))
+    assert starts[1] == pytest.approx(starts[0], abs=1e-9), "it is the same molecule"
     assert lengths[1] > 1.1 * lengths[0]
     # No part of it lies in another one: atoms without a bond between them keep more than a bond's length apart.
     bonded = {frozenset(bond.ends) for bond in system.bonds if bond.law.name == "spring"}

@@ -60,7 +60,7 @@ class Rocket:
 def build() -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust")
-    world = iota.World(system, title="fireworks")
+    world = iota.World(system, title="fireworks: a tube is 0.9 m high")
     world.stage(sky="#03050a", horizon="#141c2c", ground="#34363a", light=0.45)  # a night
     places = np.linspace(-1.5, 1.5, len(COLORS))
     rockets = [Rocket(world, float(x), color, n) for n, (x, color) in enumerate(zip(places, COLORS, strict=True), 1)]
