@@ -83,6 +83,14 @@ def test_a_soft_block_has_the_edges_of_its_tetrahedra() -> None:
     assert made.points.mass.sum() == pytest.approx(300 * 0.4 * 0.3 * 0.3)
 
 
+@pytest.mark.parametrize("name", sorted({*MAKERS, "chain"} - {"net", "cloth", "leaf", "soft_block"}))  # of points alone
+def test_a_look_is_asked_for_each_body(name: str) -> None:
+    asked: list[tuple[str, int]] = []
+    made: Structure = getattr(builder, name)(look=lambda *what: asked.append(what) or looks.solid("brass"))  # type: ignore[func-returns-value]
+    assert len(asked) == len(set(asked)) == len(made.bodies) > 0
+    assert {made.looks[body.look] for body in made.bodies if body.look} == {looks.solid("brass")}
+
+
 def test_looks_are_overridden_one_by_one() -> None:
     asked = []
 

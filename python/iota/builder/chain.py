@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from iota._core import Vec3
+from iota.builder.dressing import Dress, dress
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
 from iota.builder.structure import Structure
@@ -22,12 +23,13 @@ def chain(
     mass: float = 1.2,
     rods: bool = False,
     nailed: bool = True,
+    look: Dress | None = None,
 ) -> Structure:
     """A straight chain: its bodies are the links from the top; each has two points, the upper one first.
 
     links: at least 1. length: of the whole chain, m. mass: of the whole chain, kg. top: of the first link, m.
     direction: from top to end. rods: links are solid cylinders of `radius` m instead of two point masses. nailed: the
-    top is nailed. Raises ValueError.
+    top is nailed. look: of each "link". Raises ValueError.
 
         links = iota.builder.chain(links=24, length=2.4).realize(system).bodies
     """
@@ -55,4 +57,8 @@ def chain(
     structure.hinges = [(p, p + 1) for p in range(1, 2 * links - 1, 2)]
     if nailed:
         structure.nail(0)
+    if look is not None:
+        for body in structure.bodies:
+            body.look = "link"
+        dress(structure, {"link": None}, look)
     return structure

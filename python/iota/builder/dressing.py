@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -50,11 +50,11 @@ def place(name: str, vector: Vector) -> NDArray[np.float64]:
     return found
 
 
-def dress(structure: Structure, usual: dict[str, Drawn], look: Dress | None) -> Structure:
-    """Gives each body whose `look` is a name in `usual` that look, or the one of the callback. Returns the
-    structure."""
+def dress(structure: Structure, usual: Mapping[str, Drawn | None], look: Dress | None) -> Structure:
+    """Gives each body whose `look` is a name in `usual` that look, or the one of the callback; None: that of
+    the page. Returns the structure."""
     count = dict.fromkeys(usual, 0)
-    structure.looks |= usual
+    structure.looks |= {what: drawn for what, drawn in usual.items() if drawn is not None}
     for body in structure.bodies:
         what = body.look
         if what not in usual:
@@ -65,4 +65,6 @@ def dress(structure: Structure, usual: dict[str, Drawn], look: Dress | None) -> 
         if own is not None:
             body.look = f"{what} {number}"
             structure.looks[body.look] = own
+        elif usual[what] is None:
+            body.look = ""
     return structure
