@@ -35,7 +35,11 @@ def test_a_file_is_read_by_another_process_which_stays_for_the_next_one() -> Non
     ("text", "said"),
     [
         ("__import__('os').abort()", "its reader ended (SIGABRT)"),
-        ("__import__('os')._exit(3)", "its reader ended (exit code 3)"),
+        ("__import__('os')._exit(3)", "its reader ended (exit code 3): the file is damaged"),
+        (
+            "(o := __import__('os')).kill(o.getpid(), 15) or __import__('time').sleep(9)",
+            "(SIGTERM): it was stopped from outside; try again",
+        ),
         (
             "[(o := __import__('os')).closerange(3, 20), __import__('time').sleep(0.3), o.abort()]",
             "its reader ended (SIGABRT)",
@@ -43,7 +47,7 @@ def test_a_file_is_read_by_another_process_which_stays_for_the_next_one() -> Non
         ("bytearray(1 << 40)", "takes more than 4 GiB of memory"),
         ("__import__('time').sleep(60)", "cannot be read within 1 s"),
     ],
-    ids=["crash", "exit", "crash after its output", "memory", "time"],
+    ids=["crash", "exit", "stopped", "crash after its output", "memory", "time"],
 )
 def test_what_ends_the_reader_is_one_error_and_the_next_file_is_read(
     text: str, said: str, monkeypatch: pytest.MonkeyPatch

@@ -3,20 +3,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
 import struct
+import sys
 from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import iota
 from iota import shapelib
-from iota.shapelib import cif
+from iota.shapelib import cif, files
 from iota.shapelib.convex import dual
 from iota.shapelib.johnson import johnson
 from iota.shapelib.molecule_files import read_molecule
@@ -311,6 +314,22 @@ def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(
         fails(write("atoms.cif", atoms), "line 104", "more than 100 rows", load=read_molecule)
     other = write("big.cif", "data_x\nloop_\n_other.a\n" + "1\n" * 101)
     fails(other, "line 104", "more than 100 rows", load=read_molecule)
+
+
+def test_a_terminal_shows_how_far_the_reading_of_a_large_file_is(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = "".join(f"C {4 * i} 0 0\n" for i in range(4000))
+    terminal = io.StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    for seconds, shown in ((1.0, ["25 %", "50 %", "75 %"]), (0.1, [])):  # from one look at the clock to the next
+        looks = iter(seconds * look for look in range(9999))
+        monkeypatch.setattr(files, "time", SimpleNamespace(monotonic=looks.__next__))
+        terminal.seek(0)
+        terminal.truncate()
+        assert len(read_molecule(write("long.xyz", f"4000\n\n{rows}")).elements) == 4000
+        *lines, last = terminal.getvalue().split("\r")
+        assert lines[1:] == [f"reading atoms: {share}" for share in shown]
+        assert last == ("\x1b[K" if shown else ""), "the line is gone"
 
 
 def test_bonds_that_a_molfile_cannot_have_are_refused_with_their_line(write: Write) -> None:

@@ -29,6 +29,8 @@ MOST_MEMORY = 4 << 30  # bytes
 MOST_SECONDS = 180.0  # for one file
 ENDING_SECONDS = 5.0  # from its closed output to its end
 TRY = "the file is damaged, or made to do harm"
+# By a user, or by the system at its end: the file may be good.
+STOPPED = {"SIGTERM", "SIGINT", "SIGHUP", "SIGQUIT"}
 
 
 def apart(
@@ -71,7 +73,8 @@ class _Reader:
             except (EOFError, BrokenPipeError):
                 reason = _reason(process)
                 self.end()
-                raise FileError(source, f"its reader ended ({reason}): {TRY}") from None
+                why = "it was stopped from outside; try again" if reason in STOPPED else TRY
+                raise FileError(source, f"its reader ended ({reason}): {why}") from None
             except BaseException:  # Ctrl-C: its answer would be taken for that of the next file
                 self.end()
                 raise
