@@ -197,7 +197,7 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     done = run("run", "chain", "--no-open", "--port", "0", "--seconds", "1", "--json")
     assert done.returncode == 0 and all("slow motion" in line for line in done.stderr.splitlines())
     lines = done.stdout.splitlines()
-    assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
+    assert re.fullmatch(r"chain: 1.8 m long: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
     assert [line.split()[0] for line in lines[1:4]] == ["b", "c", "t"]
     assert 1 <= json.loads(lines[4])["steps"] <= 125 and len(lines) == 5
 
@@ -419,7 +419,7 @@ def test_it_ends_cleanly_when_told_to(number: signal.Signals) -> None:
     command = [sys.executable, "-m", "iota", "run", "chain", "--no-open", "--port", "0"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)
     assert process.stdout is not None and process.stderr is not None
-    with PageClient(process.stdout.readline().removeprefix("chain: ").strip()) as page:
+    with PageClient(process.stdout.readline().rpartition(" ")[2].strip()) as page:
         step = page.last["poses"]["step"]
         page.wait_for(lambda: page.last["poses"]["step"] > step)
     process.send_signal(number)
