@@ -9,7 +9,6 @@ from itertools import pairwise
 import iota
 from iota import looks
 from iota.studies._story import Story
-from iota.world.frames import relative_turn
 from iota.world.shown import Marker
 
 LENGTH, THICKNESS, WIDTH = 0.06, 0.01, 0.04  # of a block, m
@@ -81,13 +80,6 @@ class Block:
         """From end 0 to end 1, m."""
         return self.ends[1].position - self.ends[0].position
 
-    def lay_ribbons(self) -> None:
-        """Turns them with the block: the frame of a body is another after it was combined or separated."""
-        half = math.atan2(self.way.y, self.way.x) / 2 - math.pi / 4
-        turn = relative_turn(self.ends[0].body.orientation, (0, 0, math.sin(half), math.cos(half)))
-        for strip in (strip for face in self.strips for kind in face.values() for strip in kind):
-            strip.rotation = turn
-
 
 class Pair:
     """Two neighbors, hinged at corners of one number: 0 or 1, or, in every other pair, 2 or 3. They open from straight (0) over
@@ -118,7 +110,8 @@ class Pair:
         self.move_ribbons()
 
     def lock(self) -> None:
-        """Thesis, Algorithm 6: hinged points combined once more make one body. They are made straight first."""
+        """Thesis, Algorithm 6: hinged points combined once more make one body. They are made straight first, so
+        that the ribbons of both lie along the body's frame."""
         p, q = self.upper.beyond[self.hinge & 1], self.lower.middle
         p.combine(q)
         p.separate(q)
@@ -183,7 +176,6 @@ class Ladder:
         """After a reset, when the system is what it was."""
         for block, (body, corners) in zip(self.blocks, self.begun, strict=True):
             block.body, block.corners = body, list(corners)
-            block.lay_ribbons()
         for number, pair in enumerate(self.pairs):
             pair.hinge, pair.locked = 3 * (number % 2), False
             pair.move_ribbons()
@@ -209,13 +201,10 @@ class Ladder:
             if pair.locked:
                 if pair.parts(self.blocks[number + 1 :]):
                     self.unlock(pair)
-            elif pair.angle < -math.pi / 2:
+            elif (angle := pair.angle) < -math.pi / 2:
                 pair.flip()
-            elif pair.angle < 0:
+            elif angle < 0:
                 pair.lock()
-                for block in self.blocks:
-                    if block.ends[0].body == pair.upper.ends[0].body:
-                        block.lay_ribbons()
 
     def unlock(self, pair: Pair) -> None:
         """Thesis, Algorithm 7: every block of their body is its own again, and the other pairs of it are locked anew."""
@@ -236,9 +225,6 @@ class Ladder:
         for each in locked:
             if each.locked:
                 each.make_rigid()
-        for each in locked:
-            each.upper.lay_ribbons()
-            each.lower.lay_ribbons()
 
 
 def present(world: iota.World) -> None:
