@@ -32,6 +32,16 @@ def test_the_ball_breathes_with_the_period_of_its_springs_and_never_collapses() 
     assert min(radii) > 0.7 * bucky.RADIUS
 
 
+def test_who_has_looked_from_within_the_ball_comes_out_again() -> None:
+    world = bucky.build()
+    outside = world.camera
+    look = world._state.actions["within"].hook.function
+    look()
+    assert world.camera is not None and abs(world.camera.position - bucky.CENTER) < 0.5 * bucky.RADIUS
+    look()
+    assert world.camera == outside
+
+
 def period_about_nail(system: iota.System, body: iota.Body) -> float:
     """Of a small swing about z, from mass and inertia."""
     arm = abs(body.center_of_mass - molecule.NAIL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sixty carbon atoms in a cage of springs breathe in and out; b gives a breath, v looks from within. 1 m is 0.71 nm."""
+"""Sixty carbon atoms in a cage of springs breathe in and out; b gives a breath, v looks from within, and back. 1 m is 0.71 nm."""
 
 from __future__ import annotations
 
@@ -39,9 +39,12 @@ def build() -> iota.World:
     def breath() -> None:
         breathe(system, 0.15)
 
-    @world.action("within", key="v", help="looks from within", on="world")
+    outside = world.camera
+    inside = iota.Camera(position=tuple(CENTER + (0, 0, 0.15)), target=tuple(CENTER + (1, 0.3, -1)))
+
+    @world.action("within", key="v", help="looks from within, and from outside again", on="world")
     def within() -> None:
-        world.camera = iota.Camera(position=tuple(CENTER + (0, 0, 0.15)), target=tuple(CENTER + (1, 0.3, -1)))
+        world.camera = outside if world.camera == inside else inside
 
     return world
 
