@@ -29,6 +29,12 @@ export function briefly(value: number): string {
   return String(Number(value.toPrecision(3)));
 }
 
+/** Where the line of zero begins, css px: beside a number (its lower edge and width) that it would strike through. */
+export function startOfZero(y: number, numbers: readonly { readonly at: number; readonly width: number }[]): number {
+  const struck = numbers.filter(({ at }) => y > at - 10 && y < at + 2).map(({ width }) => width + 4);
+  return edge + Math.max(0, ...struck);
+}
+
 export function drawPlot(canvas: HTMLCanvasElement, legend: HTMLElement, plot: PlotEntity): void {
   const density = Math.min(devicePixelRatio, 2);
   canvas.width = size.width * density;
@@ -56,9 +62,12 @@ function drawCurves(context: CanvasRenderingContext2D, { times, values, curves, 
   context.strokeStyle = context.fillStyle = ink;
   context.globalAlpha = 0.25;
   context.lineWidth = 1;
+  context.font = "10px system-ui, sans-serif";
+  const scale = [{ text: briefly(high), at: edge + 8 }, { text: briefly(low), at: size.height - edge }];
   if (low < 0 && high > 0) {
+    const numbers = scale.map(({ text, at }) => ({ at, width: context.measureText(text).width }));
     context.beginPath();
-    context.moveTo(edge, y(0));
+    context.moveTo(startOfZero(y(0), numbers), y(0));
     context.lineTo(size.width - edge, y(0));
     context.stroke();
   }
@@ -76,9 +85,7 @@ function drawCurves(context: CanvasRenderingContext2D, { times, values, curves, 
     context.stroke();
   });
   context.globalAlpha = 0.75;
-  context.font = "10px system-ui, sans-serif";
-  context.fillText(briefly(high), edge, edge + 8);
-  context.fillText(briefly(low), edge, size.height - edge);
+  for (const { text, at } of scale) context.fillText(text, edge, at);
   context.globalAlpha = 1;
 }
 
