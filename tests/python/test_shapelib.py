@@ -576,6 +576,12 @@ def test_a_truncated_ply_file_of_text_is_refused_with_its_first_short_row(write:
     fails(write("c.ply", short), f"line {first + 4}: face 1 (of 4) has 3 of 4 values")
 
 
+def test_a_ply_file_with_a_damaged_header_is_refused_with_its_line(write: Write) -> None:
+    fails(write("a.ply", PLY.replace("vertex 4\nproperty", "vertex 4property")), "line 3", "a name and a number")
+    fails(write("b.ply", PLY.replace("float z\nelement", "float z\nproperty\nelement")), "line 7", "a type and a name")
+    fails(write("c.ply", PLY.replace("3 1 2 3", "\xb2 1 2").encode("latin-1")), "c.ply")
+
+
 def test_polygons_stay_polygons_and_pieces_become_bodies(write: Write) -> None:
     cube = shapelib.polyhedron(write("cube.off", CUBE_OFF))
     assert (cube.counts["faces"], cube.counts["triangles"], cube.counts["edges"]) == (6, 12, 12)

@@ -246,7 +246,11 @@ def _read_ply(path: PathLike) -> Surface:
     counts: dict[str, int] = {}
     for at, line in enumerate(lines, 1):
         words = line.split()
-        if words[:1] == ["element"] and len(words) == 3:
+        if words[:1] == ["property"] and len(words) < 3:
+            raise FileError(path, "a property has a type and a name", at)
+        if words[:1] == ["element"]:
+            if len(words) != 3:
+                raise FileError(path, "an element has a name and a number", at)
             counts[words[1]] = whole(words[2], path, at, f"the number of {words[1]}")
             _check_count(counts[words[1]], words[1], path, at)
     if not counts.get("face"):
@@ -281,7 +285,7 @@ def _check_rows(data: bytes, head: list[str], path: PathLike) -> None:
             words = rows[at].split() if at < len(rows) else []
             needed = 0
             for kind_of in properties:
-                has_length = kind_of == "list" and needed < len(words) and words[needed].isdigit()
+                has_length = kind_of == "list" and needed < len(words) and words[needed].isdecimal()
                 needed += 1 + int(words[needed]) if has_length else 1
             at += 1
             if len(words) < needed:
