@@ -34,7 +34,7 @@ def test_a_page_learns_what_there_is_and_sees_it_move(world: iota.World, run_wor
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: {"world_settings", "world_state", "actions"} <= page.last.keys())
         assert page.last["world_state"]["dt"] == 1 / 120
-        assert page.last["world_settings"]["title"] == "chain: 1.8 m long"
+        assert page.last["world_settings"]["title"] == "chain"
         assert page.last["world_settings"]["looks"] == ["rope", "chain"]
         page.wait_for(lambda: len(page.entities["body"]) == 24)
         assert len({body["style"] for body in page.entities["body"].values()}) == 1
