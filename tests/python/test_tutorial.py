@@ -62,6 +62,8 @@ def test_a_tutorial_runs_and_has_its_picture(page: Path, tmp_path: Path, monkeyp
         for number, block in enumerate(blocks(page), start=1):
             exec(compile(block, f"docs/tutorials/{page.name}, block {number}", "exec"), names)
     assert options.summary is not None and options.summary.steps > 0, "it ends in a world that runs"
+    keys = {action.key for action in names["world"]._state.actions}  # type: ignore[attr-defined]
+    assert keys.isdisjoint(PAGE_KEYS), "the page's own keys stay as they are"
     (picture,) = re.findall(r"!\[.+\]\((.+)\)", page.read_text())
     assert (page.parent / picture).is_file()
 
