@@ -173,15 +173,20 @@ export class Tab {
   }
 
   async pause(paused: boolean): Promise<void> {
-    // The key toggles, and two tabs share the world: press again if the other tab's key came in between.
+    // The key toggles, and two tabs share the world: press again if the other tab's key came in between. At load a headset's two pictures
+    // may take seconds: the last trial waits as long as any.
+    let why: unknown;
     for (let trial = 0; trial < 3; trial++) {
       if ((await this.page.evaluate(() => iota.paused)) === paused) return;
       await this.page.bringToFront();
       await this.page.keyboard.press(" ");
-      const done = this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, 15_000);
-      if (await done.then(() => true, () => false)) return;
+      try {
+        return await this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, trial < 2 ? 15_000 : undefined);
+      } catch (error) {
+        why = error;
+      }
     }
-    throw new Error(`the world will not ${paused ? "pause" : "run"}`);
+    throw new Error(`the world will not ${paused ? "pause" : "run"}: ${String(why)}`, { cause: why });
   }
 
   /** Pauses the world and waits until the drawn poses have come to rest too, so that bodies are at their drawn places.

@@ -146,8 +146,10 @@ class Study {
       });
       const centers = seen.filter(({ body }) => wanted(body)).toSorted((a, b) => b.at[1] - a.at[1]).slice(0, 20).map(({ at }) => at);
       // The center of a ring is in its hole.
-      const around = centers.slice(0, 1).flatMap(([x, y]) => [20, 40, 60, 80].flatMap((far) => [0, 1, 2, 3, 4, 5, 6, 7].map((way): Place => (
+      const near = centers.slice(0, 1).flatMap(([x, y]) => [20, 40, 60, 80].flatMap((far) => [0, 1, 2, 3, 4, 5, 6, 7].map((way): Place => (
         [x + far * Math.cos((way * Math.PI) / 4), y + far * Math.sin((way * Math.PI) / 4)]))));
+      // Not on a control of the page: it would act, and keep the keys.
+      const around = await page.evaluate((places) => places.filter((at) => document.elementFromPoint(...at)?.id === "view"), near);
       for (const at of [...centers, ...around]) {
         await this.pointer_.down(at);
         const held = await page.evaluate(() => iota.held);
@@ -312,6 +314,9 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.key("v");
     await study.tab.until("the camera is within the ball", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) < 0.3, undefined, patience);
     expect(distance(before, await study.eye())).toBeGreaterThan(1);
+    // A headset would begin within the ball too, where nothing is far enough ahead to be pointed at.
+    await study.key("v");
+    await study.tab.until("the camera is outside again", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) > 1, undefined, patience);
   },
   chain: async (study) => {
     await study.drag([some, -some]);
@@ -457,8 +462,7 @@ afterAll(async () => {
 });
 
 describe("the study", () => {
-  // A second time where the first failed: of some hundred drags in the emulated headset one finds nothing that its ray meets, and why is not known.
-  it.each(Object.keys(studies))("%s moves, can be taken by mouse, finger and ray, and obeys its keys and controls", { timeout: 300_000, retry: 1 }, async (name) => {
+  it.each(Object.keys(studies))("%s moves, can be taken by mouse, finger and ray, and obeys its keys and controls", { timeout: 300_000 }, async (name) => {
     const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: name });
     let tab: Tab | null = null;
     try {
@@ -467,6 +471,7 @@ describe("the study", () => {
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
+      expect(await tab.page.evaluate(() => iota.page.viewer.renderer.info.render.triangles), "triangles of a picture, with shadows").toBeLessThan(200_000);
       await study.isFramed();
       await studies[name](study);
       await study.dragByFinger();
