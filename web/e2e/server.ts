@@ -91,6 +91,13 @@ export class WorldServer {
     return this.lines_.join("\n");
   }
 
+  /** Whether it still runs, and what it has printed at last besides reports: for the message of a test that fails. */
+  get state(): string {
+    const { exitCode, signalCode } = this.process_;
+    const said = this.lines_.filter((line) => !line.startsWith("{")).slice(-5).join(" | ");
+    return `${exitCode === null && signalCode === null ? "running" : `ended with ${exitCode ?? signalCode}`}; it said: ${said}; its last report: ${JSON.stringify(this.report)}`;
+  }
+
   async stop(signal: NodeJS.Signals = "SIGINT"): Promise<void> {
     if (this.process_.exitCode !== null || this.process_.signalCode !== null) return;
     await new Promise<void>((resolve) => {

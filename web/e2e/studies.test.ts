@@ -478,6 +478,8 @@ describe("the study", () => {
       await study.dragInHeadset(Object.keys(studies).indexOf(name) % 2 === 1);
       expect(tab.complaints).toEqual([]);
       expect(server.output).not.toMatch(/Traceback|Error/);
+    } catch (error) {
+      throw new Error(`${String(error)}; the world: ${server.state}`, { cause: error });
     } finally {
       // It would go on drawing for both eyes, beside the next study.
       await tab?.page.close();
