@@ -6,11 +6,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 import iota
 from iota.world import options
-from iota.world.floor import touching_points
+from iota.world.floor import Floor, touching_points
 
 TILTED = (0.3, 0.5, 0.1, 0.8)
 SHAPES = {
@@ -129,6 +130,82 @@ def test_without_a_ground_things_fall_on() -> None:
     point = system.body().particle((0, 1, 0))
     run(iota.World(system, ground=None), 2)
     assert point.position.y == pytest.approx(1 - 9.81 * 2, rel=0.02)
+
+
+def test_what_is_kept_of_bodies_between_edits_is_what_a_new_list_has() -> None:
+    """A floor that has followed random edits, and one that lists everything anew."""
+    random = np.random.default_rng(3)
+    system = iota.System(damping=1.0)
+    blocks = [system.body(shape=iota.Box((0.2, 0.1, 0.3)), mass=1, position=(0.5 * n, 0.4, 0)) for n in range(6)]
+    balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(0.5 * n, 0.4, 1)) for n in range(3)]
+    iota.builder.chain(6, 1.2, top=(0, 1.5, 2), direction=(1, 0, 0)).realize(system)
+    system.emitter(rate=300, position=(0, 0.2, 3), velocity=(0, 1, 0), lifetime=0.1)
+    thickness = {"now": 0.01}
+    floor = Floor(system, 0.0, lambda _: thickness["now"])
+    cluster = system.body()
+    for place in ((0, 0.5, -1), (0.3, 0.5, -1), (0, 0.8, -1), (0, 0.5, -0.7)):
+        cluster.particle(place, 0.2)
+    cluster.combine(blocks.pop())
+    hinges: list[tuple[iota.Particle, iota.Particle]] = []
+    added: list[iota.Body] = []
+
+    def some() -> iota.Body:
+        return random.choice([body for body in system.bodies if not body.is_spark])
+
+    def hinge() -> None:
+        place = tuple(random.uniform(0, 1, 3))
+        hinges.append((random.choice(blocks).particle(place), random.choice(balls).particle(place)))
+        iota.Particle.combine(*hinges[-1])
+
+    def add() -> None:
+        added.append(system.body(shape=iota.Capsule(0.05, 0.2), mass=1, position=tuple(random.uniform(0.3, 1, 3))))
+
+    edits: list[Callable[[], object]] = [
+        add,
+        lambda: setattr(some(), "kind", random.choice(["dynamic", "static"])),
+        lambda: setattr(some(), "mass", random.uniform(0.5, 2)),
+        lambda: setattr(some().particles[0], "radius", random.uniform(0.01, 0.2)),
+        hinge,
+        lambda: iota.Particle.separate(*hinges.pop()),
+        lambda: added[0].combine(added.pop()),
+        lambda: some().particle(tuple(random.uniform(0, 1, 3))),
+        lambda: setattr(cluster.particles[0], "position", cluster.particles[0].position + (0.02, 0.01, 0)),
+        lambda: setattr(added[-1].particles[0], "position", added[-1].particles[0].position + (0.02, 0.01, 0)),
+        lambda: added.pop(0).destroy(),
+        lambda: thickness.update(now=random.uniform(0.01, 0.05)),
+    ]  # fmt: skip
+    done = 0
+    for _ in range(300):
+        before = system.scene_version
+        try:
+            random.choice(edits)()
+            done += 1
+        except (ValueError, RuntimeError, IndexError, iota.StaleIdError):
+            pass  # some edits do not fit some bodies
+        floor.push(1 / 120)
+        system.step(1 / 120)
+        if system.scene_version == before:
+            continue  # it lists bodies after edits of them only
+        floor._take_structure(system.positions)
+        fresh = Floor(system, 0.0, lambda _: thickness["now"])
+        fresh._take_structure(system.positions)
+        kept, new = floor._touches, fresh._touches
+        assert kept is not None and new is not None and kept.ranges == new.ranges
+        for name in ("rows", "masses", "radius", "is_solid", "is_joined", "carriers"):
+            np.testing.assert_array_equal(getattr(kept, name), getattr(new, name), err_msg=name)
+        np.testing.assert_allclose(kept.weights, new.weights, atol=1e-6)
+        assert floor._reach == pytest.approx(fresh._reach, rel=1e-6)
+    assert done > 150
+
+
+def test_a_body_that_is_let_go_later_is_held_too() -> None:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.5, 0), kind="static")
+    system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(1, 0.1, 0))
+    world = iota.World(system, ground=0.0)
+    world.at(0.5)(lambda: setattr(box, "kind", "dynamic"))
+    run(world, 2)
+    assert box.center_of_mass.y == pytest.approx(0.1, abs=0.01)
 
 
 def test_emitted_sparks_pass_and_the_rest_is_held() -> None:

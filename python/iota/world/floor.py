@@ -31,6 +31,7 @@ MOST_FORCE = 0.99e9  # N, on a particle: the engine's limit
 ROUNDS = 4  # over the points of a body
 ROUND_POINTS = 8  # on a rim
 DIRECTIONS = 26  # for the support points of a rounded body or a mesh
+SAME = 1e-6  # relative error up to which four particles have kept their places on a body
 CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])  # of a box
 UNITS = (Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1))
 NO_POINTS = (np.empty((0, 4)), np.empty(0))  # weights and radii
@@ -43,12 +44,22 @@ class Carrier:
 
     body: Body
     number: int  # among those of the body; a particle's slot
-    rows: list[int]  # of `System.positions`; four
+    slots: list[int]  # of its particles; four
     weights: Array  # (n, 4), of each point
     masses: list[float]  # kg; four
     radii: Array  # (n,), m
     is_solid: bool  # four particles span space, so that a push on the surface turns the body
-    is_joined: bool  # other bodies are hinged to its body
+
+
+@dataclass
+class Known:
+    """The carriers of a body, and what they follow from."""
+
+    particles: list[Particle]
+    traits: list[float]  # masses, radii and the like
+    edges: Array  # squares of distances of the particles that carry its shapes, m2
+    carriers: list[Carrier]
+    reach: float  # largest distance of a point from its particles, m
 
 
 @dataclass(frozen=True)
@@ -62,30 +73,32 @@ class Impact:
 class Touches:
     """All points, as arrays with a row for each, and what is remembered of each."""
 
-    def __init__(self, carriers: list[Carrier], before: Touches | None) -> None:
+    def __init__(self, carriers: list[Carrier], is_joined: list[bool], before: Touches | None) -> None:
         counts = [len(each.radii) for each in carriers]
         of = np.repeat(np.arange(len(carriers)), counts)
-        self.keys = [
-            (each.body, each.number, index)
-            for each, count in zip(carriers, counts, strict=True)
-            for index in range(count)
-        ]
+        starts = np.cumsum([0, *counts]).tolist()
+        self.ranges = {
+            (each.body, each.number): (start, count)
+            for each, start, count in zip(carriers, starts[:-1], counts, strict=True)
+        }
         self.carriers = of
-        self.rows = np.array([each.rows for each in carriers], np.intp).reshape(-1, 4)[of]
+        self.slots = np.array([each.slots for each in carriers], np.intp).reshape(-1, 4)[of]
+        self.rows = self.slots  # of `System.positions`
         self.weights = np.concatenate([np.empty((0, 4)), *(each.weights for each in carriers)])
         self.masses = np.array([each.masses for each in carriers], float).reshape(-1, 4)[of]
         self.radius = np.concatenate([np.empty(0), *(each.radii for each in carriers)])
         self.is_solid = np.array([each.is_solid for each in carriers], bool)[of]
-        self.is_joined = np.array([each.is_joined for each in carriers], bool)[of]
+        self.is_joined = np.array(is_joined, bool)[of]  # other bodies are hinged to its body
         self.load = np.zeros(len(of))  # down, besides the weight of the body, N
         self.was_above = np.zeros(len(of), bool)
         self.is_touching = np.ones(len(of), bool)  # nothing that begins on the floor has fallen on it
         self.is_new = True
-        known = {} if before is None else {key: index for index, key in enumerate(before.keys)}
-        for index, key in enumerate(self.keys):
-            if before is not None and (old := known.get(key)) is not None:
-                self.load[index], self.was_above[index] = before.load[old], before.was_above[old]
-                self.is_touching[index] = before.is_touching[old]
+        for key, (start, count) in self.ranges.items():
+            if before is not None and (found := before.ranges.get(key)) is not None:
+                both = min(count, found[1])
+                new, old = slice(start, start + both), slice(found[0], found[0] + both)
+                self.load[new], self.was_above[new] = before.load[old], before.was_above[old]
+                self.is_touching[new] = before.is_touching[old]
 
     def leave(self) -> None:
         """Resets the state: all points are above the floor."""
@@ -122,19 +135,18 @@ class Floor:
         friction: float = 0.6,
     ) -> None:
         self._system, self.height, self._friction, self._thickness_of = system, height, friction, thickness_of
-        self._version = self._row_count = -1
+        self._version = self._scene = self._row_count = -1
         self._touches: Touches | None = None
         self._particles: list[Particle] = []
-        self._bodies: list[Body] = []
-        self._slots: Indices = np.empty((0, 4), np.intp)  # of the particles in `rows`
-        self._particle_count = 0
+        self._known: dict[Body, Known] = {}
         self._reach = 0.0  # largest distance of a point from the particles of its body, m
         self.impact: Impact | None = None  # the hardest of the last step
 
     def forget(self) -> None:
         """Call it after the system was restored."""
-        self._version = -1
+        self._version = self._scene = -1
         self._touches = None
+        self._known = {}
 
     def push(self, dt: float) -> None:
         """Adds the floor's forces to the next step of dt s."""
@@ -156,7 +168,7 @@ class Floor:
         assert self._touches is not None
         if is_clear:
             self._touches.leave()
-        elif self._touches.keys:
+        elif len(self._touches.carriers):
             self._push(self._touches, positions, velocities, gravity, dt)
 
     # --- forces ---------------------------------------------------------------------------------------------------
@@ -239,47 +251,91 @@ class Floor:
         slots = np.fromiter((particle.slot for particle in self._particles), np.intp, len(self._particles))
         rows = np.full(slots.max() + 1, -1)
         rows[slots] = np.arange(len(slots))
-        everything = self._system.bodies
-        bodies = [body for body in everything if not body.is_spark]
-        count = len(slots) - (len(everything) - len(bodies))  # each spark is a body of one particle
-        if self._touches is not None and count == self._particle_count and bodies == self._bodies:
-            found = rows[np.minimum(self._slots, len(rows) - 1)]
-            if (slots[found] == self._slots).all():
-                self._touches.rows = found
-                return
-        self._bodies, self._particle_count = bodies, count
-        self._list(positions, rows)
+        scene = self._system.scene_version
+        if self._touches is None or scene != self._scene:
+            self._scene = scene
+            self._list(positions, rows)
         assert self._touches is not None
-        self._slots = slots[self._touches.rows]
+        self._touches.rows = rows[self._touches.slots]
 
     def _list(self, positions: Array, row_of: Indices) -> None:
-        carriers: list[Carrier] = []
+        """Of bodies that are as they were, what is known is used again."""
         joined = {part.number for part in self._system.articulates if len(part) > 1}
-        self._reach = 0.0
-        for body in self._bodies:
-            if body.kind not in ("dynamic", "resting"):
+        bodies = [b for b in self._system.bodies if b.kind in ("dynamic", "resting") and not b.is_spark]
+        particles = [body.particles for body in bodies]
+        traits = [self._traits(body, its) for body, its in zip(bodies, particles, strict=True)]
+        kept = self._kept(bodies, particles, traits, positions, row_of)
+        carriers: list[Carrier] = []
+        is_joined: list[bool] = []
+        self._known, self._reach = {}, 0.0
+        for body, its, numbers in zip(bodies, particles, traits, strict=True):
+            known = kept.get(body) or self._describe(body, its, numbers, positions, row_of)
+            self._known[body] = known
+            carriers += known.carriers
+            is_joined += [body.articulate.number in joined] * len(known.carriers)
+            self._reach = max(self._reach, known.reach)
+        self._touches = Touches(carriers, is_joined, self._touches)
+
+    def _kept(
+        self,
+        bodies: list[Body],
+        particles: list[list[Particle]],
+        traits: list[list[float]],
+        positions: Array,
+        row_of: Indices,
+    ) -> dict[Body, Known]:
+        """What is known of bodies that are as they were."""
+        same = {
+            body: known
+            for body, its, numbers in zip(bodies, particles, traits, strict=True)
+            if (known := self._known.get(body)) is not None and known.traits == numbers and known.particles == its
+        }
+        solid = [body for body, known in same.items() if len(known.edges)]
+        if solid:  # of those the script may have moved a particle
+            slots = np.array([same[body].carriers[0].slots for body in solid])
+            before = np.array([same[body].edges for body in solid])
+            off = np.abs(edges_of(positions[row_of[slots]]) - before).max(axis=1) > SAME * before.max(axis=1)
+            for number in np.flatnonzero(off):
+                del same[solid[number]]
+        return same
+
+    def _traits(self, body: Body, particles: list[Particle]) -> list[float]:
+        """Numbers that its carriers depend on, besides its particles."""
+        traits = [particle.mass for particle in particles]
+        solids = len(body.solids)
+        traits.append(solids)
+        if not (solids and len(particles) >= 4):
+            traits.append(self._thickness_of(body))
+            traits += [particle.radius if particle.has_attributes else 0 for particle in particles]
+        return traits
+
+    def _describe(
+        self, body: Body, particles: list[Particle], traits: list[float], positions: Array, row_of: Indices
+    ) -> Known:
+        slots, masses = [p.slot for p in particles], [p.mass for p in particles]
+        corners = positions[row_of[slots[:4]]]
+        weights, radii = _of_shapes(body, corners) if body.solids and len(slots) >= 4 else NO_POINTS
+        if len(radii):
+            reaches = radii + np.linalg.norm(weights @ corners - corners[0], axis=1)
+            carrier = Carrier(body, -1, slots[:4], weights, masses[:4], radii, True)
+            return Known(particles, traits, edges_of(corners[None])[0], [carrier], float(reaches.max()))
+        carriers: list[Carrier] = []
+        thickness = self._thickness_of(body)
+        for particle, slot, mass in zip(particles, slots, masses, strict=True):
+            if mass <= 0:
                 continue
-            is_joined = body.articulate.number in joined
-            particles = body.particles
-            rows, masses = [int(row_of[p.slot]) for p in particles], [p.mass for p in particles]
-            corners = positions[rows[:4]]
-            weights, radii = _of_shapes(body, corners) if body.solids and len(rows) >= 4 else NO_POINTS
-            if len(radii):
-                carriers.append(Carrier(body, -1, rows[:4], weights, masses[:4], radii, True, is_joined))
-                reaches = radii + np.linalg.norm(weights @ corners - corners[0], axis=1)
-                self._reach = max(self._reach, float(reaches.max()))
-                continue
-            thickness = self._thickness_of(body)
-            for particle, row, mass in zip(particles, rows, masses, strict=True):
-                if mass <= 0:
-                    continue
-                radius = particle.radius if particle.has_attributes and particle.radius > 0 else thickness
-                alone, its_mass = np.array([[1.0, 0, 0, 0]]), [mass, 0.0, 0.0, 0.0]
-                carriers.append(
-                    Carrier(body, particle.slot, [row] * 4, alone, its_mass, np.array([radius]), False, is_joined)
-                )
-                self._reach = max(self._reach, radius)
-        self._touches = Touches(carriers, self._touches)
+            radius = particle.radius if particle.has_attributes and particle.radius > 0 else thickness
+            alone, its_mass = np.array([[1.0, 0, 0, 0]]), [mass, 0.0, 0.0, 0.0]
+            carriers.append(Carrier(body, slot, [slot] * 4, alone, its_mass, np.array([radius]), False))
+        reach = max((float(each.radii[0]) for each in carriers), default=0.0)
+        is_flat = bool(body.solids) and len(slots) >= 4  # its traits do not have thickness and radii
+        return Known(particles, [] if is_flat else traits, np.empty(0), carriers, reach)
+
+
+def edges_of(corners: Array) -> Array:
+    """Squares of the distances of four points: (n, 4, 3) -> (n, 6)."""
+    ways = corners[:, [0, 0, 0, 1, 1, 2]] - corners[:, [1, 2, 3, 2, 3, 3]]
+    return np.asarray(np.einsum("nij,nij->ni", ways, ways))
 
 
 @dataclass
