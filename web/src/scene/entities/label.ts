@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Labels: text on a small plate that faces the viewer. Those without a height have a constant size on the screen and
-// are in front of everything else.
+// Labels: text on a small plate that faces the viewer. Those without a height have a constant size on the screen, are in
+// front of everything else, and are lifted where they would cover each other.
 
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
 import type { LabelEntity } from "../../protocol/generated.ts";
 import { placeOf } from "../anchors.ts";
+import { liftApart, upAt, type Plate } from "../label_layout.ts";
 import type { Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { noColor } from "../strokes.ts";
@@ -28,7 +29,13 @@ interface Label {
   readonly sprite: Sprite;
   readonly canvas: HTMLCanvasElement;
   texture: CanvasTexture | null;
+  /** As it is laid out, if it has a constant size. */
+  readonly plate: Plate;
+  /** Drawn lift, which follows that of the plate. */
+  lift: number;
 }
+
+const liftSeconds = 0.08;
 
 export class LabelView implements EntityView<LabelEntity> {
   readonly root = new Group();
@@ -37,6 +44,7 @@ export class LabelView implements EntityView<LabelEntity> {
   private readonly eye_: Vector3;
   private readonly labels_ = new Map<number, Label>();
   private readonly b_ = new Vector3();
+  private readonly plates_: Plate[] = [];
 
   /** `eye`: place of the viewer, world, m; kept up to date by its owner. */
   constructor(poses: PoseBuffer, eye: Vector3) {
@@ -51,7 +59,7 @@ export class LabelView implements EntityView<LabelEntity> {
 
   create(entity: LabelEntity): void {
     const material = new SpriteMaterial({ transparent: true, toneMapped: false, fog: false, depthWrite: false });
-    const label: Label = { entity, sprite: new Sprite(material), canvas: document.createElement("canvas"), texture: null };
+    const label: Label = { entity, sprite: new Sprite(material), canvas: document.createElement("canvas"), texture: null, plate: { direction: new Vector3(), width: 0, height: 0, lift: 0 }, lift: 0 };
     this.labels_.set(entity.id.slot, label);
     this.root.add(label.sprite);
     paint(label);
@@ -87,9 +95,11 @@ export class LabelView implements EntityView<LabelEntity> {
     }
   }
 
-  draw(): void {
+  draw(seconds: number): void {
     const usual = usualHeight * Math.min(1, (1.2 * innerWidth) / innerHeight);
-    for (const { entity: { a, b, offset, height }, sprite, canvas } of this.labels_.values()) {
+    const { plates_: plates, eye_: eye } = this;
+    plates.length = 0;
+    for (const { entity: { a, b, offset, height }, sprite, canvas, plate } of this.labels_.values()) {
       const { position } = sprite;
       sprite.visible = canvas.width > 0 && placeOf(this.poses_, a, position) && placeOf(this.poses_, b, this.b_);
       if (!sprite.visible) continue;
@@ -97,10 +107,24 @@ export class LabelView implements EntityView<LabelEntity> {
       position.x += offset[0];
       position.y += offset[1];
       position.z += offset[2];
-      const line = height > 0 ? height / capital : usual * position.distanceTo(this.eye_);
+      const away = position.distanceTo(eye);
+      const line = height > 0 ? height / capital : usual * away;
       sprite.scale.set((line * canvas.width) / plateHeight, (line * canvas.height) / plateHeight, 1);
       sprite.material.depthTest = height > 0;
       sprite.renderOrder = height > 0 ? 0 : 10;
+      if (height > 0 || !(away > 0)) continue;
+      plate.direction.subVectors(position, eye).divideScalar(away);
+      plate.width = sprite.scale.x / away;
+      plate.height = sprite.scale.y / away;
+      plates.push(plate);
+    }
+    liftApart(plates);
+    const share = Math.min(1, seconds / liftSeconds);
+    for (const label of this.labels_.values()) {
+      if (!label.sprite.visible || label.entity.height > 0) continue;
+      label.lift += share * (label.plate.lift - label.lift);
+      const { position } = label.sprite;
+      position.addScaledVector(upAt(label.plate.direction, this.b_), label.lift * position.distanceTo(eye));
     }
   }
 }
