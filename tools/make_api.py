@@ -26,7 +26,7 @@ Definition = ast.ClassDef | ast.FunctionDef
 # Pages: title, and the modules with their public names.
 CONTENTS = {
     "engine": ("The engine", ["iota._core", "iota.solvers"]),
-    "world": ("Worlds that people enter", ["iota.world", "iota.world.widgets", "iota.world.shown"]),
+    "world": ("Worlds that people enter", ["iota.world", "iota.world.widgets", "iota.world.shown", "iota.world.many"]),
     "looks": ("How bodies are drawn", ["iota.looks"]),
     "builder": ("Builders", ["iota.builder"]),
     "shapelib": ("From file to world", ["iota.shapelib"]),

@@ -15,8 +15,8 @@ import re
 import reprlib
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from types import FunctionType, TracebackType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from types import FunctionType, MappingProxyType, TracebackType, UnionType
+from typing import Any, Literal, NoReturn, Union, get_args, get_origin, get_type_hints
 
 from iota import _core
 from iota._core import Vec3
@@ -92,6 +92,20 @@ def refuse_unknown(thing: object, name: str) -> None:
         if isinstance(member, FunctionType):
             raise AttributeError(f"{kind.__name__}.{name} is a method and cannot be assigned")
     known.add(name)
+
+
+def refuse_reading(thing: object, name: str, elsewhere: Mapping[str, str] = MappingProxyType({})) -> NoReturn:
+    """For `__getattr__`: raises AttributeError for what a thing does not have, with a near name. elsewhere: what to use
+    instead of names of other libraries."""
+    kind = type(thing)
+    if inspect.getattr_static(kind, name, None) is not None:
+        object.__getattribute__(thing, name)  # raises the error that came from inside of a property
+    near = f"; use {elsewhere[name]}" if name in elsewhere else near_attribute(kind, name)
+    raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{near}")
+
+
+def near_attribute(kind: type, name: str) -> str:
+    return "" if name[:1] == "_" else suggestion(name, [n for n in dir(kind) if not n.startswith("_")])
 
 
 class Signature:
@@ -529,6 +543,8 @@ MEANT = {
 def suggestion(word: str, words: Sequence[str]) -> str:
     """For a misspelled word, another library's, or the beginning of one."""
     near = difflib.get_close_matches(word, words, n=1)
-    near += [meant for meant, others in MEANT.items() if meant in words and word in others]
+    near += [
+        meant for meant, others in MEANT.items() if meant in words and difflib.get_close_matches(word, others, 1, 0.8)
+    ]
     near += [each for each in words if len(word) > 2 and each.startswith(word)]
     return f"; did you mean '{near[0]}'?" if near else ""

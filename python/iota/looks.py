@@ -190,6 +190,13 @@ def cone(radius: float, length: float, material: str = "paint", **more: Any) -> 
     return Look(Cone(radius, length), material, **more)
 
 
+def arrow(length: float, radius: float | None = None, material: str = "paint", **more: Any) -> Look:
+    """Along local x, from its tail in the origin to its tip. radius: of its shaft; default: in proportion to its length."""
+    shaft = 0.018 * length if radius is None else radius
+    head = length - min(7 * shaft, 0.6 * length)
+    return _revolved([(0.0, 0.0), (0.0, shaft), (head, shaft), (head, 2.6 * shaft), (length, 0.0)], 8, material, **more)
+
+
 def ellipsoid(size: Sequence[float], material: str = "paint", **more: Any) -> Look:
     """Its whole axes are `size` = (x, y, z)."""
     return Look(Ellipsoid(size), material, **more)

@@ -17,6 +17,8 @@ import sweep
 
 import iota
 from iota import _core, builder, looks
+from iota.world.callbacks import one_line
+from iota.world.world import ELSEWHERE
 
 # What nanobind, C++ and Python's object system say, and scripts do not.
 RAW = re.compile(
@@ -263,6 +265,11 @@ PYTHON_MISTAKES: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     "a misspelled attribute of a world": (
         lambda w: setattr(w, "pause", True), "World.pause|a World has no attribute 'pause'; did you mean 'paused'",
     ),
+    "another library's drawing": (lambda w: w.polyline([V, V]), r"no attribute 'polyline'; use world.line\(points\)"),  # type: ignore[attr-defined]
+    "another library's shape": (lambda w: w.polygon([V]), r"no attribute 'polygon'; use world.shape\(looks.polygon\("),  # type: ignore[attr-defined]
+    "what is not in a world": (lambda w: w.pausd, "a World has no attribute 'pausd'; did you mean 'paused'"),  # type: ignore[attr-defined]
+    "what is not in a thing": (lambda w: w.label("a").positon, "a Label has no attribute 'positon'; did you mean 'at'"),  # type: ignore[attr-defined]
+    "what a thing has by another name": (lambda w: setattr(w.label("a"), "positon", V), "no attribute 'positon'; did you mean 'at'"),
     "a method": (lambda w: setattr(w, "reset", 1), "World.reset is a method and cannot be assigned"),
     "what can only be read": (lambda w: setattr(w, "url", "x"), "World.url can be read but not assigned"),
 }  # fmt: skip
@@ -276,6 +283,49 @@ def test_a_mistake_in_the_script_layer_is_named(name: str) -> None:
     with pytest.raises((TypeError, ValueError, AttributeError), match=text):
         use(world)
     assert len(world.things) - things <= 1
+
+
+def test_the_names_that_are_told_are_there() -> None:
+    world = iota.World(iota.System())
+    for use in ELSEWHERE.values():
+        for of, name in re.findall(r"(world|looks)\.(\w+)", use):
+            assert callable(getattr({"world": world, "looks": looks}[of], name))
+
+
+def test_what_is_misspelled_in_a_callback_is_told_with_a_near_name() -> None:
+    particle = iota.System().body().particle(V)
+    told = {}
+    for name in ("positon", "zzz"):
+        with pytest.raises(AttributeError) as failed:
+            getattr(particle, name)
+        told[name] = one_line(failed.value)
+    assert "'Particle' object has no attribute 'positon'; did you mean 'position'? (test_errors" in told["positon"]
+    assert "no attribute 'zzz' (test_errors" in told["zzz"]
+
+
+def test_an_error_inside_of_a_property_is_not_taken_for_a_missing_one() -> None:
+    class Game(iota.World):
+        @property
+        def score(self) -> int:
+            return self.points_of_all  # type: ignore[attr-defined, no-any-return]
+
+    with pytest.raises(AttributeError, match="'points_of_all'"):
+        _ = Game(iota.System()).score
+
+
+def test_a_style_that_no_look_has_is_refused_before_the_world_is_served() -> None:
+    system = iota.System()
+    world = iota.World(system, style="roap")
+    world.draw(system.body().particle(V).body, {"rope": looks.sphere(0.1), "chain": looks.sphere(0.2)})
+    for begin in (world.step, lambda: world.serve(port=0)):
+        with pytest.raises(
+            ValueError, match=r"not 'roap'; did you mean 'rope'\? \(the styles in draw are 'rope', 'chain'\)"
+        ):
+            begin()
+    assert world.url is None
+    with pytest.raises(ValueError, match="no look in draw has a style"):
+        iota.World(system, style="rope").step()
+    iota.World(system).step()
 
 
 def test_an_error_of_the_scripts_own_function_is_left_as_it_is() -> None:

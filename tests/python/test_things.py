@@ -99,6 +99,44 @@ def test_thousands_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> No
         page.wait_for(lambda: page.entities["point_cloud"][0]["points"][0] > seen["points"][0] + 0.5)
 
 
+def test_thousands_of_arrows_and_lines_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> None:
+    random = np.random.default_rng(1)
+    starts, ways = random.uniform(-1, 1, (2, 3000, 3))
+    ways[:4] = [(0, 0, 0), (-2, 0, 0), (-1, 1e-8, 0), (0, 0, 3)]  # nowhere, backwards, nearly so, up to the user
+
+    def ends(seen: dict[str, Any]) -> Any:
+        """Where the page draws the end of each: of a shape from the origin to x = 1."""
+        x, y, z, w = np.reshape(seen["rotations"], (-1, 4)).T
+        to = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)])
+        return np.reshape(seen["places"], (-1, 3)) + to * np.reshape(seen["scales"], (-1, 3))[:, :1]
+
+    world = iota.World(rod.system)
+    arrows = world.arrows(starts, ways, color="#ff0000", at=rod)
+    lines = world.segments(starts, starts + ways, radius=0.01, color=random.uniform(0, 1, (3000, 3)))
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "shape_set")
+        np.testing.assert_allclose(ends(seen), starts + ways, atol=2e-6)
+        scales = np.reshape(seen["scales"], (-1, 3))
+        np.testing.assert_allclose(scales[:, 1], scales[:, 0], err_msg="as thick as it is long")
+        assert seen["at"]["body"] == rod.slot and seen["part"]["color"] == 0xFF0000
+        drawn = entity(page, "shape_set", 1)
+        np.testing.assert_allclose(ends(drawn), starts + ways, atol=2e-6)
+        scales = np.reshape(drawn["scales"], (-1, 3))
+        assert scales[0].tolist() == [0, 0, 0] and scales[1:, 1:] == pytest.approx(0.01), (
+            "what has no length is not drawn"
+        )
+        assert len(drawn["colors"]) == 3000
+        world.call(lambda: (setattr(arrows, "radius", 0.036), setattr(arrows, "vectors", 2 * ways)))
+        page.wait_for(lambda: page.entities["shape_set"][0]["scales"] != seen["scales"])
+        now = page.entities["shape_set"][0]
+        np.testing.assert_allclose(ends(now), starts + 2 * ways, atol=4e-6)
+        assert np.reshape(now["scales"], (-1, 3))[1:, 1] == pytest.approx(2), "twice the shaft of the drawn shape"
+        world.call(lambda: setattr(lines, "ends", starts[:5]))
+        page.wait_for(lambda: any("ends must be 3000" in notice["text"] for notice in page.notices))
+    with pytest.raises(ValueError, match="starts: may have 262144 rows at most, not 300000"):
+        world.arrows(np.zeros((300_000, 3)), np.zeros((300_000, 3)))
+
+
 def test_a_script_may_navigate_by_keys_and_a_camera_of_its_own(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system, camera=iota.Camera((0, 1, 4), (0, 1, 0)))
 
@@ -670,6 +708,7 @@ def test_looks_of_all_shapes_enclose_their_volume() -> None:
         looks.disc(1.0, 0.5): np.pi / 2,
         looks.cone(1.0, 3.0): np.pi,
         looks.ellipsoid((2, 4, 6)): 8 * np.pi,
+        looks.arrow(1.0, 0.05): 8**0.5 * (0.05**2 * 0.65 + 0.13**2 * 0.35 / 3),  # of eight sides
     }
     for look, wanted in volume.items():
         body = iota.System().body(shape=look.shape, density=1.0)

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from iota.arguments import SHORT
+from iota.arguments import SHORT, near_attribute
 from iota.world.costs import Costs
 
 SLOW = 0.5  # s, of a function
@@ -89,9 +89,17 @@ def script_frames(trace: TracebackType | None) -> list[traceback.FrameSummary]:
 
 def one_line(error: BaseException) -> str:
     """'ZeroDivisionError: division by zero (chain.py, line 12)'."""
-    text = traceback.format_exception_only(type(error), error)[-1].strip()
+    text = told(error)
     frames = script_frames(error.__traceback__)
     return f"{text} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else text
+
+
+def told(error: BaseException) -> str:
+    """'ZeroDivisionError: division by zero'; with a near name for what a handle of the engine does not have."""
+    text = traceback.format_exception_only(type(error), error)[-1].strip()
+    if isinstance(error, AttributeError) and type(error.obj).__module__ == "iota._core" and "Did you mean" not in text:
+        text += near_attribute(type(error.obj), error.name or "")
+    return text
 
 
 def print_error(error: BaseException) -> None:
@@ -101,7 +109,7 @@ def print_error(error: BaseException) -> None:
     cause = error.__cause__
     if cause is not None:
         lines = [*traceback.format_exception(type(cause), cause, cause.__traceback__), "\n", *lines]
-    lines += traceback.format_exception_only(type(error), error)
+    lines += [*traceback.format_exception_only(type(error), error)[:-1], f"{told(error)}\n"]
     print_on_terminal("".join(lines))
 
 

@@ -16,6 +16,7 @@ from iota.simulator import SimulatedBody
 from iota.sounds import sound_file
 from iota.textures import texture_of
 from iota.world.custom import Custom, Sound
+from iota.world.many import Arrows, Segments
 from iota.world.shown import (
     Arrow,
     Axes,
@@ -106,6 +107,21 @@ class Drawing:
     ) -> Arrow:
         """An arrow from `at` to `to`, or along `vector` (world, m). radius: of its shaft, m; 0: by its length."""
         return Arrow(self._state.things, at=at, to=to, vector=vector, radius=radius, color=color)
+
+    def arrows(self, starts: Any, vectors: Any, radius: float = 0.0, color: Any = None, at: Place = None) -> Arrows:
+        """Many arrows. starts, vectors: arrays of shape (n, 3), m, in the frame of `at`. radius: of their shafts, m; 0: each by
+        its length. color: one, an array of shape (n, 3) from 0 to 1, or a list of n colors. Assigning an array changes
+        all of them.
+
+        wind = world.arrows(places, 0.1 * velocities)
+        wind.vectors = 0.2 * velocities
+        """
+        return Arrows(self._state.things, starts=starts, vectors=vectors, radius=radius, color=color, at=at)
+
+    def segments(self, starts: Any, ends: Any, radius: float, color: Any = None, at: Place = None) -> Segments:
+        """Many straight lines. starts, ends: arrays of shape (n, 3), m, in the frame of `at`. radius: m. color: as of
+        `arrows`. Assigning an array changes all of them."""
+        return Segments(self._state.things, starts=starts, ends=ends, radius=radius, color=color, at=at)
 
     def axes(self, at: Place = None, length: float = 0.2, rotation: Sequence[float] = (0, 0, 0, 1)) -> Axes:
         """x, y and z of a body or of the world as red, green and blue arrows. length: m. rotation: quaternion x y z w."""

@@ -98,7 +98,7 @@ class Publisher:
 
     def _tell_settings(self) -> None:
         state = self._state
-        looks = list(dict.fromkeys(name for styles in state.scene.classes.values() for name in styles if name != "*"))
+        looks = state.styles
         self._tell_if_new(
             "set_settings",
             title=state.title,

@@ -156,7 +156,7 @@ class Trace(Thing):
         return None if at is None else self._values | {"at": at}
 
 
-def _colors(value: Any) -> NDArray[np.uint32]:
+def colors(value: Any) -> NDArray[np.uint32]:
     """One color, or one for each."""
     if isinstance(value, np.ndarray) and value.ndim == 2:
         parts = np.round(255 * np.clip(value.astype(float), 0, 1)).astype(np.uint32)
@@ -182,7 +182,7 @@ class Points(Thing):
             raise ValueError("must be one radius, or one for each point, of 0 m or more")
         return radii
 
-    radius, color = Field(_radii), Field(_colors)
+    radius, color = Field(_radii), Field(colors)
 
     def _record(self) -> dict[str, Any] | None:
         at = anchor(self.at)
@@ -200,7 +200,7 @@ def _look(value: Any) -> Look:
     return value
 
 
-def _part(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, Any]:
+def part_of_look(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, Any]:
     """A look as sent to pages. color: replaces its own. place: replaces its offset and rotation."""
     described = look.describe() | place
     shape = {"kind": described["kind"], "sizes": described["sizes"]}
@@ -234,7 +234,7 @@ class Marker(Thing):
             return None
         x, y, z = at["point"] if at["body"] != NO_BODY else (0, 0, 0)
         offset = (x + self.position.x, y + self.position.y, z + self.position.z)
-        return {"body": at["body"], "part": _part(self.look, self.color, offset=offset, rotation=self.rotation)}
+        return {"body": at["body"], "part": part_of_look(self.look, self.color, offset=offset, rotation=self.rotation)}
 
 
 class Strut(Thing):
@@ -253,12 +253,12 @@ class Strut(Thing):
             return None
         # A fitting look gets about its final length, so that its ends keep their form.
         look = self.look.of_length(_apart(self.at, self.to) or 1.0)
-        return {"a": a, "b": b, "part": _part(look, self.color), "length": look.length}
+        return {"a": a, "b": b, "part": part_of_look(look, self.color), "length": look.length}
 
 
 def _present(at: Any) -> Any:
     """A place of the world, m, or something else if it is unknown."""
-    return getattr(at, "position", getattr(at, "center_of_mass", at))
+    return at if isinstance(at, Thing) else getattr(at, "position", getattr(at, "center_of_mass", at))
 
 
 def _apart(at: Any, to: Any) -> float:
@@ -289,7 +289,7 @@ class Shapes(Thing):
             raise ValueError("must be one number, (n,) or (n, 3), all finite")
         return sizes
 
-    rotations, sizes, color = Field(_rotations), Field(_sizes), Field(_colors)
+    rotations, sizes, color = Field(_rotations), Field(_sizes), Field(colors)
 
     def _texture(self) -> Texture | None:
         return self.look.texture  # type: ignore[no-any-return]
@@ -306,7 +306,7 @@ class Shapes(Thing):
         one = self.color[0] if len(self.color) == 1 else NO_COLOR
         return {
             "at": at,
-            "part": _part(self.look, int(one)),
+            "part": part_of_look(self.look, int(one)),
             "places": self.positions,
             "rotations": self.rotations,
             "scales": self.sizes,
@@ -426,7 +426,7 @@ class Paint(Thing):
                 raise TypeError(f"must be bodies, not {body!r}")
         return bodies
 
-    bodies, color = Field(_bodies), Field(_colors)
+    bodies, color = Field(_bodies), Field(colors)
 
     def _record(self) -> dict[str, Any] | None:
         if len(self.color) not in (1, len(self.bodies)):

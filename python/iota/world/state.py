@@ -67,6 +67,11 @@ class State:
             self._usual_thickness = usual_thickness(self.system)
         return self._usual_thickness
 
+    @property
+    def styles(self) -> list[str]:
+        """The names of styles that looks are given for, in the order of their first use."""
+        return list(dict.fromkeys(name for looks in self.scene.classes.values() for name in looks if name != "*"))
+
     def forget_holds(self) -> None:
         """Call it after the system was restored: ends all holds."""
         self.clients.forget()

@@ -8,13 +8,13 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, TypeVar
 
 import numpy as np
 
 from iota._core import Body, Bond, Particle, Room, Vec3
 from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
-from iota.arguments import SHORT, is_number, refuse_unknown
+from iota.arguments import SHORT, is_number, refuse_reading, refuse_unknown
 from iota.looks import color_number
 from iota.simulator import SimulatedBody, SimulatedParticle
 from iota.textures import Texture
@@ -68,6 +68,11 @@ class Thing:
         if name not in type(self).__dict__.get("_assigned", ()):  # as scripts assign thousands a frame
             refuse_unknown(self, name)
         object.__setattr__(self, name, value)
+
+    if not TYPE_CHECKING:  # checkers would take any name
+
+        def __getattr__(self, name: str) -> NoReturn:
+            refuse_reading(self, name)
 
     visible = Field(lambda value: flag(value))
 

@@ -13,10 +13,10 @@ import time
 import webbrowser
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.arguments import SHORT, is_number, refuse_unknown
+from iota.arguments import SHORT, is_number, refuse_reading, refuse_unknown, suggestion
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody, Simulator
 from iota.world import options as run_options
@@ -49,6 +49,25 @@ Result = TypeVar("Result")
 
 EFFECTS = ("break", "join", "grab", "impact")
 HEADLESS_SECONDS = 10.0  # default
+SOLIDS = (
+    "sphere",
+    "box",
+    "cylinder",
+    "capsule",
+    "torus",
+    "cone",
+    "ellipsoid",
+    "disc",
+    "pyramid",
+    "half_sphere",
+    "polygon",
+)
+ELSEWHERE = {name: f"world.shape(looks.{name}(...))" for name in SOLIDS} | {  # for names of other libraries
+    "polyline": "world.line(points), with closed=True back to the first",
+    "lines": "world.segments(starts, ends, radius=...)",
+    "curve": "world.tube(points, radius=...)",
+    "mesh": "world.surface(points, triangles)",
+}
 ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 
 
@@ -56,7 +75,7 @@ class World(Interacting, Asking):
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any other Simulator. title: on the page. dt: length of a step, s. style: the style of
-    drawing that pages start with, see `draw`. ground: height of the ground, m, which supports falling bodies (not of
+    drawing that pages start with, one of those in `draw`; checked when the world begins. ground: height of the ground, m, which supports falling bodies (not of
     another Simulator); "auto": 0, or below bodies that start or hang lower; None for none. camera: the first view,
     None: everything is visible.
 
@@ -85,6 +104,8 @@ class World(Interacting, Asking):
             raise TypeError(f"a world shows a System or another Simulator, not {SHORT.repr(system)}")
         if not isinstance(title, str):
             raise TypeError(f"title must be a text, not {SHORT.repr(title)}")
+        if not (style is None or isinstance(style, str)):
+            raise TypeError(f"style must be a text or None, not {SHORT.repr(style)}")
         if ground not in ("auto", None) and not (is_number(ground) and math.isfinite(float(ground))):
             raise ValueError(f'ground must be "auto", a height or None, not {SHORT.repr(ground)}')
         # Typed as System for scripts; this class uses only the interface of Simulator.
@@ -108,6 +129,11 @@ class World(Interacting, Asking):
         """A misspelled attribute would change nothing."""
         refuse_unknown(self, name)
         super().__setattr__(name, value)
+
+    if not TYPE_CHECKING:  # checkers would take any name
+
+        def __getattr__(self, name: str) -> NoReturn:
+            refuse_reading(self, name, ELSEWHERE)
 
     # --- properties -----------------------------------------------------------------------------------------------
 
@@ -485,6 +511,7 @@ class World(Interacting, Asking):
         lan: for phones, headsets and other computers too, by https, see `lan_url`.
         """
         if self._publisher is None:
+            self._check_style()  # before a port is opened
             if server is None:
                 options = run_options.current()
                 port = port if options.port is None else options.port
@@ -561,7 +588,17 @@ class World(Interacting, Asking):
 
     # --- the loop -------------------------------------------------------------------------------------------------
 
+    def _check_style(self) -> None:
+        """Only now: the looks of each style are given after the world was made."""
+        style, known = self._state.style, self._state.styles
+        if style is not None and style not in known:
+            there = f"the styles in draw are {', '.join(map(repr, known))}" if known else "no look in draw has a style"
+            raise ValueError(
+                f"a world starts with one of its styles, not {style!r}{suggestion(style, known)} ({there})"
+            )
+
     def _begin(self) -> None:
+        self._check_style()
         self._runner = threading.get_ident()
         if self._finds_ground:
             self._finds_ground = False
