@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
 from page_client import NOTHING, PageClient
 
 import iota
 from iota import looks
-from iota.world.joining import hinge_above, nearest_ends
+from iota.world.joining import SPEED, hinge_above, nearest_ends
 
 Runner = Callable[[iota.World], str]
 
@@ -163,6 +164,26 @@ def test_a_break_during_a_join_calls_it_off(chain: list[iota.Body], run_world: R
         assert world.call(lambda: abs(end.position - own.position)) > 0.5
         act(page, "break", lower)  # now there is nothing above it any more
         page.wait_for(lambda: any(n["title"] == "Nothing to break" for n in page.notices))
+
+
+def test_far_ends_are_drawn_together_no_faster_than_eyes_follow(chain: list[iota.Body]) -> None:
+    system = chain[0].system
+    end, own = chain[2].particles[1], chain[3].particles[0]
+    end.separate(own)
+    for body in chain[3:]:
+        for particle in body.particles:
+            particle.position += (2.0, 0.0, 0.0)
+    system.gravity = (0, 0, 0)
+    world = iota.World(system, ground=None)
+    world.offer("join")
+    world.act("join", chain[3])
+    gaps = [abs(end.position - own.position)]
+    while system.closing_count and system.time < 5:
+        world.step()
+        gaps.append(abs(end.position - own.position))
+    assert system.articulate_count == 1 and gaps[-1] == 0
+    assert system.time > 0.99 * gaps[0] / SPEED, "on average"
+    assert max(a - b for a, b in pairwise(gaps)) < 2.01 * SPEED * world.dt, "at any time"
 
 
 def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run_world: Runner) -> None:
