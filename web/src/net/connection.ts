@@ -29,8 +29,9 @@ export interface ConnectionListener {
 }
 
 const pingEveryMs = 2000;
-/** Pose frames are sent at least once a second, so a silent socket is dead. */
-const silentForMs = 6000;
+/** Pose frames are sent at least once a second, so a socket that is silent between so many pings is dead. Counted, not timed:
+ * after a long picture what was received meanwhile is handled before the next ping. */
+const mostSilentPings = 3;
 const firstDelayMs = 250;
 const longestDelayMs = 4000;
 
@@ -51,7 +52,7 @@ export class Connection {
   private delayMs_ = firstDelayMs;
   private retry_: number | undefined;
   private ping_: number | undefined;
-  private heardMs_ = 0;
+  private silentPings_ = 0;
   private opened_ = false;
   private refusal_ = "";
 
@@ -77,16 +78,19 @@ export class Connection {
     const socket = new WebSocket(this.url_);
     socket.binaryType = "arraybuffer";
     this.socket_ = socket;
+    this.silentPings_ = 0;
     socket.onopen = () => {
       this.opened_ = true;
-      this.heardMs_ = performance.now();
+      this.silentPings_ = 0;
       this.sendNow_({
         type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, ...this.request_,
       });
     };
     socket.onmessage = (event: MessageEvent<unknown>) => this.receive_(event.data);
     socket.onclose = () => {
-      if (this.socket_ === socket) this.lost_();
+      if (this.socket_ !== socket) return;
+      if (!this.opened_) void this.explain_();
+      this.lost_();
     };
     this.ping_ = window.setInterval(() => this.checkAlive_(), pingEveryMs);
   }
@@ -119,8 +123,8 @@ export class Connection {
   }
 
   private checkAlive_(): void {
-    if (!this.opened_) return;
-    if (performance.now() - this.heardMs_ > silentForMs) {
+    // Also one that does not come about: a browser waits for minutes where a network has gone.
+    if (++this.silentPings_ > mostSilentPings) {
       this.lost_();
       return;
     }
@@ -129,7 +133,7 @@ export class Connection {
 
   private receive_(data: unknown): void {
     const now = performance.now();
-    this.heardMs_ = now;
+    this.silentPings_ = 0;
     try {
       if (!(data instanceof ArrayBuffer)) throw new Error("a text frame");
       if (messageTypeOf(data) === MessageType.poses) {
@@ -165,7 +169,6 @@ export class Connection {
   }
 
   private lost_(): void {
-    const opened = this.opened_;
     this.close_();
     if (this.refusal_ !== "") this.change_("refused", this.refusal_);
     else this.change_("lost", "");
@@ -174,7 +177,6 @@ export class Connection {
       this.open();
     }, this.delayMs_ * (0.8 + 0.4 * Math.random()));
     this.delayMs_ = Math.min(this.delayMs_ * 1.7, longestDelayMs);
-    if (!opened) void this.explain_();
   }
 
   /** A page cannot distinguish a refused upgrade from a dead server; the health address can. */

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's socket, against a made-up one and a made-up clock.
+
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { Connection, type LinkState } from "../src/net/connection.ts";
+import { Role } from "../src/protocol/generated.ts";
+
+class Socket {
+  static readonly OPEN = 1;
+  static readonly made: Socket[] = [];
+  binaryType = "";
+  readyState = 0;
+  closed = false;
+  onopen: (() => void) | null = null;
+  onmessage: ((event: { data: unknown }) => void) | null = null;
+  onclose: (() => void) | null = null;
+
+  constructor() {
+    Socket.made.push(this);
+  }
+
+  send(): void {}
+
+  close(): void {
+    this.closed = true;
+  }
+
+  open(): void {
+    this.readyState = Socket.OPEN;
+    this.onopen!();
+  }
+}
+
+let states: LinkState[];
+let connection: Connection;
+const asked = vi.fn(async () => ({ ok: true }));
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  Socket.made.length = 0;
+  asked.mockClear();
+  states = [];
+  vi.stubGlobal("WebSocket", Socket);
+  vi.stubGlobal("fetch", asked);
+  vi.stubGlobal("window", { addEventListener() {}, setInterval, clearInterval, setTimeout, clearTimeout });
+  vi.stubGlobal("document", { addEventListener() {}, visibilityState: "visible" });
+  connection = new Connection("ws://here", { world: "", role: Role.actor, name: "" }, {
+    message() {}, poses() {}, state: (state) => states.push(state),
+  });
+  connection.open();
+});
+
+afterEach(() => {
+  connection.close();
+  vi.restoreAllMocks();
+  vi.unstubAllGlobals();
+  vi.useRealTimers();
+});
+
+it("gives up a connection that does not come about, and tries again", () => {
+  vi.advanceTimersByTime(5000);
+  expect(Socket.made).toHaveLength(1);
+  vi.advanceTimersByTime(10_000);
+  expect(Socket.made.length).toBeGreaterThan(1);
+  expect(Socket.made[0].closed).toBe(true);
+  expect(states[0]).toBe("lost");
+  expect(asked).not.toHaveBeenCalled();
+});
+
+it("gives up a connection that falls silent, and tries again", () => {
+  Socket.made[0].open();
+  vi.advanceTimersByTime(15_000);
+  expect(Socket.made.length).toBeGreaterThan(1);
+  expect(states[0]).toBe("lost");
+});
+
+it("keeps a connection while the page was busy for long", () => {
+  Socket.made[0].open();
+  vi.spyOn(performance, "now").mockReturnValue(performance.now() + 60_000);
+  vi.advanceTimersByTime(2000);
+  Socket.made[0].onmessage!({ data: "" });
+  vi.advanceTimersByTime(5000);
+  expect(Socket.made).toHaveLength(1);
+  expect(states).toEqual([]);
+});
+
+it("asks why where the server closes before it has begun", () => {
+  Socket.made[0].onclose!();
+  expect(asked).toHaveBeenCalledOnce();
+  expect(states[0]).toBe("lost");
+});
