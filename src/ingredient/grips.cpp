@@ -39,7 +39,8 @@ void Grips::build(const IslandMap& map, Problem& problem) {
     solver::GripForce force;
     for (std::uint32_t i = 0; i < g.count; ++i) {
       const std::uint32_t node = map.node_of(g.points[i]);
-      if (node == none) return;  // of another island
+      // Of another island, whose nodes may come and go meanwhile: islands are built in parallel.
+      if (node >= map.nodes.size() || map.nodes.rings[node] != model.particles[g.points[i]].ring) return;
       force.arm.nodes[i] = node, force.arm.weights[i] = g.weights[i];
     }
     force.arm.count = g.count;

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
+#include <vector>
 
 namespace iota {
 namespace {
@@ -42,6 +44,32 @@ TEST(Grip, with_numbers_that_no_hand_has_is_refused_and_changes_nothing) {
   EXPECT_THROW(system.grips().move(grip, {std::nan(""), 0, 0}), std::invalid_argument);
   system.grips().destroy(grip);
   EXPECT_THROW(system.grips().move(grip, {}), StaleIdError);
+}
+
+// Islands are built in parallel: one took the grip of another into its own numbers, and read memory that is not its own.
+TEST(Grip, before_the_first_step_of_many_islands_pulls_only_its_own) {
+  constexpr int chains = 200, links = 4;
+  for (int trial = 0; trial < 20; ++trial) {
+    System system{SystemOptions{.gravity = {}}};
+    std::vector<BodyId> rods;
+    for (int chain = 0; chain < chains; ++chain) {
+      ParticleId last;
+      for (int link = 0; link < links; ++link) {
+        const BodyId rod = rods.emplace_back(system.bodies().create());
+        const ParticleId start = system.particles().create(rod, {1.0 * link, 0, 3.0 * chain}, 1);
+        if (link > 0) (void)system.edits().combine(last, start);
+        last = system.particles().create(rod, {1.0 * link + 1, 0, 3.0 * chain}, 1);
+      }
+    }
+    const BodyId held = rods[(trial * 37 % chains) * links];
+    const Vec3 place = system.bodies().center_of_mass(held);
+    (void)system.grips().create(held, {}, place + Vec3{0, 1, 0});
+    (void)system.step(1.0 / 120);
+    for (std::size_t i = 0; i < rods.size(); ++i) {
+      const bool is_beside = i / links == static_cast<std::size_t>(trial * 37 % chains);
+      EXPECT_EQ(norm(system.bodies().velocity(rods[i])) > 0, is_beside) << "rod " << i;
+    }
+  }
 }
 
 }  // namespace
