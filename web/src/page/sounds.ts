@@ -65,6 +65,13 @@ export class Sounds {
   /** Once a frame: decodes the script's sounds before they are played; a user who moves hears long ones from where they are. */
   draw(): void {
     if (this.voices_ > 0) this.hear_();
+    this.decodeNew_();
+  }
+
+  // --- inside
+
+  /** A page that has nothing new to draw does not draw: then the first sound is decoded when it is played. */
+  private decodeNew_(): void {
     if (this.records_.version === this.seen_) return;
     this.seen_ = this.records_.version;
     const records = this.records_.all();
@@ -80,9 +87,8 @@ export class Sounds {
     }
   }
 
-  // --- inside
-
   private async playFile_(name: string, position: Readonly<Vec3> | undefined, volume: number): Promise<void> {
+    this.decodeNew_();
     const buffer = await this.buffers_.get(name);
     if (buffer === undefined || buffer === null) return;
     const reach = this.records_.all().find((record) => record.name === name)?.reach ?? 0;

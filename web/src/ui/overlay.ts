@@ -59,10 +59,7 @@ export class Overlay implements PageListener, FramePart {
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
     window.addEventListener("keydown", (event) => this.closeMenuByKey_(event), true);
-    new Keys(page, () => {
-      page.sound.wake();
-      showBar();
-    });
+    new Keys(page, showBar);
     // After a click the keys go to the world again: space must not press the same button again.
     byId("foot", HTMLElement).addEventListener("click", (event) => {
       if (event.detail > 0 && event.target instanceof Element && event.target.closest("button") !== null) {
@@ -243,7 +240,6 @@ export class Overlay implements PageListener, FramePart {
 
   private anyPress_(event: PointerEvent): void {
     this.pointerAt_ = { x: event.clientX, y: event.clientY, touch: event.pointerType === "touch" };
-    this.page_.sound.wake();
     this.showBar();
     if (!this.menu_.hidden && !(event.target instanceof Node && this.menu_.contains(event.target))) this.closeMenu_();
   }
