@@ -35,12 +35,12 @@ double calc_tied_mass(const Model& model, std::uint32_t body) {
 void Grips::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
-    if (!is_free(model.bodies[g.body].kind)) return;
+    // The nodes of another island may come and go meanwhile: islands are built in parallel.
+    if (!is_free(model.bodies[g.body].kind) || !map.nodes.has(g.body)) return;
     solver::GripForce force;
     for (std::uint32_t i = 0; i < g.count; ++i) {
       const std::uint32_t node = map.node_of(g.points[i]);
-      // Of another island, whose nodes may come and go meanwhile: islands are built in parallel.
-      if (node >= map.nodes.size() || map.nodes.rings[node] != model.particles[g.points[i]].ring) return;
+      if (node == none) return;
       force.arm.nodes[i] = node, force.arm.weights[i] = g.weights[i];
     }
     force.arm.count = g.count;

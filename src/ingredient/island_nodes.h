@@ -36,6 +36,7 @@ struct IslandNodes {
   /// The last node takes the number of a removed node.
   void remove(std::uint32_t node);
 
+  bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
   std::size_t size() const { return rings.size(); }
   std::size_t pinned_count() const { return static_cast<std::size_t>(std::count(pinned.begin(), pinned.end(), 1)); }
   template <class Visit>
@@ -66,9 +67,11 @@ class IslandMap {
   const IslandNodes& nodes;
   std::span<const std::uint32_t> bodies;
 
+  /// Whether its items are to be added.
   bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
 
-  /// The node of a particle's ring; `none` if it is outside of the island, or carried.
+  /// The node of the ring of an island's particle; `none` if the particle is carried or its body inactive. Do not ask
+  /// for those of other islands, which may be built at the same time.
   std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[structure_.particles[particle].ring]; }
   /// The particle's own node, or those of its basis.
   WeightedNodes nodes_of(std::uint32_t particle) const;
