@@ -7,6 +7,7 @@
 #include "model/solid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -67,22 +68,111 @@ Conserved calc_change(model::Model& model, island::MovedRings& moved) {
   return change;
 }
 
-/// Projects positions and velocities of the islands of the bodies. Returns the changes.
-Conserved settle(Editor& e, std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
-  island::MovedRings moved;
-  e.islands.update(e.model, e.parallel, moved);
-  std::vector<island::Island*> settled;
+/// Whether all islands of the bodies have positions that satisfy their rows.
+bool project(Editor& e, std::span<const std::uint32_t> bodies, bool positions, island::MovedRings& moved) {
+  bool met = true;
+  std::vector<island::Island*> done;
   for (const std::uint32_t body : bodies) {
     island::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
     if (!island) continue;  // a free particle needs no projection
-    if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
-    settled.push_back(island);
-    if (island->settle(e.model, bodies, positions, moved)) continue;
-    report.remaining_gap = ingredient::worst_gap(e.model);
-    report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
-                                report.remaining_gap, " m remain, shared by the constraints"));
+    if (std::find(done.begin(), done.end(), island) != done.end()) continue;
+    done.push_back(island);
+    met = island->settle(e.model, bodies, positions, moved) && met;
   }
-  return calc_change(e.model, moved);
+  return met;
+}
+
+/// Signed, times six.
+double calc_volume(const std::array<Vec3, 4>& x) { return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])); }
+
+bool is_mirrored(const model::Model& model, const Solid& solid) {
+  std::array<Vec3, 4> now;
+  for (int i = 0; i < 4; ++i) {
+    if (!model.particles.is_alive(solid.basis[i])) return false;
+    now[i] = model.position(solid.basis[i]);
+  }
+  return calc_volume(now) * calc_volume(solid.places) < 0;
+}
+
+/// The rotation that takes vectors x nearest to vectors y, by the sum of weighted products y x' (Kabsch 1976): by its
+/// singular vectors, the smallest one turned round if that would mirror.
+Mat3 fit_rotation(const Mat3& products) {
+  const Mat3 back = products.transposed();
+  Mat3 squares;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 column = back * Vec3{products.m[0][i], products.m[1][i], products.m[2][i]};
+    squares.m[0][i] = column.x, squares.m[1][i] = column.y, squares.m[2][i] = column.z;
+  }
+  const SymmetricEigen eigen = symmetric_eigen(squares);
+  std::array<int, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return eigen.values[i] > eigen.values[j]; });
+  const Vec3 x1 = eigen.axes[order[0]], x2 = eigen.axes[order[1]];
+  Vec3 y1 = products * x1, y2 = products * x2;
+  if (!(norm(y1) > 0)) return Mat3::diagonal(1);
+  y1 = (1 / norm(y1)) * y1;
+  y2 = y2 - dot(y1, y2) * y1;
+  y2 = norm(y2) > 0 ? (1 / norm(y2)) * y2 : any_perpendicular(y1);
+  return Mat3::outer(y1, x1) + Mat3::outer(y2, x2) + Mat3::outer(cross(y1, y2), cross(x1, x2));
+}
+
+/// Puts a body's free points where the unmirrored body is nearest to its points, first of all to those that it shares
+/// or that are pinned.
+void fit(model::Model& model, const Solid& solid, island::MovedRings& moved) {
+  const model::Body& body = model.bodies[solid.body];
+  if (body.basis != solid.basis) return;  // absorbed meanwhile
+  struct Point {
+    std::uint32_t ring;
+    Vec3 before, now;
+    double weight;
+  };
+  std::vector<Point> points;
+  Vec3 before, now;
+  double weights = 0;
+  model.for_each_particle_of(solid.body, [&](std::uint32_t p) {
+    Point point{model.particles[p].ring, {}, model.position(p), 1};
+    const std::array<double, 4> shares = model.weights(p);
+    for (int i = 0; i < 4; ++i) point.before += shares[i] * solid.places[i];
+    if (model.rings[point.ring].count == 1 && !model.is_pinned(point.ring)) point.weight = 1e-3;
+    before += point.weight * point.before, now += point.weight * point.now, weights += point.weight;
+    points.push_back(point);
+  });
+  before = (1 / weights) * before, now = (1 / weights) * now;
+  Mat3 products;
+  for (const Point& p : points) products += p.weight * Mat3::outer(p.now - now, p.before - before);
+  const Mat3 turn = fit_rotation(products);
+  for (const Point& p : points)
+    if (p.weight < 1) moved.put(model, p.ring, now + turn * (p.before - before), model.rings[p.ring].velocity);
+}
+
+/// Projects positions and velocities of the islands of the bodies. Returns the changes.
+///
+/// A projection finds the nearest positions with the right distances, which a mirror image has too: with one point of a
+/// solid taken far away, every second solid became its own. Those are fitted to their points, and projected again.
+Conserved settle(Editor& e, std::span<const std::uint32_t> edited, bool positions, std::span<const Solid> solids,
+                 RestructureReport& report) {
+  constexpr int most_attempts = 4;  // a solid that is fitted may mirror its neighbor
+  island::MovedRings moved;
+  e.islands.update(e.model, e.parallel, moved);
+  std::vector<std::uint32_t> bodies(edited.begin(), edited.end());
+  for (int attempt = 1;; ++attempt) {
+    island::MovedRings projected;
+    const bool met = project(e, bodies, positions, projected);
+    std::vector<const Solid*> mirrored;
+    if (positions && attempt < most_attempts)
+      for (const Solid& solid : solids)
+        if (is_mirrored(e.model, solid)) mirrored.push_back(&solid);
+    if (mirrored.empty()) {
+      moved.before.insert(moved.before.end(), projected.before.begin(), projected.before.end());
+      if (!met) {
+        report.remaining_gap = ingredient::worst_gap(e.model);
+        report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
+                                    report.remaining_gap, " m remain, shared by the constraints"));
+      }
+      return calc_change(e.model, moved);
+    }
+    projected.exchange(e.model);
+    for (const Solid* solid : mirrored) fit(e.model, *solid, moved), bodies.push_back(solid->body);
+  }
 }
 
 /// Displacements and moved masses change momenta; a rigid motion of all bodies connected to these compensates that
@@ -163,6 +253,12 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
   if (kind != Kind::moving) return;
   around_ = bodies_around(editor.model, bodies);
   before_ = conserved(editor.model, around_);
+  for (const std::uint32_t b : around_) {
+    const model::Body& body = editor.model.bodies[b];
+    if (body.rank < 4 || !model::is_free(body.kind)) continue;
+    Solid& solid = solids_.emplace_back(Solid{b, body.basis, {}});
+    for (int i = 0; i < 4; ++i) solid.places[i] = editor.model.position(body.basis[i]);
+  }
 }
 
 void Restructuring::finish(const model::Edit& owed) {
@@ -190,7 +286,7 @@ void settle_batch(Editor& e, RestructureReport& report) {
     if (const auto body = model.survivor_of(absorbed.survivor)) bodies.push_back(body->slot);
   sort_unique(bodies, model.bodies.slot_count());
   if (bodies.empty()) return;
-  const Conserved change = settle(e, bodies, false, report);
+  const Conserved change = settle(e, bodies, false, {}, report);
   report.energy_change += change.energies.total();
   report.momentum_change += change.momenta.linear;
   report.angular_momentum_change += change.momenta.angular;
@@ -209,7 +305,7 @@ void Restructuring::settle_and_measure(const model::Edit& owed) {
   std::optional<Conserved> before = before_;  // of everything that may have changed; nothing if something is pinned
   if (owed.moved || owed.velocity_dirty) {
     const std::vector<std::uint32_t> touched = with_created(edited());
-    change.add(settle(editor_, touched, owed.moved, report_));
+    change.add(settle(editor_, touched, owed.moved, solids_, report_));
     before = give_back_momenta(editor_, touched, change);
   }
   report_.energy_change = change.energies.total();

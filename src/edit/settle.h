@@ -23,6 +23,13 @@ struct Conserved {
   Conserved& add(const Conserved& other, double sign = 1);
 };
 
+/// A body of four basis points as it was before a change.
+struct Solid {
+  std::uint32_t body;
+  std::array<std::uint32_t, 4> basis;
+  std::array<Vec3, 4> places;
+};
+
 /// Projects velocities once for all bodies that a batch has made rigid, and adds the changes to its report.
 void settle_batch(Editor&, RestructureReport&);
 
@@ -63,6 +70,7 @@ class Restructuring {
   // The bodies whose energy and momentum the edit itself may change; changes by projections further away are added.
   std::vector<std::uint32_t> around_;
   Conserved before_;
+  std::vector<Solid> solids_;  ///< of them
 };
 
 }  // namespace iota::edit

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
+#include <vector>
 
 namespace iota {
 namespace {
@@ -243,6 +245,49 @@ TEST(Combine, brings_distant_ends_together_without_a_shot_of_energy) {
   EXPECT_LT(system.worst_gap(), 1e-9);
   (void)system.step(1.0 / 60);
   EXPECT_NEAR(system.energy().kinetic, 0, 1e-16);
+}
+
+/// Signed volume of the first four particles of a body over its first value: -1 for a mirror image.
+struct Handedness {
+  const System& system;
+  BodyId body;
+  double volume() const {
+    const std::vector<ParticleId> p = system.bodies().particles(body);
+    const Vec3 origin = system.particles().position(p[0]);
+    const auto edge = [&](int i) { return system.particles().position(p[i]) - origin; };
+    return dot(edge(1), cross(edge(2), edge(3)));
+  }
+  double first = volume();
+  double now() const { return volume() / first; }
+};
+
+/// A solid of four points, about `size` large, its corner `first` at a place.
+BodyId make_corner(System& system, double size, const Vec3& at) {
+  const BodyId body = system.bodies().create();
+  for (const Vec3& x : {Vec3{}, Vec3{1, 0.1, 0}, Vec3{0.2, 0.9, 0.1}, Vec3{0, 0.3, 1.2}})
+    (void)system.particles().create(body, at + size * x, 0.7);
+  return body;
+}
+
+TEST(Combine, of_distant_points_does_not_mirror_solids) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double size : {1e-3, 1.0, 1e3})
+    for (int scene = 0; scene < 40; ++scene) {
+      System system{SystemOptions{.gravity = {0, 0, 0}}};
+      std::vector<BodyId> bodies;
+      for (int i = 0; i < 3; ++i)
+        bodies.push_back(make_corner(system, size, 4 * size * Vec3{uniform(random), uniform(random), uniform(random)}));
+      std::vector<Handedness> hands;
+      for (const BodyId body : bodies) hands.push_back({system, body});
+      const auto corner = [&](int body, int i) { return system.bodies().particles(bodies[body])[i]; };
+      // Free ones, then a ring of three: the last solids are held at one and two points.
+      for (int i = 0; i < 3; ++i) {
+        (void)system.edits().combine(corner(i, scene % 4), corner((i + 1) % 3, (scene + 1 + scene / 4 % 3) % 4));
+        for (const Handedness& hand : hands) EXPECT_NEAR(hand.now(), 1, 1e-6) << "size " << size << " scene " << scene;
+      }
+      EXPECT_WHOLE(system);
+    }
 }
 
 TEST(Combine, over_a_time_closes_smoothly_and_then_makes_one_ring) {

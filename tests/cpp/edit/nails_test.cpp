@@ -7,6 +7,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace iota {
 namespace {
@@ -39,6 +40,23 @@ TEST(Nail, that_is_moved_is_reached_at_the_end_of_the_next_step) {
     EXPECT_LT(norm(d.system.particles().position(d.left) - place), 1e-12);
     EXPECT_NEAR(norm(d.system.particles().position(d.right) - place), 2, 1e-9);
   }
+}
+
+TEST(Nail, that_brings_a_solid_from_afar_does_not_mirror_it) {
+  for (const double size : {1e-3, 1.0, 1e3})
+    for (const Vec3& way :
+         {Vec3{5, 0, 0}, Vec3{-5, 0, 0}, Vec3{0, 5, 0}, Vec3{0, -5, 0}, Vec3{0, 0, 5}, Vec3{0, 0, -5}, Vec3{5, 5, 5}}) {
+      System system{SystemOptions{.gravity = {}}};
+      const BodyId body = system.bodies().create();
+      std::vector<ParticleId> corners;
+      for (const Vec3& x : {Vec3{}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+        corners.push_back(system.particles().create(body, size * x, 1));
+      system.particles().nail(corners[0], size * way);
+      const auto edge = [&](int i) {
+        return system.particles().position(corners[i]) - system.particles().position(corners[0]);
+      };
+      EXPECT_NEAR(dot(edge(1), cross(edge(2), edge(3))) / (size * size * size), 1, 1e-6);
+    }
 }
 
 TEST(Nail, of_what_a_static_body_holds_may_not_move_it) {
