@@ -44,3 +44,26 @@ it("is under 170 kB on the wire, from one server, and shows something within a s
   const again = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Infinity);
   expect(Math.min(paint, again), "first paint, ms").toBeLessThan(1000);
 });
+
+it("says that it opens the world, above a moving bar, until the world is drawn", async () => {
+  const page = await browser.context.newPage();
+  let pass = (): void => undefined;
+  const passed = new Promise<void>((resolve) => {
+    pass = resolve;
+  });
+  await page.route("**/*.js", async (route) => {
+    await passed;
+    await route.continue();
+  });
+  await page.goto(server.url, { waitUntil: "commit" });
+  const loading = page.locator("#loading");
+  await loading.waitFor();
+  expect(await loading.textContent()).toBe("Opening the world");
+  expect((await loading.locator("span").boundingBox())!.width).toBeGreaterThan(100);
+  const moving = await page.evaluate(() => document.getAnimations().map(({ effect }) => (effect as KeyframeEffect).pseudoElement));
+  expect(moving).toContain("::before");
+  pass();
+  await page.waitForFunction(() => globalThis.iota?.connected && iota.bodies().length > 0 && iota.step > 0);
+  await loading.waitFor({ state: "hidden" });
+  await page.close();
+});
