@@ -150,6 +150,8 @@ def test_a_script_may_navigate_by_keys_and_a_camera_of_its_own(rod: iota.Body, r
         for z in (3, 2):
             page.send("key", key="w", down=True)
             page.wait_for(lambda z=z: page.last["world_settings"]["camera_position"] == (0, 1, z))
+        page.send("control", command=3, value=0)
+        page.wait_for(lambda: page.last["world_settings"]["camera_position"] == (0, 1, 4))
 
 
 def test_more_than_pages_take_is_refused_where_it_is_assigned(rod: iota.Body) -> None:

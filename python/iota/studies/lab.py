@@ -27,12 +27,10 @@ def build() -> iota.World:
     world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))
     story = ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
     cradle.add_actions(world, cradle.Cradle(world, CRADLE), on_lift=story.touch)
-    world.camera, view = VIEWS[0], 0
+    world.camera = VIEWS[0]
 
     @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")
     def next_view() -> None:
-        nonlocal view
-        view = (view + 1) % len(VIEWS)
-        world.camera = VIEWS[view]
+        world.camera = VIEWS[(VIEWS.index(world.camera) + 1) % len(VIEWS)]
 
     return world

@@ -16,6 +16,7 @@ from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_termina
 from iota.world.event import Event
 from iota.world.floor import Floor
 from iota.world.keeping import Keeper
+from iota.world.scene import Camera
 from iota.world.schedule import Schedule
 from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
@@ -37,6 +38,7 @@ class Stepper:
         self._off: set[Hook] = set()  # functions that raised since the last reset
         self._floor: Floor | None = None
         self._start: bytes | None = None
+        self._camera: Camera | None = None  # at the start
         self._keeper: Keeper | None = None
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
@@ -51,7 +53,7 @@ class Stepper:
         self._tally = Tally(state.system)
         if state.ground is not None and isinstance(state.system, System):
             self._floor = Floor(state.system, state.ground, state.thickness_of)
-        self._start = self._state.system.snapshot()
+        self._start, self._camera = state.system.snapshot(), state.camera
         self.schedule.begin()
         if kept is None or not isinstance(state.system, System):
             return
@@ -158,10 +160,11 @@ class Stepper:
             self._off.add(hook)
 
     def reset(self) -> None:
-        """Returns to the start of the run, with the timed events registered before it."""
+        """Returns to the start of the run, with the camera and the timed events of then."""
         if self._start is None:
             return
         self._state.system.restore(self._start)
+        self._state.camera = self._camera
         self._state.forget_holds()
         if self._floor is not None:
             self._floor.forget()

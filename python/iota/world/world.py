@@ -383,7 +383,7 @@ class World(Interacting, Asking):
         return f'<iframe src="{html.escape(self.url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
 
     def reset(self) -> None:
-        """Returns to the start of the run, with the timed events registered before it."""
+        """Returns to the start of the run, with the timed events registered before it and the camera of then."""
         self._stepper.reset()
 
     def undo(self) -> bool:
