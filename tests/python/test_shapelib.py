@@ -582,6 +582,24 @@ def test_a_ply_file_with_a_damaged_header_is_refused_with_its_line(write: Write)
     fails(write("c.ply", PLY.replace("3 1 2 3", "\xb2 1 2").encode("latin-1")), "c.ply")
 
 
+@pytest.mark.parametrize("order", ["little", "big"])
+def test_a_binary_ply_file_with_a_wrong_list_length_is_refused_with_its_face(write: Write, order: str) -> None:
+    head = PLY[: PLY.index("0 0 0")].replace("ascii", f"binary_{order}_endian").encode()
+    sign = "<" if order == "little" else ">"
+    places, faces = TETRAHEDRON
+
+    def file(name: str, lengths: tuple[int, ...]) -> Path:
+        rows = [struct.pack(sign + "B3i", length, *face) for length, face in zip(lengths, faces, strict=True)]
+        return write(name, head + b"".join(struct.pack(sign + "3f", *place) for place in places) + b"".join(rows))
+
+    assert shapelib.polyhedron(file("a.ply", (3, 3, 3, 3))).counts["faces"] == 4
+    wrong = file("b.ply", (3, 3, 7, 3))
+    fails(wrong, "b.ply", "face 3 (of 4) has a list of 7, the first one of 3")
+    with pytest.raises(shapelib.FileError, match="face 3"):
+        iota.Mesh.load(wrong)
+    fails(file("c.ply", (4, 3, 3, 3)), "c.ply")
+
+
 def test_polygons_stay_polygons_and_pieces_become_bodies(write: Write) -> None:
     cube = shapelib.polyhedron(write("cube.off", CUBE_OFF))
     assert (cube.counts["faces"], cube.counts["triangles"], cube.counts["edges"]) == (6, 12, 12)

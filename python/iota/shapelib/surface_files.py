@@ -342,11 +342,25 @@ def _load(path: PathLike, source: Any = None, process: bool = False, **options: 
 def _from_trimesh(mesh: Any, path: PathLike) -> Surface:
     if not hasattr(mesh, "faces"):
         raise FileError(path, "has points without faces")
+    _check_lists(mesh, path)
     faces = np.asarray(mesh.faces)
     wrong = np.flatnonzero(((faces < 0) | (faces >= len(mesh.vertices))).any(axis=1))
     if len(wrong):
         raise FileError(path, f"face {wrong[0] + 1} (of {len(faces)}) uses a vertex that does not exist")
     return Surface(np.array(mesh.vertices, float), faces.tolist())
+
+
+def _check_lists(mesh: Any, path: PathLike) -> None:
+    """Raises FileError for a list in a binary PLY file with another length than the first: trimesh takes all to be as long."""
+    for element, read in mesh.metadata.get("_ply_raw", {}).items():
+        rows = read.get("data")
+        for name in (isinstance(rows, np.ndarray) and rows.dtype.names) or ():
+            if rows.dtype[name].names != ("f0", "f1"):
+                continue
+            lengths, most = rows[name]["f0"], rows[name]["f1"].shape[1]
+            for row in np.flatnonzero(lengths != most)[:1]:
+                what = f"{element} {row + 1} (of {len(rows)}) has a list of {lengths[row]}, the first one of {most}"
+                raise FileError(path, f"{what}: it is damaged, or a binary file with lists of several lengths")
 
 
 READERS: dict[str, Callable[[PathLike], Surface]] = {
