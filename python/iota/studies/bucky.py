@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sixty carbon atoms in a cage of springs breathe in and out; b gives a breath, v looks from within, and back. 1 m is 0.71 nm."""
+"""Sixty carbon atoms in a cage of springs breathe; b gives a breath, v looks from within, and back. 1 m is 0.71 nm."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from iota import looks, shapelib
 RADIUS = 0.5  # m
 CENTER = iota.Vec3(0, 1.3, 0)
 PERIOD = 1.6  # s, of a breath
-PRESSURE = (
-    "energy = 0.5*k*(r - r0)^2"  # from the particle at the center to each atom: it keeps the cage from collapsing
-)
-SHARE = 0.5  # of the stiffness against breathing that is the center's
+# From a particle at the center to each atom: it keeps the cage from collapsing.
+PRESSURE = "energy = 0.5*k*(r - r0)^2"
+SHARE = 0.5  # of the stiffness against breathing is the center's, the rest that of the cage's springs
 
 
 def build() -> iota.World:
@@ -50,12 +49,13 @@ def build() -> iota.World:
 
 
 def breathing_stiffness() -> float:
-    """Of the radius: with the mass of all atoms it has the period."""
+    """N/m, against a change of the radius: that which gives the mass of all atoms the period."""
     return 0.72 * (2 * math.pi / PERIOD) ** 2
 
 
 def tune(cage: shapelib.Imported) -> None:
-    """Makes the springs so stiff that they are the rest of it: a spring of length L resists with k (L / R)^2."""
+    """Makes the cage's springs so stiff that together they are the rest of the stiffness against breathing, to which a spring of
+    length L and stiffness k adds k (L / R)^2."""
     ends = np.array([(bond.p, bond.q) for bond in cage.bonds])
     length = np.linalg.norm(cage.points.position[ends[:, 0]] - cage.points.position[ends[:, 1]], axis=1)
     names = ["stiffness" if "stiffness" in bond.parameters else "k" for bond in cage.bonds]
@@ -66,7 +66,7 @@ def tune(cage: shapelib.Imported) -> None:
 
 
 def breathe(system: iota.System, speed: float) -> None:
-    """Outwards all at once, m/s, and a little less above than below: no breath is quite even."""
+    """Pushes all atoms outwards. speed: m/s; a little less above than below: no breath is quite even."""
     velocities = system.velocities
     way = system.positions - np.asarray(CENTER)
     velocities += speed / RADIUS * way * (1 - 0.3 * way[:, 1:2] / RADIUS)

@@ -33,13 +33,8 @@ def present(world: iota.World) -> None:
     for x in (-1.0, 1.3):
         for z in (-0.22, 0.22):
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
-    for x, name in (
-        (-0.6, "engine"),
-        (-0.2, "torsion pendulum"),
-        (0.2, "two crosses"),
-        (0.7, "scales"),
-        (1.1, "crane"),
-    ):
+    names = {"engine": -0.6, "torsion pendulum": -0.2, "two crosses": 0.2, "scales": 0.7, "crane": 1.1}
+    for name, x in names.items():
         world.label(name, at=(x, BENCH - 0.025, BENCH_SIZE[2] / 2 + 0.03), height=0.02)
     world.draw_ties("spring", looks.spring(0.016, 0.0022))
     world.draw_ties("rope", looks.cylinder(0.005, "rope"))

@@ -22,11 +22,8 @@ BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
 MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
 WAY = np.array([2.2, 0.5, 1.8])  # how far it goes from there, m
-BODY = (
-    (0.09, 0.034, 0.017),
-    (0.02, 0.05, 0.025),
-    (-0.06, 0.03, 0.014),
-)  # of a fish: places along it, half height and width, m
+# Of a fish: places along it, half its height and half its width there, m.
+BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
 
 
 def build(fish: int = FISH) -> iota.World:
@@ -55,7 +52,7 @@ def leader_at(time: float) -> Any:
 
 class School:
     """Fish about a leader: long-range attraction, short-range repulsion, neighbors swim alike, all drift with a turbulent
-    current. Who is taken out of `group` swims no more by itself."""
+    current. A fish that is taken out of `group` no longer swims by itself."""
 
     def __init__(self, world: iota.World, fish: int, leader: Callable[[float], Any], spread: float = 1.5) -> None:
         self._system, self._leader = world.system, leader

@@ -40,10 +40,8 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
     row, column = np.indices((ROWS, COLUMNS))
     places = np.asarray(corner) + SPACING * np.stack([column, -row, 0 * row], axis=-1)
     knots = np.array(cloth.points.add(places.reshape(-1, 3), mass=0.004)).reshape(ROWS, COLUMNS)
-    along, down = (
-        zip(knots[:, :-1].flat, knots[:, 1:].flat, strict=True),
-        zip(knots[:-1].flat, knots[1:].flat, strict=True),
-    )
+    along = zip(knots[:, :-1].flat, knots[:, 1:].flat, strict=True)
+    down = zip(knots[:-1].flat, knots[1:].flat, strict=True)
     for p, q in (*along, *down):
         cloth.bond(p, q, "spring", stiffness=60, damping=0.02, break_force=6)
     cloth.nail(*knots[:, 0])
