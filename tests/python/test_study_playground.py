@@ -236,18 +236,20 @@ def test_constraints_that_cannot_be_saved_are_named(world: iota.World) -> None:
     ("content", "words"),
     [
         (None, "No such file"),
-        ("", "Expecting value"),
-        ("[1, 2", "Expecting"),
-        ("{}", "no saved playground"),
-        ('{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}, "hinges": [[0, 7]]}, "combined": []}', "7"),
-        ('{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}}, "combined": [[0, 9]]}', "not there"),
+        (b"", "Expecting value"),
+        (b"[1, 2", "Expecting"),
+        (b"\xff\xfe\x00", "can't decode"),
+        (b"[" * 100_000, "recursion"),
+        (b"{}", "no saved playground"),
+        (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}, "hinges": [[0, 7]]}, "combined": []}', "7"),
+        (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}}, "combined": [[0, 9]]}', "not there"),
     ],
 )
 def test_a_file_that_cannot_be_loaded_leaves_the_world_as_it_is(
-    world: iota.World, tmp_path: Path, content: str | None, words: str
+    world: iota.World, tmp_path: Path, content: bytes | None, words: str
 ) -> None:
     if content is not None:
-        (tmp_path / "playground.json").write_text(content)
+        (tmp_path / "playground.json").write_bytes(content)
     before, texts = world.system.state_hash(), told(world)
     push(world, "load")
     assert world.system.state_hash() == before

@@ -48,7 +48,8 @@ class Furniture:
         self.add(key, corners @ [[c, 0, -s], [0, 1, 0], [s, 0, c]] + np.asarray(center), triangles)
 
     def turned(self, key: Key, foot: Sequence[float], profile: Sequence[tuple[float, float]], around: int = 40) -> None:
-        """A surface of revolution about the vertical. profile: radius and height above `foot`, m, from below; both ends are closed."""
+        """A surface of revolution about the vertical, closed at both ends. profile: radius and height above `foot`, m, from
+        below."""
         around *= self._detail
         angles = 2 * math.pi * np.arange(around) / around
         rings = [(r * np.cos(angles), np.full(around, h), -r * np.sin(angles)) for r, h in profile]

@@ -23,7 +23,8 @@ def build() -> iota.World:
 
 
 def present(world: iota.World) -> iota.World:
-    """What all three scripts of the appendix look like: balls with sticks between them, before a frame that tells how far they fall."""
+    """What all three scripts of the appendix look like: balls with sticks between them, before a frame that shows how far
+    they fall."""
     system = world.system
     world.draw([body for body in system.bodies if len(body.particles) > 1], looks.capsule(0.5, "brass"))
     for particle, color in zip(system.particles, ((0.9, 0.3, 0.2), (0.15, 0.5, 0.55)) * 2, strict=False):

@@ -43,7 +43,8 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
 
 
 def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -> None:
-    """On request, or once at 4 s: thesis 5.1.2: the lower part falls off, is kept near by a force, pulled close by a second one, and rejoined."""
+    """Thesis 5.1.2, on request or once at 4 s: the lower part falls off, is kept near by a force, pulled close by a second
+    one, and rejoined."""
     cut = len(chain) * 2 // 3
     if cut == 0:
         return

@@ -249,15 +249,16 @@ def files(world: iota.World, folder: Path) -> None:
     @world.button("load", help="FILE.json in place of what is here; z takes it back")
     @told
     def load() -> None:
-        text = path(".json").read_text(encoding="utf-8")
-        if len(text) > 10_000_000:
-            raise ValueError(f"{path('.json')} is too large")
+        file = path(".json")
         try:
+            text = file.read_text(encoding="utf-8")
+            if len(text) > 10_000_000:
+                raise ValueError("it is too large")
             scene = Scene.from_json(json.loads(text))
             with world.system.edit():
                 for body in list(world.system.bodies):
                     if body.alive:
                         body.destroy()
                 scene.realize(world)
-        except ValueError as error:
-            raise ValueError(f"{path('.json')}: {error}") from None
+        except (ValueError, RecursionError) as error:
+            raise ValueError(f"{file}: {error}") from None
