@@ -91,13 +91,17 @@ describe("the selection", () => {
     const bench = new Bench();
     bench.aim(3);
     bench.press(true);
-    const [{ hold }] = bench.selection.gestures.grabs;
+    const [grab] = bench.selection.gestures.grabs;
+    const { hold } = grab;
     bench.destroy("body", id(1, 5));
     bench.selection.update(); // a picture before the poses come
     expect(bench.selection.held).toBe(-1);
     bench.poses([body(0, 1)], { holds: [{ client: 1, hold, body: 0, point: [1.5, 0, 0], target: [3, 0, 0], force: 2 }] });
     bench.selection.update();
     expect(bench.selection.held).toBe(0);
+    const at = new Float32Array(3);
+    bench.selection.gestures.grabbedPoint(grab, at);
+    expect(Math.hypot(at[0] - 1.5, at[1], at[2]), "m from where the server holds it").toBeLessThan(1e-6);
     bench.aim(3.5);
     expect(bench.sent.at(-1)).toMatchObject({ type: "grabMove", hold });
     expect(bench.sent.filter((message) => message.type === "grabEnd")).toEqual([]);

@@ -2,6 +2,7 @@
 // The hovered, selected and held bodies of the user. Sends selections and holds to the server.
 
 import { Gestures, type GestureListener, type Grab, type Pointer } from "../interact/gestures.ts";
+import { toBody } from "../interact/picking.ts";
 import type { LinkState } from "../net/connection.ts";
 import type { Vec3 } from "../protocol/generated.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
@@ -198,7 +199,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     const hold = this.holdOf_(grab);
     if (hold === undefined || !entities.body.has(hold.body)) return this.gestures.release(grab.pointer);
     grab.body = hold.body;
-    grab.localPoint.set(hold.point);
+    toBody(entities.body, hold.body, hold.point[0], hold.point[1], hold.point[2], grab.localPoint);
     grab.isGone = false;
     if (this.selected_ < 0) this.select(grab.body);
   }
