@@ -4,6 +4,7 @@
 import { ACESFilmicToneMapping, Group, PCFShadowMap, PerspectiveCamera, Scene, WebGLRenderer, type Object3D, type Vector3 } from "three";
 import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
+import { Redraw } from "./redraw.ts";
 
 /**
  * A part of the page with work in each frame. A frame runs the stages below in this order, each of them for all parts:
@@ -34,8 +35,6 @@ export interface Timing {
   decodeMs: number;
 }
 
-/** The page continues to draw for this time after the last change, until all easing has ended. */
-const drawOnMs = 700;
 /** Number of warm-up frames before the page is shown. */
 const warmFrames = 3;
 const longestFrameMs = 100;
@@ -69,9 +68,7 @@ export class Viewer {
   private worthShowing_: () => boolean = () => false;
   private ready_: () => void = () => {};
   private last_ = 0;
-  private drawUntil_ = 0;
-  /** A picture was requested since the last one: where a frame takes longer than `drawOnMs` it is drawn all the same. */
-  private wanted_ = true;
+  private readonly redraw_ = new Redraw();
   private warmed_ = 0;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -121,8 +118,7 @@ export class Viewer {
 
   /** Requests a new picture. A page without changes does not draw, which saves battery power. */
   invalidate(): void {
-    this.drawUntil_ = performance.now() + drawOnMs;
-    this.wanted_ = true;
+    this.redraw_.ask();
   }
 
   /** Fits the drawing to a size in css px. */
@@ -153,8 +149,7 @@ export class Viewer {
     for (const part of parts) part.draw?.(seconds, frame);
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
-    if (this.wanted_ || scripted < this.drawUntil_) {
-      this.wanted_ = false;
+    if (this.redraw_.isDue(seconds)) {
       if (this.presenting) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);
