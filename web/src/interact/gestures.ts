@@ -35,6 +35,8 @@ export class Pointer {
   readonly facing = new Float32Array([0, 0, -1]);
   /** Distance by which the held body is pushed away from the viewer, m; the pointer's owner adds to it (wheel, thumbstick). */
   depth = 0;
+  /** When it was pressed or released last, ms of performance.now(); 0: its owner does not know, so that it is when it is told of. */
+  at = 0;
   /** Of a hand or controller, for scripts: x y z w in the world; how far its buttons are pressed; its sticks; its joints in the world, m. */
   readonly rotation: [number, number, number, number] = [0, 0, 0, 1];
   readonly buttons: number[] = [];
@@ -98,6 +100,8 @@ export interface GestureListener {
   grabEnded(grab: Grab): void;
   /** A press on no body: the source may orbit, teleport or clear the selection. */
   pressedNothing(pointer: Pointer): void;
+  /** The end of such a press, or of one whose grab has ended before. */
+  releasedNothing?(pointer: Pointer): void;
 }
 
 /** Relative to the size of the scene: range of a ray, least distance of a hold, smallest move of a target that is sent.
@@ -154,7 +158,8 @@ export class Gestures {
     }
     if (!pressed && before) {
       this.wasPressed_.delete(pointer);
-      this.release(pointer);
+      if (pointer.grab === null) this.listener_.releasedNothing?.(pointer);
+      else this.release(pointer);
     }
     if (pointer.grab !== null) this.follow_(pointer.grab);
     else if (!pressed) this.hover_(pointer);

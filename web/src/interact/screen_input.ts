@@ -103,7 +103,8 @@ export class ScreenInput {
     const finger: Finger = {
       band: adds || (event.button === 0 && this.navigation_.banding && !this.isOnBody_(pointer, event)),
       pointer, touch, button: event.button, x: event.clientX, y: event.clientY,
-      startX: event.clientX, startY: event.clientY, startedAt: performance.now(), moved: false, longPress: undefined,
+      // By the event, which may be handled only after a long frame.
+      startX: event.clientX, startY: event.clientY, startedAt: event.timeStamp, moved: false, longPress: undefined,
     };
     this.fingers_.set(event.pointerId, finger);
     this.canvas_.setPointerCapture(event.pointerId);
@@ -118,6 +119,7 @@ export class ScreenInput {
     this.aimAt_(pointer, event.clientX, event.clientY);
     if (event.button === 0 && !event.shiftKey && !finger.band) {
       pointer.pressed = true;
+      pointer.at = event.timeStamp;
       this.gestures_.update(pointer);
     }
     if (touch && pointer.grab !== null) {
@@ -199,14 +201,17 @@ export class ScreenInput {
     if (finger.band && finger.moved) this.drawBand_(finger, true);
     const body = pointer.grab?.body ?? (finger.button === 2 ? pointer.hovered : -1);
     pointer.pressed = false;
+    pointer.at = event.timeStamp;
+    // It may have moved since the last frame: then this is no click.
+    if (!canceled) this.aimAt_(pointer, event.clientX, event.clientY);
     if (finger.touch) {
       this.gestures_.remove(pointer);
       this.freePointers_.push(pointer);
     } else {
       this.gestures_.update(pointer);
     }
-    const tap = !canceled && !finger.moved && performance.now() - finger.startedAt < tapMs;
-    if (tap) this.tap_(finger, body);
+    const tap = !canceled && !finger.moved && event.timeStamp - finger.startedAt < tapMs;
+    if (tap) this.tap_(finger, body, event.timeStamp);
   }
 
   private isOnBody_(pointer: Pointer, event: PointerEvent): boolean {
@@ -220,7 +225,7 @@ export class ScreenInput {
     this.host_.band?.(Math.min(x, startX), Math.min(y, startY), Math.max(x, startX), Math.max(y, startY), done);
   }
 
-  private tap_(finger: Finger, body: number): void {
+  private tap_(finger: Finger, body: number, now: number): void {
     if (finger.button === 2) {
       if (body >= 0) this.host_.menu(body, finger.x, finger.y);
       return;
@@ -234,7 +239,6 @@ export class ScreenInput {
       this.host_.clickNothing();
       return;
     }
-    const now = performance.now();
     const near = Math.hypot(finger.x - this.lastTap_.x, finger.y - this.lastTap_.y) < 40;
     const again = now - this.lastTap_.at < doubleTapMs && near;
     this.lastTap_ = { at: again ? -Infinity : now, x: finger.x, y: finger.y };

@@ -39,6 +39,7 @@ export interface PageListener {
   hover?(pointer: Pointer, body: number): void;
   grab?(grab: Grab, phase: "start" | "end"): void;
   pressNothing?(pointer: Pointer): void;
+  releaseNothing?(pointer: Pointer): void;
 }
 
 /** Notifies all listeners, in the order in which they were added. */
@@ -95,5 +96,9 @@ export class Events implements Required<PageListener> {
 
   pressNothing(pointer: Pointer): void {
     for (const listener of this.listeners_) listener.pressNothing?.(pointer);
+  }
+
+  releaseNothing(pointer: Pointer): void {
+    for (const listener of this.listeners_) listener.releaseNothing?.(pointer);
   }
 }

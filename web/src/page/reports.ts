@@ -45,12 +45,17 @@ export class Reports implements PageListener, FramePart {
   // --- PageListener
 
   grab(grab: Grab, phase: "start" | "end"): void {
-    if (phase === "start") this.presses_.set(grab.pointer, { at: performance.now(), direction: [...grab.pointer.direction], grab });
+    if (phase === "start") this.press_(grab.pointer, grab);
     else this.release_(grab.pointer);
   }
 
   pressNothing(pointer: Pointer): void {
-    this.presses_.set(pointer, { at: performance.now(), direction: [...pointer.direction], grab: null });
+    this.press_(pointer, null);
+  }
+
+  /** At once: the next frame may come too late for a click. */
+  releaseNothing(pointer: Pointer): void {
+    this.release_(pointer);
   }
 
   hover(pointer: Pointer, body: number): void {
@@ -63,18 +68,22 @@ export class Reports implements PageListener, FramePart {
 
   // --- FramePart
 
-  /** A press on empty space has no grab whose end could be seen. */
   interact(): void {
     if (this.parts_.world.listens.moves) this.tellMoves_();
-    for (const [pointer, { grab }] of this.presses_) if (grab === null && !(pointer.active && pointer.pressed)) this.release_(pointer);
   }
 
   // --- inside
 
+  private press_(pointer: Pointer, grab: Grab | null): void {
+    this.presses_.set(pointer, { at: timeOf(pointer), direction: [...pointer.direction], grab });
+  }
+
   private release_(pointer: Pointer): void {
     const press = this.presses_.get(pointer);
     this.presses_.delete(pointer);
-    if (press === undefined || !this.parts_.world.listens.clicks || performance.now() - press.at > clickMs) return;
+    // A press can also end while the button is down, with its body or with the connection.
+    const now = pointer.pressed ? performance.now() : timeOf(pointer);
+    if (press === undefined || !this.parts_.world.listens.clicks || now - press.at > clickMs) return;
     const { direction } = pointer;
     const turned = Math.hypot(direction[0] - press.direction[0], direction[1] - press.direction[1], direction[2] - press.direction[2]);
     if (turned < clickTurn) this.send_(PointerKind.click, pointer, press.grab?.body ?? -1, press.grab?.start);
@@ -111,6 +120,11 @@ export class Reports implements PageListener, FramePart {
     this.down_.add(key);
     this.parts_.session.send({ type: "key", key, down: true });
   }
+}
+
+/** Of its last press or release, ms. */
+function timeOf({ at }: Pointer): number {
+  return at > 0 ? at : performance.now();
 }
 
 function vec3(from: ArrayLike<number>): Vec3 {

@@ -181,6 +181,10 @@ export class Selection implements GestureListener, FramePart, PageListener {
     this.events_.pressNothing(pointer);
   }
 
+  releasedNothing(pointer: Pointer): void {
+    this.events_.releaseNothing(pointer);
+  }
+
   // --- inside
 
   private holdOf_(grab: Grab): Hold | undefined {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clicks, as they are told to a script, on a page that draws few pictures.
+
+import { PerspectiveCamera } from "three";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Pointer } from "../src/interact/gestures.ts";
+import { Events } from "../src/page/events.ts";
+import { Reports } from "../src/page/reports.ts";
+import { Selection } from "../src/page/selection.ts";
+import type { PageParts } from "../src/page/page_parts.ts";
+import { PointerKind, type ClientMessage } from "../src/protocol/generated.ts";
+import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
+
+let told: ClientMessage[];
+let selection: Selection;
+let pointer: Pointer;
+
+beforeEach(() => {
+  vi.useFakeTimers({ toFake: ["performance"] });
+  vi.advanceTimersByTime(1000);
+  vi.stubGlobal("window", { addEventListener() {} });
+  told = [];
+  const tested = new TestWorld();
+  const { world } = tested;
+  tested.set("style", style(0, "ball", part("sphere", [0.2])));
+  tested.set("body", bodyEntity(0));
+  tested.poses([body(0, 1)]);
+  world.listens = { clicks: true, hovers: false, moves: false, keys: [] };
+  const events = new Events();
+  const session = {
+    clientId: 1, idOf: (slot: number) => world.entities.body.idOf(slot) ?? { slot: 0, generation: 0 }, select: () => {},
+    send: (message: ClientMessage) => told.push(message),
+  };
+  selection = new Selection(world, session, { invalidate: () => {} }, events);
+  events.add(selection);
+  const viewer = { camera: new PerspectiveCamera() };
+  new Reports({ world, session, gestures: selection.gestures, viewer, events } as unknown as PageParts);
+  pointer = new Pointer("mouse");
+  pointer.active = true;
+  selection.gestures.add(pointer);
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+const clicks = () => told.filter((message) => message.type === "pointer" && message.kind === PointerKind.click).length;
+
+/** An event of the mouse, at a place, that is handled some ms after it happened. */
+function button(down: boolean, x: number, lateMs = 0): void {
+  pointer.origin.set([x, 0, 2]);
+  pointer.pressed = down;
+  pointer.at = performance.now() - lateMs;
+  selection.gestures.update(pointer);
+}
+
+describe.each([["a body", 1], ["nothing", 5]])("a click on %s", (_, x) => {
+  it("is told without waiting for a picture", () => {
+    button(true, x);
+    vi.advanceTimersByTime(100);
+    button(false, x);
+    expect(clicks()).toBe(1);
+  });
+
+  it("is one by when the user has pressed and released, whenever the page finds the time to look", () => {
+    button(true, x);
+    vi.advanceTimersByTime(900);
+    button(false, x, 800);
+    expect(clicks()).toBe(1);
+  });
+
+  it("is none where the button was down for long", () => {
+    button(true, x, 800);
+    vi.advanceTimersByTime(100);
+    button(false, x);
+    expect(clicks()).toBe(0);
+  });
+});
+
+it("a press that ends with the connection is no click", () => {
+  button(true, 1);
+  vi.advanceTimersByTime(5000);
+  selection.link("lost");
+  button(false, 1);
+  expect(clicks()).toBe(0);
+});
