@@ -186,12 +186,11 @@ describe("the script hears", () => {
   });
 
   it("of clicks on a body and on nothing, and of its keys", async () => {
-    const [x, y] = await tab.place(0);
-    await tab.page.mouse.click(x, y);
+    await tab.clickAt(await tab.place(0));
     await told('{"click": ');
     // The front of the ball, 12 cm before its middle.
     expect(/"click": \[(\S+), (\S+), (\S+)\]/.exec(server.output)!.slice(1).map(Number)[2]).toBeCloseTo(1.01, 1);
-    await tab.page.mouse.click(200, 80);
+    await tab.clickAt([200, 80]);
     await told('{"missed": ');
     await tab.page.keyboard.press("k");
     await told('{"key": "k"}');
@@ -261,6 +260,16 @@ describe("the script hears", () => {
     await tab.page.keyboard.press("i");
     // Independent of the page's resolution.
     await told('{"screenshot": [960, 540]}');
+    // The script has drawn a red curtain just before it asked.
+    const middle = await tab.page.evaluate(async (address) => {
+      const image = new Image();
+      image.src = address;
+      await image.decode();
+      const context = Object.assign(document.createElement("canvas"), { width: 1, height: 1 }).getContext("2d")!;
+      context.drawImage(image, -image.width / 2, -image.height / 2);
+      return [...context.getImageData(0, 0, 1, 1).data];
+    }, `data:image/png;base64,${/"curtain": "([^"]+)"/.exec(server.output)![1]}`);
+    expect(middle[0], JSON.stringify(middle)).toBeGreaterThan(2 * middle[2]);
     await tab.page.evaluate(() => (document.activeElement as HTMLElement).blur());
     const [file] = await Promise.all([tab.page.waitForEvent("download"), tab.page.keyboard.press("p")]);
     expect(file.suggestedFilename()).toBe("entities.png");

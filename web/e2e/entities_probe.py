@@ -4,6 +4,7 @@ it hears as JSON lines."""
 
 from __future__ import annotations
 
+import base64
 import json
 import math
 import struct
@@ -136,5 +137,8 @@ def listen(world: iota.World, ball: iota.Body) -> None:
 
     @world.on_key("i")
     def picture(event: iota.Event) -> None:
+        curtain = world.shape(looks.Look(iota.Box((4, 4, 0.02)), "paint", "#d0402b"), position=(0, 0.9, 2.4))
         png = next(client for client in world.clients if client.id == event.client).screenshot()
+        curtain.visible = False
+        tell(curtain=base64.b64encode(png).decode())
         tell(screenshot=struct.unpack(">II", png[16:24]))

@@ -7,11 +7,13 @@ import type { Viewer } from "./viewer.ts";
 
 const partBytes = 60_000;
 
+export type PictureViewer = Pick<Viewer, "renderer" | "scene" | "camera" | "presenting">;
+
 /**
  * A PNG of the world as drawn now, without the controls, at full resolution even if the page draws at a lower one; null
  * if the browser cannot make one.
  */
-export async function takePicture({ renderer, scene, camera, presenting }: Viewer): Promise<Blob | null> {
+export async function takePicture({ renderer, scene, camera, presenting }: PictureViewer): Promise<Blob | null> {
   const usual = renderer.getPixelRatio();
   const draw = (pixelRatio: number) => {
     if (!presenting && renderer.getPixelRatio() !== pixelRatio) renderer.setPixelRatio(pixelRatio);
@@ -35,8 +37,20 @@ export function takeFilmFrame({ viewer, world }: Pick<PageParts, "viewer" | "wor
   return viewer.renderer.domElement.toDataURL("image/jpeg", 0.95);
 }
 
-/** Answers the server's request; with an empty part if there is no picture. */
-export async function sendPicture(viewer: Viewer, request: number, send: (part: ClientMessage) => void): Promise<void> {
+/** A page that nobody sees has no frames. */
+const longestWaitMs = 500;
+
+/** Until what has come from the server is written for the renderer, which a frame does. */
+async function nextFrame(): Promise<void> {
+  await new Promise<unknown>((resolve) => {
+    requestAnimationFrame(resolve);
+    setTimeout(resolve, longestWaitMs);
+  });
+}
+
+/** Answers the server's request, which can come together with what its script wants to see; with an empty part if there is no picture. */
+export async function sendPicture(viewer: PictureViewer, request: number, send: (part: ClientMessage) => void): Promise<void> {
+  await nextFrame();
   const picture = await takePicture(viewer).catch(() => null);
   const bytes = picture === null ? new Uint8Array() : new Uint8Array(await picture.arrayBuffer());
   for (let from = 0; from === 0 || from < bytes.length; from += partBytes) {
