@@ -115,6 +115,22 @@ describe("the world", () => {
     expect(test.meshes()).toEqual(meshes);
   });
 
+  it("is described in full by its first poses, also again after a lost connection, so that no view is of a part of it", () => {
+    const test = new TestWorld();
+    expect(test.world.described).toBe(false);
+    test.join();
+    test.set("style", link, weight);
+    test.set("body", bodyEntity(0));
+    expect(test.world.described).toBe(false);
+    test.poses([body(0, 1)]);
+    expect(test.world.described).toBe(true);
+    test.join();
+    test.world.take(settings("another world"));
+    expect(test.world.described).toBe(false);
+    test.poses([body(0, 1)]);
+    expect(test.world.described).toBe(true);
+  });
+
   it("takes actions as they are told", () => {
     const { world, changes } = told();
     const action = { name: "break", key: "b", label: "break", help: "", on: ActionTarget.body, button: ControllerButton.a };

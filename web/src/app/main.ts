@@ -60,14 +60,20 @@ function gamepadWhenThere({ navigation, commands, viewer }: Page): void {
   }, { once: true });
 }
 
-/** Fetched with the first step of a walk. */
+/** Fetched with the first step of a walk, which waits for them: otherwise it could lead through one. */
 function wallsWhenWalking({ navigation, world }: Page): void {
+  let fetched: Promise<void> | null = null;
   navigation.walls = {
-    slide: () => {
-      navigation.walls = null;
-      void import("../page/walking.ts").then(({ wallsOf }) => {
-        navigation.walls = wallsOf(world);
-      });
+    slide: (_, way) => {
+      way.set(0, 0, 0);
+      fetched ??= import("../page/walking.ts").then(
+        ({ wallsOf }) => {
+          navigation.walls = wallsOf(world);
+        },
+        () => {
+          navigation.walls = null;
+        },
+      );
       return false;
     },
     floorBelow: () => -Infinity,

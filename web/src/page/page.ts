@@ -122,7 +122,10 @@ function othersOf({ world, session, viewer }: PageParts): PageListener {
     changed: (what) => {
       if (asked || what !== "clients" || world.clients.every(({ client }) => client === session.clientId)) return;
       asked = true;
-      void import("./people.ts").then(({ People }) => viewer.add(new People(world, session, viewer)));
+      void import("./people.ts").then(({ People }) => {
+        viewer.add(new People(world, session, viewer));
+        viewer.invalidate();
+      });
     },
   };
 }

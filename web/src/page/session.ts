@@ -6,8 +6,10 @@ import { Connection, type ConnectionListener, type LinkState, type JoinRequest }
 import type { ClientMessage, ControlCommand, Id, PosesBuffer, ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
-import { sendPicture } from "./picture.ts";
+import { sendPicture, type PictureViewer } from "./picture.ts";
 import { smooth, type Viewer } from "./viewer.ts";
+
+type SessionViewer = PictureViewer & Pick<Viewer, "invalidate" | "timing">;
 
 const noId: Id = { slot: 0, generation: 0 };
 /** In one message. */
@@ -17,10 +19,10 @@ export class Session implements ConnectionListener {
   readonly connection: Connection;
 
   private readonly world_: World;
-  private readonly viewer_: Viewer;
+  private readonly viewer_: SessionViewer;
   private readonly events_: Events;
 
-  constructor(url: string, request: JoinRequest, world: World, viewer: Viewer, events: Events) {
+  constructor(url: string, request: JoinRequest, world: World, viewer: SessionViewer, events: Events) {
     this.world_ = world;
     this.viewer_ = viewer;
     this.events_ = events;
@@ -73,7 +75,8 @@ export class Session implements ConnectionListener {
   poses(poses: PosesBuffer, now: number): void {
     const started = performance.now();
     const { world_: world, viewer_: viewer } = this;
-    if (poses.step !== world.step || poses.holds.count > 0) viewer.invalidate();
+    // Also the end of the last hold, and the first poses of a connection, which end its description.
+    if (poses.step !== world.step || poses.holds.count + world.holdCount > 0 || !world.described) viewer.invalidate();
     world.takePoses(poses, now);
     viewer.timing.decodeMs = smooth(viewer.timing.decodeMs, performance.now() - started);
   }

@@ -71,8 +71,9 @@ export class World {
   private readonly listener_: WorldListener;
   private look_ = "";
   private lookChosen_ = false;
-  private joined_ = false;
   private described_ = false;
+  /** A connection's description is coming. */
+  private joined_ = false;
 
   constructor(listener: WorldListener) {
     this.listener_ = listener;
@@ -84,9 +85,10 @@ export class World {
     this.store_ = new EntityStore(this.entities, warn);
   }
 
-  /** The first complete description has come, with poses. Before it, entities can be there without the bodies among them. */
+  /** A connection's complete description has come, with poses. Before that, entities can be there without the bodies among them, and
+   * after a lost connection those of another world. */
   get described(): boolean {
-    return this.described_;
+    return this.described_ && !this.joined_;
   }
 
   /** Height of the ground, m; null: none. */

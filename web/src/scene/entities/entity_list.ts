@@ -82,14 +82,14 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
     tube,
     viewpoint: new WatchedRecords<ViewpointEntity>(),
     stage: new WatchedRecords<StageEntity>(),
-    light: new Later<LightEntity>(() => import("./light.ts").then(({ LightView }) => new LightView(poses, () => body.size))),
+    light: new Later<LightEntity>(() => import("./light.ts").then(({ LightView }) => new LightView(poses, () => body.size)), changed),
     sound: new WatchedRecords<SoundEntity>(),
     custom: new Later<CustomEntity, CustomView>(() => import("./custom.ts").then((custom) => {
       const view = new custom.CustomView(poses, marks, canHold, warn, changed);
       body.covers.push(view);
       return view;
-    })),
-    texture: new Later<TextureEntity>(() => import("./texture.ts").then(({ TextureView }) => new TextureView(changed, warn))),
+    }), changed),
+    texture: new Later<TextureEntity>(() => import("./texture.ts").then(({ TextureView }) => new TextureView(changed, warn)), changed),
   } satisfies EntityViews;
 }
 

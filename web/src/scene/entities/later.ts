@@ -9,12 +9,15 @@ export class Later<Record extends Entity, View extends EntityView<Record> = Enti
   readonly root = new Group();
 
   private readonly fetch_: () => Promise<View>;
+  private readonly changed_: () => void;
   private readonly waiting_ = new Map<number, Record>();
   private view_: View | null = null;
   private fetched_: Promise<void> | null = null;
 
-  constructor(fetch: () => Promise<View>) {
+  /** `changed` is called when the code has come, and its entities can be drawn. */
+  constructor(fetch: () => Promise<View>, changed: () => void) {
     this.fetch_ = fetch;
+    this.changed_ = changed;
   }
 
   /** Null until its code has come. */
@@ -30,6 +33,7 @@ export class Later<Record extends Entity, View extends EntityView<Record> = Enti
       if (view.root !== undefined) this.root.add(view.root);
       for (const each of this.waiting_.values()) view.create(each);
       this.waiting_.clear();
+      this.changed_();
     });
   }
 
