@@ -294,7 +294,7 @@ describe("two tabs on one world", () => {
     await other.freeze();
     const bodies = await tab.page.evaluate(() => iota.bodies());
     for (const body of [bodies[0], bodies[11], bodies[23]]) {
-      expect(distance(await tab.position(body), await other.position(body))).toBeLessThan(1e-3);
+      await expect.poll(async () => distance(await tab.position(body), await other.position(body))).toBeLessThan(1e-3);
     }
     await tab.picture("two_tabs");
   });

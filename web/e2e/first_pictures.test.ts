@@ -18,15 +18,11 @@ afterAll(async () => {
 
 const take = (tab: Tab) => pictureOf(tab, 320, 180);
 
-/** A page that comes to the study at its start. */
+/** A page of the study, which stays at its start. */
 async function withStart(study: string, look: (tab: Tab) => Promise<void>): Promise<void> {
-  const server = await WorldServer.start([study], await freePort());
+  const server = await WorldServer.start(["web/e2e/paused_probe.py"], await freePort(), undefined, { IOTA_STUDY: study });
   try {
-    const tab = await browser.open(server.url);
-    await tab.drawn();
-    await tab.pause(true);
-    await tab.backToStart();
-    await tab.page.reload();
+    const tab = await browser.open(server.url, false);
     await tab.drawn();
     await tab.eyeAtRest();
     await look(tab);

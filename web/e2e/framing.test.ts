@@ -89,7 +89,7 @@ it("what comes off is pointed at from the edge of the picture, and a press of th
   try {
     const tab = await open(server.url);
     const marker = tab.page.locator("#away button:visible");
-    expect(await marker.count()).toBe(0);
+    await expect.poll(() => marker.count()).toBe(0);
     // Who has chosen a view keeps it; otherwise the camera would show the new scene.
     await tab.page.mouse.move(60, 60);
     await tab.page.mouse.down();

@@ -30,13 +30,11 @@ describe("a cell of a notebook", () => {
     await frame.evaluate(() => iota.page.commands.run("play"));
     await frame.waitForFunction(() => iota.paused);
     // The drawn poses come to rest a little later.
-    let before = "";
-    await expect.poll(async () => {
-      const now = await frame.evaluate(() => iota.bodyPosition(5).join());
-      const isStill = now === before;
-      before = now;
-      return isStill;
-    }, { interval: 100 }).toBe(true);
+    await expect.poll(() => frame.evaluate(async () => {
+      const before = iota.bodyPosition(5).join();
+      for (let count = 0; count < 3; count++) await new Promise(requestAnimationFrame);
+      return iota.bodyPosition(5).join() === before;
+    })).toBe(true);
     const [x, y] = await frame.evaluate(() => iota.screenPosition(5)!);
     const box = (await page.locator("iframe").boundingBox())!;
     await page.mouse.move(box.x + x, box.y + y);

@@ -32,7 +32,7 @@ const names = (tab: Tab) => tab.page.evaluate(() => {
 it("are seen by each other with their names, where they look from", async () => {
   // Who looks from the same place is not drawn.
   await ada.until("it knows where both are", () => iota.page.world.people.length === 2);
-  expect(await names(ada)).toEqual([]);
+  await expect.poll(() => names(ada)).toEqual([]);
   // Bo goes to the other side of the chain, a little aside.
   await bo.page.evaluate(() => {
     const { navigation } = iota.page;

@@ -29,8 +29,8 @@ afterAll(async () => {
 describe("iota run chain", () => {
   it("falls apart and mends itself when it is asked to", async () => {
     await tab.page.keyboard.press("t");
-    await tab.until("the chain falls apart", () => new Set(iota.articulates().values()).size === 2, undefined, 20_000);
-    await tab.until("the chain is whole again", () => new Set(iota.articulates().values()).size === 1, undefined, 20_000);
+    await tab.until("the chain falls apart", () => new Set(iota.articulates().values()).size === 2);
+    await tab.until("the chain is whole again", () => new Set(iota.articulates().values()).size === 1);
   });
 
   it("is found again by an open page after the server was killed", async () => {

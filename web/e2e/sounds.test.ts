@@ -22,7 +22,8 @@ const listen = () => {
         splitter = this.context.createChannelSplitter(2);
         seen.set(this.context, splitter);
         for (const side of [0, 1]) {
-          const ear = new AnalyserNode(this.context, { fftSize: 8192 });
+          // A third of a second, for a page that is busy for so long.
+          const ear = new AnalyserNode(this.context, { fftSize: 16384 });
           usual.call(splitter, ear, side);
           ears.push(ear);
         }
@@ -41,7 +42,7 @@ async function heard(key: string): Promise<{ left: number; right: number }> {
     store.peaks = [0, 0];
     if (store.watching) return;
     store.watching = true;
-    const samples = new Float32Array(8192);
+    const samples = new Float32Array(16384);
     setInterval(() => store.ears!.forEach((ear, side) => {
       ear.getFloatTimeDomainData(samples);
       for (const sample of samples) store.peaks![side] = Math.max(store.peaks![side], Math.abs(sample));
@@ -51,7 +52,7 @@ async function heard(key: string): Promise<{ left: number; right: number }> {
   const loud = () => (globalThis as { peaks?: number[] }).peaks!.some((peak) => peak > 1e-4);
   await tab.until(`something is heard after ${key}`, loud);
   await tab.until("it is quiet again", () => {
-    const samples = new Float32Array(8192);
+    const samples = new Float32Array(16384);
     return (globalThis as { ears?: AnalyserNode[] }).ears!.every((ear) => {
       ear.getFloatTimeDomainData(samples);
       return samples.every((sample) => Math.abs(sample) < 1e-6);
