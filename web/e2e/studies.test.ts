@@ -109,9 +109,18 @@ class Study {
     else await control.fill(value);
   }
 
-  /** Share of the picture's pixels that differ from those of the previous call. */
-  async changed(): Promise<number> {
-    return this.tab.page.evaluate(() => {
+  /** Leaves out what software takes half of a frame for and nothing here looks at: what shines through the bar. */
+  async lighten(): Promise<void> {
+    await this.tab.page.evaluate(() => {
+      const sheet = new CSSStyleSheet();
+      sheet.replaceSync("* { backdrop-filter: none !important; -webkit-backdrop-filter: none !important; }");
+      document.adoptedStyleSheets = [sheet];
+    });
+  }
+
+  /** Share of the picture's pixels that differ from those of the previous call without `keep`. */
+  async changed(keep = false): Promise<number> {
+    return this.tab.page.evaluate((keeps) => {
       const { renderer, scene, camera } = iota.page.viewer;
       const gl = renderer.getContext();
       const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
@@ -120,13 +129,13 @@ class Study {
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
       const store = globalThis as { pixelsBefore?: Uint8Array };
       const before = store.pixelsBefore;
-      store.pixelsBefore = pixels;
+      if (!keeps || before === undefined) store.pixelsBefore = pixels;
       if (before?.length !== pixels.length) return 1;
       let count = 0;
       const differs = (at: number) => Math.abs(pixels[at] - before[at]) > 12;
       for (let at = 0; at < pixels.length; at += 4) if (differs(at) || differs(at + 1) || differs(at + 2)) count++;
       return count / (width * height);
-    });
+    }, keep);
   }
 
   /** Holds one of the bodies that a user can see and take, of a paused world: the lowest one, since what hangs is free there.
@@ -158,7 +167,7 @@ class Study {
       }
       await this.tab.pause(false);
       // On a slow machine the rod of appendix-e1 lies under the bar already.
-      if (trial % 4 === 1) await page.evaluate(() => iota.page.commands.run("reset"));
+      if (trial % 5 === 4) await page.evaluate(() => iota.page.commands.run("reset"));
       await this.tab.goOn(0.3);
     }
     throw new Error("nothing can be taken hold of");
@@ -170,28 +179,25 @@ class Study {
     const { body, at } = await this.take(wanted);
     await this.changed();
     await this.follows(() => this.pointer_.move([at[0] + by[0], at[1] + by[1]]));
-    expect(await this.changed(), "share of changed pixels").toBeGreaterThan(5e-4);
+    await expect.poll(() => this.changed(true), { message: "share of changed pixels" }).toBeGreaterThan(5e-4);
     return body;
   }
 
-  /** Lets the world go on, moves the hand that holds a body, and waits until that has come some way along. */
+  /** Lets the world go on, moves the hand that holds a body, and waits until the held point has come some way from where it was taken
+   * towards the hand. The body's center is no measure: it may swing, or lie so that it comes no nearer. */
   private async follows(move: () => Promise<void>): Promise<void> {
     const { tab } = this;
     await tab.pause(false);
     await this.knows("Python knows what is held", ({ held }) => held !== null);
     await tab.until("the page knows it too", () => iota.holds().length > 0);
-    const start = await tab.page.evaluate(() => {
-      const [{ body, target }] = iota.holds();
-      return { target: [...target], at: iota.bodyPosition(body) };
-    });
     await move();
-    await tab.until("the body has come some way towards the hand", ({ target, at }) => {
-      const [hold] = iota.holds();
-      if (hold === undefined) return false;
-      const [now, way] = [iota.bodyPosition(hold.body), hold.target.map((value, axis) => value - target[axis])];
-      const moved = now.reduce((sum, value, axis) => sum + (value - at[axis]) * way[axis], 0);
-      return moved > 0.1 * way.reduce((sum, value) => sum + value * value, 0);
-    }, start, patience);
+    await tab.until("the held point has come some way towards the hand", () => {
+      const [grab] = iota.page.selection.gestures.grabs;
+      const { holds: [{ point, target }], holdCount } = iota.page.world;
+      if (grab === undefined || holdCount === 0) return false;
+      const [moved, way] = [point, target].map((at) => grab.start.map((value, axis) => at[axis] - value));
+      return moved.reduce((sum, value, axis) => sum + value * way[axis], 0) > 0.1 * way.reduce((sum, value) => sum + value * value, 0);
+    }, undefined, patience);
   }
 
   async letGo(): Promise<void> {
@@ -199,9 +205,9 @@ class Study {
     await this.knows("nothing is held", ({ held }) => held === null);
   }
 
-  /** Back to the start, paused, if a certain body is wanted: keys and hands may have torn it off, and it lies out of reach. */
+  /** Back to the start, paused: what is seen and taken there does not depend on how far the world has come, or on what keys and hands
+   * have torn off. */
   private async beginAnew(): Promise<void> {
-    if (this.first_![1] === undefined) return;
     await this.tab.pause(true);
     await this.tab.backToStart();
   }
@@ -263,6 +269,8 @@ class Study {
   /** The first picture shows the study at a good size, and nothing that can be taken is cut by an edge or is under the panel of controls,
    * on a phone and on a desk. */
   async isFramed(): Promise<void> {
+    await this.beginAnew();
+    await this.tab.freeze();
     for (const window of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, small]) {
       await this.tab.page.setViewportSize(window);
       await expect.poll(async () => {
@@ -272,6 +280,9 @@ class Study {
         return all.share > 0.004 && Math.max(all.wide, all.high) > 0.4 && !bodies.cut && (window === small || bodies.covered < 0.05) ? "framed" : { window, all, bodies };
       }, { message: "the first picture", timeout: patience }).toBe("framed");
     }
+    // Drawing shadows anew is a third of a picture in software, and no later look depends on them.
+    await this.tab.page.evaluate(() => { iota.page.viewer.renderer.shadowMap.autoUpdate = false; });
+    await this.tab.pause(false);
   }
 
   /** To the first view, at once. */
@@ -319,7 +330,11 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.tab.until("the camera is outside again", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) > 1, undefined, patience);
   },
   chain: async (study) => {
+    const welcome = study.tab.page.locator("#welcome");
+    // On a slow machine its time is over.
+    await welcome.evaluate((card) => card.classList.remove("gone"));
     await study.drag([some, -some]);
+    expect(await welcome.getAttribute("class"), "the start card leaves at a grab").toContain("gone");
     await study.letGo();
     await study.does("t", "it falls apart", ({ articulates }) => articulates === 2);
     await study.knows("it mends itself", ({ articulates }) => articulates === 1);
@@ -353,7 +368,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   lab: async (study) => {
     await study.drag([some, 0], (body) => body < 7);  // of the ladder
     await study.letGo();
-    await study.does("t", "the ladder's top block turns", (now, before) => now.kinetic > before.kinetic + 1e-3);
+    // By its turn: the cradle swings, so that the kinetic energy of all says nothing. The script itself tips it once, at 0.6 s.
+    await study.knows("it has been tipped once", ({ time }) => time > 2);
+    const top = await study.tab.page.evaluate(() => iota.bodyRotation(0));
+    await study.key("t");
+    await study.tab.until("the ladder's top block turns over", (was) => (
+      Math.abs(iota.bodyRotation(0).reduce((sum, value, axis) => sum + value * was[axis], 0)) < 0.5), top, patience);
     const before = await study.eye();
     await study.key("v");
     await study.tab.until("the view is another", (was) => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - was[axis])) > 0.2, before);
@@ -377,7 +397,9 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
       const [was, began] = [turn(), iota.time];
       while (iota.time < began + 0.15) await new Promise(requestAnimationFrame);
       const now = turn();
-      return Math.sign(was[0] * now[1] - was[1] * now[0] + was[3] * now[2] - was[2] * now[3]);
+      // A quaternion and its opposite are the same rotation.
+      const same = Math.sign(was.reduce((sum, value, axis) => sum + value * now[axis], 0));
+      return same * Math.sign(was[0] * now[1] - was[1] * now[0] + was[3] * now[2] - was[2] * now[3]);
     }, wheel);
     const before = await sense();
     await study.key("x");
@@ -462,13 +484,13 @@ afterAll(async () => {
 });
 
 describe("the study", () => {
-  // A second time where the first failed: a body that swings when it is taken (molecule) may be nearer to the hand at first than it comes.
-  it.each(Object.keys(studies))("%s moves, can be taken by mouse, finger and ray, and obeys its keys and controls", { timeout: 300_000, retry: 1 }, async (name) => {
+  it.each(Object.keys(studies))("%s moves, can be taken by mouse, finger and ray, and obeys its keys and controls", { timeout: 300_000 }, async (name) => {
     const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: name });
     let tab: Tab | null = null;
     try {
       tab = await browser.open(`${server.url}&emulate=quest3`);
       const study = new Study(server, tab);
+      await study.lighten();
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
@@ -483,8 +505,7 @@ describe("the study", () => {
       throw new Error(`${String(error)}; the world: ${server.state}`, { cause: error });
     } finally {
       // It would go on drawing for both eyes, beside the next study.
-      await tab?.page.close();
-      await server.stop();
+      await Promise.all([tab?.page.close(), server.stop()]);
     }
   });
 
