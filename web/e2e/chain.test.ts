@@ -187,7 +187,9 @@ describe("the page of a chain", () => {
     const other = await browser.open(server.url);
     try {
       await other.page.route("**/help-*.js", (route) => route.abort());
+      const failed = other.page.waitForEvent("requestfailed");
       await other.page.keyboard.press("?");
+      expect((await failed).url()).toContain("help-");
       await expect.poll(() => other.page.textContent("#cards")).toMatch(/A part of the page did not come.+help-.+Reload the page/);
       await other.page.unroute("**/help-*.js");
     } finally {
