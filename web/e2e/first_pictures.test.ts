@@ -20,7 +20,7 @@ const take = (tab: Tab) => pictureOf(tab, 320, 180);
 
 /** A page of the study, which stays at its start. */
 async function withStart(study: string, look: (tab: Tab) => Promise<void>): Promise<void> {
-  const server = await WorldServer.start(["web/e2e/paused_probe.py"], await freePort(), undefined, { IOTA_STUDY: study });
+  const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: study, IOTA_PAUSED: "1" });
   try {
     const tab = await browser.open(server.url, false);
     await tab.drawn();

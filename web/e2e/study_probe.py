@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A study, named by IOTA_STUDY, for browser tests; prints what Python knows of it as JSON lines."""
+"""A study, named by IOTA_STUDY, for browser tests; prints what Python knows of it as JSON lines. With IOTA_PAUSED it stays at its
+start, for pictures of it."""
 
 from __future__ import annotations
 
@@ -17,6 +18,7 @@ NAME = os.environ["IOTA_STUDY"]
 def build() -> iota.World:
     make = studies.module(NAME).build
     world: iota.World = make(Path(mkdtemp())) if NAME == "playground" else make()
+    world.paused = "IOTA_PAUSED" in os.environ
     watch(world)
     return world
 

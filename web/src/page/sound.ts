@@ -35,8 +35,7 @@ export class Sound implements PageListener, FramePart {
       const context = (this.context_ = new AudioContext());
       this.ready_ = Promise.all([import("./sounds.ts"), context.resume()]).then(([{ Sounds }]) =>
         (this.sounds_ = new Sounds(context, this.viewer_, this.records_, this.events_)));
-    }
-    if (this.context_?.state === "suspended") void this.context_.resume();
+    } else if (this.context_?.state === "suspended") void this.context_.resume();
   }
 
   /** position: world, m; without one it is heard everywhere alike. */
