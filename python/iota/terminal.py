@@ -9,12 +9,13 @@ import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Box, Grip, Mesh, Solid, Sphere, Vec3
+from iota._core import Body, Box, Grip, Mesh, Shape, Solid, Vec3
 from iota.world.frames import axes_of
 from iota.world.view import View
 from iota.world.world import World
@@ -196,10 +197,24 @@ def lines_of(body: Body) -> Iterator[Points]:
         yield np.array([list(particle.position) for particle in body.particles])
 
 
-def outline(solid: Solid) -> Iterator[Points]:
-    shape = solid.shape
+@lru_cache(maxsize=256)
+def silhouettes(shape: Shape) -> list[Points]:
+    """The outlines of a shape, or of its convex hull, seen along each axis of its frame; none of an endless shape. m."""
+    low, high = shape.bounds
+    size = max(high - low)
+    if not np.isfinite(size):
+        return []
     turn = np.linspace(0, 2 * np.pi, 25)
     circle = np.stack([0 * turn, np.cos(turn), np.sin(turn)], axis=1)
+    # The point nearest to a far place is the farthest in its direction.
+    return [
+        np.array([tuple(shape.closest(tuple(1e3 * size * direction))) for direction in np.roll(circle, axis, axis=1)])
+        for axis in range(3)
+    ]
+
+
+def outline(solid: Solid) -> Iterator[Points]:
+    shape = solid.shape
     if isinstance(shape, Box):
         corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * list(
             shape.size
@@ -207,13 +222,8 @@ def outline(solid: Solid) -> Iterator[Points]:
         local = [corners[[a, b]] for a in range(8) for b in range(a + 1, 8) if (a ^ b).bit_count() == 1]
     elif isinstance(shape, Mesh):
         local = [np.asarray(shape.vertices)[[*corners, corners[0]]] for corners in np.asarray(shape.triangles)[:500]]
-    elif isinstance(shape, Sphere):
-        local = [shape.radius * np.roll(circle, axis, axis=1) for axis in range(3)]
     else:
-        radius, half = getattr(shape, "radius", None), getattr(shape, "length", 0.0) / 2
-        reach = radius if radius is not None else max(map(float, shape.numbers), default=0.0)
-        ends = [reach * circle + [x, 0, 0] for x in (-half, half)]
-        local = [*ends, *(np.stack([ends[0][side], ends[1][side]]) for side in range(0, 24, 6))]
+        local = silhouettes(shape)
     axes = axes_of(solid.orientation)
     for line in local:
         yield line @ axes.T + list(solid.position)

@@ -57,6 +57,18 @@ def test_what_is_dropped_comes_to_lie_on_the_ground(kind: str, size: float) -> N
     assert abs(body.velocity.y) < 0.3 * math.sqrt(9.81 * size)
 
 
+@pytest.mark.parametrize("rounding", [0, 0.15, 0.5])
+def test_a_cylinder_touches_the_ground_with_its_rounded_edges(rounding: float) -> None:
+    shape = iota.Cylinder(0.5, 2, rounding)
+    places, radius = touching_points(shape)
+    for tilt in np.linspace(-1.5, 1.5, 7):
+        down = np.array(
+            [math.sin(tilt), math.cos(tilt) * math.cos(math.pi / 8), math.cos(tilt) * math.sin(math.pi / 8)]
+        )
+        lowest_point = np.array(tuple(shape.closest(tuple(1e6 * down))))
+        assert max(places @ down) + radius == pytest.approx(lowest_point @ down, rel=1e-6)
+
+
 def test_what_is_thrown_down_fast_hardly_comes_back() -> None:
     """It falls as from 80 m; what it keeps is spin, of which its corners make a little height."""
     world, body = dropped(iota.Box((0.3, 0.2, 0.1)), 1.0, velocity=(2, -40, 0))

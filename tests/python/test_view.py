@@ -11,10 +11,11 @@ import threading
 import time
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 import iota
-from iota.terminal import TerminalView
+from iota.terminal import TerminalView, outline
 
 
 class Probe(iota.View):
@@ -120,6 +121,24 @@ def test_the_terminal_shows_bodies_where_they_are(monkeypatch: pytest.MonkeyPatc
     assert moved[0] - left[0] == pytest.approx(wide / 4, abs=1.1) and abs(moved[1] - left[1]) <= 1
     assert min(y for _, y in corners) < left[1] < max(y for _, y in corners)
     assert "viewed" in out.getvalue() and "k: kick" in out.getvalue()
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        iota.Sphere(0.4), iota.Box((1, 2, 3)), iota.Cylinder(0.5, 2, 0.1), iota.Capsule(0.3, 1), iota.Cone(0.5, 2),
+        iota.Torus(0.5, 0.1, 0.3), iota.Ellipsoid((1, 2, 3)),
+    ],
+    ids=lambda shape: shape.kind,
+)  # fmt: skip
+def test_the_terminal_draws_every_shape_along_its_surface(shape: iota.Shape) -> None:
+    solid = iota.System().body(shape=shape, density=1000).solids[0]
+    points = np.concatenate(list(outline(solid))) - list(solid.position)
+    low, high = shape.bounds
+    assert points.min(axis=0) == pytest.approx(list(low), abs=1e-3) and points.max(axis=0) == pytest.approx(
+        list(high), abs=1e-3
+    )
+    assert max(abs(shape.distance(tuple(point))) for point in points) < 1e-6
 
 
 def test_keys_in_the_terminal_act_on_the_selected_body() -> None:

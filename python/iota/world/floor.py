@@ -238,7 +238,7 @@ class Floor:
     def _find_impact(self, touches: Touches, positions: Array, speeds: Array, gravity: float, dt: float) -> None:
         """speeds: downwards, of points that come to the floor in this step, others 0, m/s."""
         hardest = int(speeds.argmax())
-        # What merely settles in a step is no impact.
+        # A body that only settles by the fall of a few steps makes no impact.
         if speeds[hardest] > 4 * gravity * dt:
             place = touches.weights[hardest] @ positions[touches.rows[hardest]]
             self.impact = Impact(Vec3(float(place[0]), self.height, float(place[2])), float(speeds[hardest]))
@@ -284,7 +284,7 @@ class Floor:
         positions: Array,
         row_of: Indices,
     ) -> dict[Body, Known]:
-        """What is known of bodies that are as they were."""
+        """The kept data of bodies that have not changed."""
         same = {
             body: known
             for body, its, numbers in zip(bodies, particles, traits, strict=True)
@@ -440,8 +440,9 @@ def touching_points(shape: Shape) -> tuple[Array, float]:
         return CORNERS * (np.array(tuple(shape.size)) / 2 - shape.rounding), shape.rounding
     around = 2 * np.pi * (np.arange(ROUND_POINTS) + 0.5) / ROUND_POINTS
     if isinstance(shape, Cylinder):
-        rim = np.stack([0 * around, np.cos(around), np.sin(around)], axis=1) * shape.radius
-        return np.concatenate([rim + [side * shape.length / 2, 0, 0] for side in (-1, 1)]), 0.0
+        rim = np.stack([0 * around, np.cos(around), np.sin(around)], axis=1) * (shape.radius - shape.rounding)
+        half = shape.length / 2 - shape.rounding
+        return np.concatenate([rim + [side * half, 0, 0] for side in (-1, 1)]), shape.rounding
     if isinstance(shape, Torus):
         ring = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1) * shape.radius
         ring[:, 0] += np.sign(ring[:, 0]) * shape.stretch / 2
