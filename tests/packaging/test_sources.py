@@ -128,3 +128,26 @@ def test_the_protocol_is_told_whole() -> None:
     kinds = [path.stem for path in (ROOT / "protocol" / "entities").glob("*.json")]
     assert len(messages) > 20 and len(kinds) > 20
     assert not [name for name in messages + kinds if f"`{name}`" not in told]
+
+
+BRITISH = re.compile(
+    r"(?i)colour|centre|neighbour|behaviour|favour|licence|grey|artefact|catalogue|\b(kilo|centi|milli)?metres?\b"
+    r"|\banaly[s](e|ed|er|ing)\b|(initial|maxim|minim|normal|optim|organ|quant|real|serial)is(e[ds]?|er|ing|ation)\b"
+    r"|(cance|labe|leve|mode|signa|trave)ll(ed|ing)\b"
+)
+TEXTS = {".cpp", ".css", ".h", ".html", ".json", ".md", ".py", ".sh", ".toml", ".ts", ".txt"}
+OTHERS_WORDS = {  # words of other libraries, which errors translate; tests of that; licenses; this list
+    "python/iota/arguments.py", "tests/python/test_errors_in_words.py", "tests/python/test_scene.py",
+    "tests/packaging/test_sources.py",
+}  # fmt: skip
+
+
+def test_words_have_their_american_spelling() -> None:
+    found = []
+    for path in files():
+        name = path.relative_to(ROOT).as_posix()
+        if path.suffix not in TEXTS or name in OTHERS_WORDS or name.startswith("LICENSES/"):
+            continue
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            found += [f"{name}:{number}: {word[0]}" for word in BRITISH.finditer(line)]
+    assert not found

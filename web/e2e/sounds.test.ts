@@ -10,7 +10,7 @@ let server: WorldServer;
 let browser: Browser;
 let tab: Tab;
 
-/** Listens to all that goes to the loudspeakers: `ears` are an analyser for each. */
+/** Listens to all that goes to the loudspeakers: `ears` are an analyzer for each. */
 const listen = () => {
   const ears: AnalyserNode[] = [];
   const usual = AudioNode.prototype.connect as (this: AudioNode, to: AudioNode, ...more: unknown[]) => AudioNode;
