@@ -3,7 +3,9 @@
 #include "island/islands.h"
 
 #include "ingredient/bonds.h"
+#include "ingredient/closings.h"
 #include "ingredient/constraint.h"
+#include "ingredient/grips.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -85,6 +87,45 @@ TEST(Islands, put_articulates_down_to_the_leader_of_their_island) {
   room.islands.replace_by_leaders(articulates);
   EXPECT_EQ(articulates,
             (std::vector{room.m.model.bodies[rods[0]].articulate, room.m.model.bodies[rods[1]].articulate}));
+}
+
+/// Whether the island of a chain of 200 rods follows a cut in its middle: then its two halves stay in one problem for a
+/// while. `prepare(room, chain)` comes before the first step, so that only the cut is followed.
+template <class Prepare>
+bool follows_a_cut(Prepare prepare) {
+  Room room;
+  const auto chain = room.m.chain(200);
+  prepare(room, chain);
+  room.update();
+  RestructureReport report;
+  (void)model::separate_particles(room.m.model, room.m.particle(chain[99], 1), room.m.particle(chain[100], 0), report);
+  EXPECT_NE(room.m.model.bodies[chain[0]].articulate, room.m.model.bodies[chain[199]].articulate);
+  room.update();
+  return room.of(chain[0]) == room.of(chain[199]);
+}
+
+void hold(Room& room, std::uint32_t body) {
+  ingredient::Grip grip;
+  grip.body = body, grip.frequency = 1, grip.max_acceleration = 1;
+  ingredient::Grips::anchor(room.m.model, grip, room.m.model.center_of_mass(body));
+  ingredient::Grips::touch(room.m.model, body);
+  room.m.model.grips.create(grip);
+}
+
+TEST(Islands, follow_a_cut_in_place_also_in_chains_that_are_held_damped_or_closing) {
+  using Chain = std::vector<std::uint32_t>;
+  EXPECT_TRUE(follows_a_cut([](Room&, const Chain&) {}));
+  EXPECT_TRUE(follows_a_cut([](Room& room, const Chain& chain) { hold(room, chain[99]); }));
+  EXPECT_TRUE(follows_a_cut([](Room& room, const Chain& chain) { hold(room, chain[10]), hold(room, chain[150]); }));
+  EXPECT_TRUE(follows_a_cut([](Room& room, const Chain& chain) {
+    for (const std::uint32_t body : {chain[5], chain[100]}) room.m.model.set_damping(body, 0.5);
+  }));
+  EXPECT_TRUE(follows_a_cut([](Room& room, const Chain& chain) {
+    ingredient::Closing closing;
+    closing.p = room.m.particle(chain[30], 1), closing.q = room.m.particle(chain[60], 1);
+    closing.distance = 30, closing.duration = 1;
+    ingredient::Closings::add(room.m.model, closing);
+  }));
 }
 
 // Against a search through all bonds, over random bonds that come and go.
