@@ -194,7 +194,7 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
   std::memcpy(record.data() + 8, fields.data(), fields.size());
   const std::uint8_t number = kind_named(kind);
   if (!is_record(number, record, std::make_index_sequence<net::entity_kind_count>()))
-    throw nb::value_error(("these bytes are no record of the kind '" + kind + "'").c_str());
+    throw nb::value_error(("these bytes are not a record of the kind '" + kind + "'").c_str());
   self.own.set(number, {slot, generation}, record);
 }
 

@@ -521,7 +521,7 @@ def one_of(words: Iterable[str]) -> str:
     return f"{', '.join(most)} or {last}" if most else last
 
 
-# What other libraries call what an argument of ours means.
+# For each argument of ours, its names in other libraries.
 MEANT = {
     "position": ("eye", "location", "place", "center", "centre", "origin", "xyz", "translation"),
     "at": ("position", "eye", "location", "place", "center", "centre", "origin", "xyz"),

@@ -226,7 +226,7 @@ class Parser {
     double value = 0;
     const auto [end, error] = std::from_chars(text_.data() + position_, text_.data() + text_.size(), value);
     if (error == std::errc::result_out_of_range) fail("this number is too large or too small", position_);
-    if (error != std::errc{}) fail("this is no number", position_);
+    if (error != std::errc{}) fail("this is not a number", position_);
     const std::size_t start = position_;
     position_ = static_cast<std::size_t>(end - text_.data());
     if (is_letter(peek()) || peek() == '.') fail("this is not a number; a product needs a '*'", start);

@@ -100,7 +100,7 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
 
 namespace {
 
-/// visit(row, law, value): of the rows that hold a constraint which is no coupling, where its particles are now.
+/// visit(row, law, value): the rows of a constraint, except a coupling, at the present places of its particles.
 template <class Visit>
 void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
   const Constraint& c = model.constraints[slot];

@@ -310,7 +310,7 @@ void Joints::check_links(const Model& model, model::Audit& audit) {
     const bool couples = known && info(c.kind).form == Form::coupling;
     audit.require(couples || (c.particles[a_origin] != none && c.has(b_origin) && (c.in_world & 0x0f) == 0),
                   "constraint ", slot, " joins nothing");
-    audit.require(couples == (c.first_term != none), "constraint ", slot, " couples nothing, or is no coupling");
+    audit.require(couples == (c.first_term != none), "constraint ", slot, " couples nothing, or is not a coupling");
     const bool has_curve = c.kind == ConstraintKind::path;
     audit.require(has_curve || c.curve.count == 0, "constraint ", slot, " has a curve");
     audit.require(std::uint64_t{c.curve.first} + c.curve.count <= model.curve_points.size(), "constraint ", slot,

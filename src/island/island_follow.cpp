@@ -69,7 +69,7 @@ bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of
   return integrator_->place_forces(problem_);
 }
 
-// Those of the rings that changed and of all particles of the bodies that changed. A particle without a node gets one,
+// The nodes of the rings that changed and of all particles of the bodies that changed. A particle without a node gets one,
 // beside that of the ring from which its own was split or of another particle of the body.
 std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Model::LocalChange& change,
                                                       std::vector<std::uint32_t>& node_of_ring) {

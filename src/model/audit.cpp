@@ -122,7 +122,7 @@ void Audit::check_particles() {
     ++in_body_[p.body], ++in_ring_[p.ring];
     const Body& body = model_.bodies[p.body];
     require(p.basis_index < 0 || (p.basis_index < body.rank && body.basis[p.basis_index] == slot), "particle ", slot,
-            " is no basis point ", int(p.basis_index), " of its body");
+            " is not basis point ", int(p.basis_index), " of its body");
     require(p.attributes == none || model_.attributes[p.attributes].particle == slot, "particle ", slot,
             " has the attributes of another");
     require((p.groups & ~living_groups) == 0, "particle ", slot, " is in a group that is gone");

@@ -97,7 +97,7 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
     const auto [i, j] = basis_pairs[row];
     RigidRow& rigid = this->row(body_slot, row);
     rigid.length = norm(position(body.basis[j]) - position(body.basis[i]));
-    if (old_basis != body.basis) rigid.multiplier = 0;  // the multipliers of other rows are no warm start
+    if (old_basis != body.basis) rigid.multiplier = 0;  // not those of other rows
   }
 
   std::optional<BasisWeights> weights;  // for bodies with more points than their basis

@@ -86,7 +86,7 @@ class Pieces {
     parent_.resize(particles.size());
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
-  /// Nothing for a particle of another body.
+  /// None for a particle of another body.
   void join(std::uint32_t p, std::uint32_t q) {
     if (has(p) && has(q)) parent_[piece(p)] = piece(q);
   }

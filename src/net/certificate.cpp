@@ -104,7 +104,8 @@ std::string alternative_names(std::span<const std::string> hosts) {
   std::string names;
   for (const std::string& host : hosts) {
     // A comma would start another entry.
-    if (host.empty() || host.find(',') != std::string::npos) throw std::invalid_argument("'" + host + "' is no host");
+    if (host.empty() || host.find(',') != std::string::npos)
+      throw std::invalid_argument("'" + host + "' is not a host");
     names += (names.empty() ? "" : ",") + std::string(is_address(host) ? "IP:" : "DNS:") + host;
   }
   if (names.empty()) throw std::invalid_argument("a certificate needs a host");
@@ -169,7 +170,7 @@ Certificate load_or_make_certificate(std::span<const std::string> hosts, const s
 
 std::string fingerprint(std::string_view chain) {
   const X509Certificate certificate = parse_certificate(chain);
-  if (!certificate) throw std::invalid_argument("this is no certificate in PEM");
+  if (!certificate) throw std::invalid_argument("this is not a certificate in PEM");
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
   require(X509_digest(certificate.get(), EVP_sha256(), digest.data(), &size) == 1, "fingerprint");

@@ -77,7 +77,7 @@ class Hub {
   /// Welcomes the client on `link` and replays the scene to it; returns its number, or 0 and the reason of a refusal.
   std::pair<std::uint32_t, std::string> join(ClientLink& link, const protocol::Hello& hello);
   void leave(std::uint32_t client);
-  /// Tells `link` what viewers are told, from the present state on. It is no client: nobody sees it.
+  /// Sends `link` the messages to viewers, from the present state on. It is not a client and not shown to any.
   void watch(std::shared_ptr<ClientLink> link);
   void unwatch(const ClientLink& link);
   /// Sends messages that were delayed by a frame's time.

@@ -35,7 +35,7 @@ struct EnergyBalance {
   void measure_change(const Problem&, double fraction, double work = 0);
   /// After a change of velocities alone; what the change takes is missing.
   void measure_kinetic(const Problem&);
-  /// What the tolerance of a solve may make, where energies are of this size, J.
+  /// The energy that the tolerance of a solve may make if energies are of this size, J.
   static double tolerance(double kinetic, double size);
   /// Newton's solution is the end of the step, with the velocities of its scheme.
   StepEnergy of_solution(const Problem&, const Newton&, const Stage&, bool drives_rows) const;

@@ -23,7 +23,7 @@ bool holds_direction(const C& c) {
     return false;
 }
 
-/// What outside holds on to a problem, or to a piece of it.
+/// How the world outside holds a problem, or a piece of it.
 struct Holds {
   int count = 0;                ///< of rows that are not between points of the problem
   std::optional<Vec3> place;    ///< of the latest, where that is a point at rest

@@ -81,7 +81,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   return report;
 }
 
-// What outside does to the problem during the step.
+// Finds out how the world outside acts on the problem during the step.
 void Integrator::look_at(const Problem& problem) {
   has_curved_rows_ = drives_rows_ = false;
   holds_ = {};

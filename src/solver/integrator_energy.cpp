@@ -43,8 +43,8 @@ void Integrator::keep_correction(const Problem& problem) {
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i] = problem.velocity[i] - changes[i];
 }
 
-// What the end-point rule has lost of the angular momentum; the energy of that is at most what the step has lost.
-// Also of what dashpots took, as they act along the line at the start of the step, and so on the rotation.
+// Returns the angular momentum that the end-point rule has lost, with at most the energy that the step has lost.
+// Dashpots act along the line at the start of the step and so slow the rotation: their energy may be returned, too.
 void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dissipated, AdvanceReport& report) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
   const double lost = std::max(0.0, energy_.missing);
@@ -56,7 +56,7 @@ void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dis
   energy_.missing += refunded, report.dissipated -= refunded;
 }
 
-// Also beside what dampers dissipate; down to half of the slack, as all of it would leave round-off above.
+// Also if dampers dissipate energy. Down to half of the slack, since round-off would exceed the whole.
 void Integrator::remove_made_energy(Problem& problem, double energy_before) {
   double made = drives_rows_ || -energy_.missing <= energy_.slack ? 0 : -energy_.missing - 0.5 * energy_.slack;
   if (is_conservative_) made = std::max(made, energy_.total - energy_before);

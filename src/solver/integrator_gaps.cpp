@@ -167,7 +167,7 @@ bool Integrator::try_projection(Problem& problem, int iterations) {
   return solved;
 }
 
-// What an unchanged conflict gets: more took a frame of 20 to 36 others, for the same gaps.
+// For an unchanged conflict. More attempts took the time of 20 to 36 frames and left the same gaps.
 bool Integrator::project_in_one_solve(Problem& problem) {
   problem.copy_multipliers_to(multipliers_saved_);
   problem.clear_offsets();

@@ -59,7 +59,7 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
     }
   });
   // A stiff spring or an outdated multiplier may move points far away: then free flight is the better guess. So it is where
-  // a lumped mass is zero, whose guess is no number. With the point's own mass a cylinder on two nails took 18 iterations
+  // a lumped mass is zero, whose guess is not a number. With the point's own mass a cylinder on two nails took 18 iterations
   // instead of 6; with one of 1e-17 of it, guesses were wrong by a third of a length in short steps.
   const double limit = newton_.reference_length() * newton_.reference_length();
   bool are_near = true;

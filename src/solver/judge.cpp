@@ -8,7 +8,7 @@ namespace iota::solver {
 
 namespace {
 
-/// What a step may make beyond the slack of its solve: shares of the kinetic energy, of the total and of the external work.
+/// The energy that a step may make beyond the slack of its solve: shares of the kinetic, the total energy and the external work.
 struct Limit {
   double of_kinetic = 0, of_total = 0, of_work = 0;
 

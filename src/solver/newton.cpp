@@ -130,7 +130,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       } else if (!stuck) {
         const int halvings = stretch<Midpoint>(problem, stage, before, is_clamped);
         stuck = halvings == Set::max_halvings && !(residual_.worst < before);  // lost
-        // A full step with a small decrease is no reason to give up quadratic convergence; wrong pivots would be.
+        // A small decrease by a full step does not end quadratic convergence; wrong pivots would.
         if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
       }
       if (stuck) break;

@@ -173,7 +173,7 @@ void Newton::add_mean_rates(const C& c, double* row) const {
   }
 }
 
-// What the velocities miss in each row goes into the residuals. Returns the largest; zero where it is within the tolerance.
+// Writes the violation of each row by the velocities into the residuals; returns the largest, 0 if it is within the tolerance.
 double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
   const std::span<double> residuals = assembly_.residuals();
   Largest worst;

@@ -10,14 +10,14 @@ namespace iota::solver {
 
 namespace {
 
-/// visit(mass, a, b): the entries of the mass matrix; those beside the diagonal twice.
+/// visit(mass, a, b): the entries of the mass matrix, off-diagonal ones twice.
 template <class Visit>
 void for_each_mass(const Problem& problem, Visit visit) {
   for (std::uint32_t i = 0; i < problem.size(); ++i) visit(problem.mass[i], i, i);
   for (const auto& c : problem.mass_couplings) visit(c.mass, c.a, c.b), visit(c.mass, c.b, c.a);
 }
 
-/// visit(part): each part of which some of the nodes are.
+/// visit(part): each part that contains one of the nodes.
 template <class Visit>
 void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::uint32_t> part_of, Visit visit) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -39,7 +39,7 @@ Mat3 pseudoinverse(const Mat3& inertia) {
 
 }  // namespace
 
-// Structure is searched once, who holds a part at each step, as nails move.
+// The parts are found once for a structure. What holds them is updated in each step, since nails move.
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
   auto& [parts, part_of] = all_parts;
   if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of));
@@ -53,7 +53,7 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
 }
 
-/// Whether any single body may be left one or two motions by its rows, beside pieces of one member, which already get all.
+/// Whether the rows may leave a single body one or two motions. Pieces of one member do not count: they get back everything.
 bool Spin::find_members(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
   std::size_t rows_of_joints = 0;
@@ -87,7 +87,7 @@ bool Spin::find_members(const Problem& problem) {
   return any;
 }
 
-// Rows with a law count while they are equations. Those that another one contains add nothing.
+// Rows with a law count while they are equations. A row that depends on others adds nothing.
 void Spin::find_supports(const Problem& problem) {
   constexpr double independent = 1e-12;  // of the square of a norm
   supports_.resize(members_.parts.size());
@@ -146,7 +146,7 @@ void Spin::find_supports(const Problem& problem) {
   });
 }
 
-/// Whether forces connect pieces, or damp them. What a spring holds to the world is no cluster: it may be stiff as a nail.
+/// Whether forces connect or damp pieces. Pieces on a spring to the world are not a cluster: it may be as stiff as a nail.
 bool Spin::find_clusters(const Problem& problem, const Holds& all) {
   if (!problem.has_used_springs()) return false;
   find_parts(problem, Connection::rows_and_forces, all, clusters_);
@@ -222,7 +222,7 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
   return any;
 }
 
-// Of parts that are due.
+// Only of parts that have lost something.
 void Spin::find_motions(const Problem& problem, Parts& parts) {
   for (Part& part : parts.parts) part.kinetic = 0, part.angular = {}, part.inertia = {};
   for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
@@ -236,7 +236,7 @@ void Spin::find_motions(const Problem& problem, Parts& parts) {
   });
 }
 
-// On a single point in gravity, about the direction of that.
+// A part on a single point in gravity turns only about the direction of gravity.
 Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
   const double g = dot(gravity, gravity);
   if (part.holds.count == 0 || g == 0) return solve_semidefinite(part.inertia, angular, 1e-12);
@@ -272,15 +272,15 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
   return are_pieces_due || are_clusters_due || are_members_due || are_wheels_due;
 }
 
-/// By the angular impulse that each has lost, while its supports do not move. What that pushes a free piece is taken back from all
-/// of it. Returns the kinetic energy that this adds, J.
+/// Gives each member the angular impulse that it has lost, without moving its supports. A free piece would be pushed by this:
+/// all of it is pushed back. Returns the kinetic energy that this adds, J.
 double Spin::turn_members(Problem& problem, double most_gain) {
   find_motions(problem, members_);
   find_supports(problem);
   double first = 0, second = 0;
   for (std::size_t k = 0; k < members_.parts.size(); ++k) {
     Part& part = members_.parts[k];
-    // What hangs on a point swings: see turn_parts.
+    // A member that hangs on a point swings: see turn_parts.
     part.is_due = part.is_due && supports_[k].count >= 4;
     if (!part.is_due) continue;
     const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_kept && problem.gravity == Vec3{};
@@ -319,7 +319,7 @@ double Spin::turn_members(Problem& problem, double most_gain) {
 /// Returns the kinetic energy that this adds, J.
 double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion, Parts& parts) {
   find_motions(problem, parts);
-  // What swings on a nail keeps its motion, which includes the fall along the chord of the step: its reactions depend on it.
+  // A part that swings on a nail keeps its motion, with the fall along the chord of the step: its reactions depend on it.
   const auto gives = [&](const Part& part) {
     return rest_of_motion != Rest::is_kept && (part.holds.count == 0 || problem.gravity == Vec3{});
   };

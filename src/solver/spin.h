@@ -19,7 +19,7 @@ namespace iota::solver {
 /// forces connect. Nothing within them changes their momentum and angular momentum. If outside holds one at a single point,
 /// that is the angular momentum about this point. The members of a piece, which only lengths connect, have their own spin as far
 /// as no other row notices: a wheel on an axle.
-/// What a scheme or a projection has changed is returned as the velocities of a rigid motion, which no row notices.
+/// Changes by a scheme or a projection are compensated by velocities of a rigid motion, which no row notices.
 class Spin {
  public:
   /// After a change of structure.
@@ -31,8 +31,8 @@ class Spin {
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
   /// along the line at the start. Members and wheels get theirs first, then pieces and clusters the remainder. Velocities are those after
-  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; what is above, the rest of a
-  /// piece's motion gives, and others forgo. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
+  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
+  /// from the rest of its motion, and others do without. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
   bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                  bool is_rigid);
 

@@ -12,7 +12,7 @@ from shown import show
 import iota
 
 
-def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
+def test_an_emitter_emits_particles_for_their_lifetime(system: iota.System) -> None:
     fire = system.emitter(
         rate=200, lifetime=0.3, velocity_spread=0.5, curve=[(0, 0.02, (1, 1, 0)), (1, 0.1, (1, 0, 0, 0))]
     )

@@ -13,7 +13,7 @@ import iota
 Runner = Callable[[iota.World], str]
 
 
-def test_a_control_of_one_client_is_changed_by_nobody_else(run_world: Runner) -> None:
+def test_a_control_of_one_client_cannot_be_changed_by_others(run_world: Runner) -> None:
     world = iota.World(iota.System())
     slider = world.slider("mine", 0, 1)
     with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:

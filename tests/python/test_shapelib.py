@@ -1044,7 +1044,7 @@ def test_limits_of_sums_of_joints_become_ours(write: Write) -> None:
 def test_couplings_of_an_mjcf_file_that_we_have_not_are_listed(write: Write) -> None:
     bent = '<joint name="bent" joint1="a" joint2="b" polycoef="0 1 0.5 0 0"/>'
     found = shapelib.mechanism(write("bent.xml", HANDS.format(bent)))
-    assert [note for note in found.notes if "bent" in note] == ["the equality bent is no linear one: left out"]
+    assert [note for note in found.notes if "bent" in note] == ["the equality bent is not linear: left out"]
     assert [coupling.name for coupling in found.couplings] == ["sum longest", "sum shortest"]
     apart = '<joint name="apart" joint1="a" polycoef="0.3 0 0 0 0"/>'  # its initial pose is another
     found = shapelib.mechanism(write("apart.xml", HANDS.format(apart)))

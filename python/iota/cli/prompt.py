@@ -88,7 +88,7 @@ def drive(world: World) -> None:
 
 
 def names_of_caller() -> dict[str, Any]:
-    """Those of the script that called `world.run()`."""
+    """The names of the script that called `world.run()`."""
     frame = sys._getframe()
     while frame.f_back is not None and frame.f_globals["__name__"].split(".")[0] == "iota":
         frame = frame.f_back

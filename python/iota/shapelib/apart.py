@@ -97,7 +97,7 @@ class _Reader:
             here = str(Path(__file__).resolve().parents[2])
             paths = os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
             words = [sys.executable, "-c", "from iota.shapelib.apart import serve; serve()"]
-            # Modules beside the files are no part of it (Python 3.11 and later).
+            # Modules beside the files are not part of it (Python 3.11 and later).
             environment = {**os.environ, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"}
             self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
         return self._process
@@ -114,7 +114,7 @@ def serve() -> None:
 
         resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    # What a library prints must not be taken for an answer.
+    # The answer must not be mixed up with the text that a library prints.
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while True:

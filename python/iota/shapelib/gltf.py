@@ -146,7 +146,7 @@ def _coordinates_of(head: dict[str, Any], primitive: dict[str, Any]) -> int | No
 
 
 def _texture_of(head: dict[str, Any], primitive: dict[str, Any]) -> dict[str, Any] | None:
-    """What a primitive's material says of its image of the base color."""
+    """The image of the base color of a primitive's material."""
     if "material" not in primitive:
         return None
     material = head["materials"][primitive["material"]]

@@ -312,7 +312,7 @@ def _bilunabirotunda() -> Surface:
 
 
 def _triangular_hebesphenorotunda() -> Surface:
-    """What an icosidodecahedron has above the hexagon about an axis through a triangle, over a smaller hexagon."""
+    """The part of an icosidodecahedron above its hexagon about an axis through a triangle, over a smaller hexagon."""
     own = uniform("icosidodecahedron")
     triangle = own.vertices[next(face for face in own.faces if len(face) == 3)]
     z = triangle.mean(axis=0)

@@ -306,12 +306,12 @@ class _Reader:
         a, b, *higher = (float(v) for v in m.eq_data[number][:5])
         first, second = int(m.eq_obj1id[number]), int(m.eq_obj2id[number])
         if any(higher) and second >= 0:
-            self.mechanism.notes.append(f"the equality {name} is no linear one: left out")
+            self.mechanism.notes.append(f"the equality {name} is not linear: left out")
             return
         of = self.sum_of_tendon if int(m.eq_type[number]) == EQUAL_TENDONS else lambda joint: {joint: 1.0}
         total, other = of(first), of(second) if second >= 0 else {}
         if total is None or other is None:
-            self.mechanism.notes.append(f"the equality {name} is of tendons that are no sum of joints: left out")
+            self.mechanism.notes.append(f"the equality {name} is of tendons that are not sums of joints: left out")
             return
         for joint, ratio in other.items():
             total[joint] = total.get(joint, 0.0) - b * ratio

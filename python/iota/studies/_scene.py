@@ -86,9 +86,9 @@ class Scene:
             structure = Structure.from_json(data["structure"])
             combined = [(int(a), int(b)) for a, b in data["combined"]]
         except (KeyError, TypeError, AttributeError, IndexError) as error:
-            raise ValueError(f"this is no saved playground: {error!r}") from None
+            raise ValueError(f"this is not a saved playground: {error!r}") from None
         if not all(0 <= a < len(structure.bodies) and 0 <= b < len(structure.bodies) for a, b in combined):
-            raise ValueError("this is no saved playground: it combines bodies that are not there")
+            raise ValueError("this is not a saved playground: it combines bodies that are not there")
         return cls(structure, combined)
 
     def script(self, system: iota.System) -> str:

@@ -118,7 +118,7 @@ class Pair:
         self.make_rigid()
 
     def make_rigid(self) -> None:
-        """What cannot turn any more is one body."""
+        """Makes one body of two blocks that cannot turn any more."""
         self._join(self.hinge)
         self.locked = True
 

@@ -67,7 +67,7 @@ class Meal:
     def __init__(self, world: iota.World, school: School, kelps: list[list[iota.Body]]) -> None:
         self._world, self._school, self._kelps = world, school, kelps
         self._weed = next(group for group in world.system.groups if group.name == "weed")
-        # What is carried is as heavy as water, and drags.
+        # The load is as heavy as water, and drags.
         self._load = world.system.group("load")
         world.system.field("wind", group=self._load, drag=0.16)
         self._label = world.label("", offset=(0, 0.3, 0))

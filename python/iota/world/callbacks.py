@@ -123,7 +123,7 @@ def print_on_terminal(text: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Running:
-    """What the world waits for: since when and how long at most before it is told, s, and what helps."""
+    """A call that the world waits for: since when, the longest time before users are told, s, and a remedy."""
 
     what: str
     since: float

@@ -19,7 +19,7 @@ FOLDER = "modules"  # of the page
 
 
 def add_module(modules: list[Path], file: Path) -> None:
-    """Raises FileNotFoundError, and ValueError for a file that is no module or whose name is taken."""
+    """Raises FileNotFoundError, and ValueError for a file that is not a module or whose name is taken."""
     found = file if file.is_absolute() else script_folder() / file
     if file.suffix not in (".js", ".mjs"):
         raise ValueError(f"a client module must end in .js or .mjs, not {file.name!r}")

@@ -135,11 +135,11 @@ class Listeners:
             self.taken_away.append((hand, self.drags.pop(hand), reason))
 
     def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
-        """Those for a kind and a body; None: no hit, or an event without a body."""
+        """The listeners for a kind and a body; None: no hit, or an event without a body."""
         return iter([each for each in self._by_kind[kind] if each.hears(body)])
 
     def of_any(self, kind: str, things: Iterable[Any]) -> Iterator[Listener]:
-        """Those for a kind and at least one of some bodies and constraints."""
+        """The listeners for a kind and at least one of some bodies and constraints."""
         told = [each for each in things if each is not None]
         return iter([each for each in self._by_kind[kind] if each.bodies is None or any(map(each.hears, told))])
 

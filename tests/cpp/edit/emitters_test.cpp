@@ -13,7 +13,7 @@
 namespace iota {
 namespace {
 
-TEST(Emitter, that_could_bear_nothing_sound_is_refused_by_the_name_of_the_number) {
+TEST(Emitter, with_invalid_options_is_refused_by_the_name_of_the_option) {
   System system;
   const auto refused = [&](const char* words, const std::function<void(EmitterOptions&)>& damage) {
     EmitterOptions options;
@@ -35,7 +35,7 @@ TEST(Emitter, that_could_bear_nothing_sound_is_refused_by_the_name_of_the_number
   refused("orientation", [](EmitterOptions& o) { o.orientation = {0, 0, 0, 0}; });
 }
 
-TEST(Emitter, that_is_off_bears_nothing_and_one_that_moved_bears_at_its_new_place) {
+TEST(Emitter, emits_nothing_while_it_is_off_and_at_its_new_place_after_a_move) {
   System system{SystemOptions{.gravity = {}}};
   const EmitterId emitter = system.emitters().create({.rate = 200, .velocity = {}, .lifetime = 100});
   system.emitters().set_active(emitter, false);

@@ -107,7 +107,7 @@ const std::vector<Damage> damages{
      [](Everything& e) { e.model.constraints[e.joint].next[a_origin] = place_count * e.joint + a_origin; }},
     {"ends with", [](Everything& e) { body_of(e, e.corner).last = e.corner; }},
     {"inertia pairs of", [](Everything& e) { e.model.bodies[e.rod].first_inertia = none; }},
-    {"is no basis point 1 of its body", [](Everything& e) { e.model.particles[e.corner].basis_index = 1; }},
+    {"is not basis point 1 of its body", [](Everything& e) { e.model.particles[e.corner].basis_index = 1; }},
     {"has the attributes of another",
      [](Everything& e) { e.model.particles[e.loner].attributes = first_alive(e.model.attributes); }},
     {"ends of 3 bonds", [](Everything& e) { e.model.bonds.heads.at(e.loner).first = none; }},

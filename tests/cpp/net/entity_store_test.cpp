@@ -35,7 +35,7 @@ std::vector<protocol::ServerMessage> messages_since(EntityStore& store, std::uin
   return messages;
 }
 
-TEST(EntityStore, a_newcomer_is_told_the_latest_record_of_each_and_nothing_of_what_is_gone) {
+TEST(EntityStore, a_new_client_gets_the_latest_record_of_each_and_none_of_destroyed_ones) {
   EntityStore store;
   store.apply(set(label, {0, 1}, {1}));
   store.apply(set(label, {1, 1}, {2}));

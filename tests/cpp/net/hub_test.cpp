@@ -328,7 +328,7 @@ TEST_F(HubTest, takes_a_picture_only_from_whom_it_asked) {
   EXPECT_EQ(take_gestures().size(), 2u) << "it was whole";
 }
 
-TEST_F(HubTest, tells_who_is_there_at_most_once_a_frame) {
+TEST_F(HubTest, sends_the_list_of_clients_at_most_once_a_frame) {
   Link one, two;
   const std::uint32_t client = join(one);
   join(two);

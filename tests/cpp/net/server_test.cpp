@@ -299,7 +299,7 @@ TEST_F(ServerTest, lets_go_of_a_client_that_says_no_hello_in_time) {
   EXPECT_TRUE(is_alive(*polite)) << "who has said hello stays";
 }
 
-TEST_F(ServerTest, strangers_keep_nobody_out) {
+TEST_F(ServerTest, connections_without_a_token_keep_no_client_out) {
   const auto before = join("before");
   std::vector<std::unique_ptr<PageClient>> silent;
   for (int i = 0; i < 300; ++i) {
@@ -780,7 +780,7 @@ TEST_F(ServerTest, one_client_has_one_single_step_a_round_and_one_reset_a_second
   EXPECT_EQ(take(1).size(), 1U) << "the next round has its step";
 }
 
-TEST_F(ServerTest, who_is_there_is_told_at_most_once_a_frame) {
+TEST_F(ServerTest, the_list_of_clients_is_sent_at_most_once_a_frame) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*other));

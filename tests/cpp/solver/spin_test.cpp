@@ -414,7 +414,7 @@ TEST(Spin, and_momentum_stay_while_random_bodies_are_brought_together) {
 }
 
 /// Two balls that pass each other 10 m apart, pulled together: what they cannot carry is told, the rest kept.
-TEST(Spin, that_bodies_in_one_place_cannot_carry_is_told) {
+TEST(Spin, that_bodies_in_one_place_cannot_keep_is_reported) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0}, 1, {0, 1, 0});
   const ParticleId q = system.particles().create(system.bodies().create(), {10, 0, 0}, 1, {0, -1, 0});

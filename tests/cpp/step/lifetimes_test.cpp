@@ -29,7 +29,7 @@ const EmitterOptions fountain{.rate = 200,
                               .lifetime_spread = 0.2,
                               .curve = {{0, 0.01, {1, 1, 0, 1}}, {0.5, 0.03, {1, 0, 0, 1}}, {1, 0, {0, 0, 0, 0}}}};
 
-TEST(Emitter, bears_at_its_rate_and_lets_die_after_the_lifetime) {
+TEST(Emitter, emits_at_its_rate_and_removes_particles_after_their_lifetime) {
   System system;
   const EmitterId emitter = system.emitters().create(fountain);
   std::size_t born = 0, died = 0;

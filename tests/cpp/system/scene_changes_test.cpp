@@ -124,7 +124,7 @@ class Editor {
   std::mt19937 random_;
 };
 
-TEST(SceneChanges, what_is_told_edit_by_edit_adds_up_to_what_there_is) {
+TEST(SceneChanges, of_single_edits_add_up_to_the_whole_scene) {
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     System system;
     Editor editor(seed);

@@ -179,7 +179,7 @@ export class Gestures {
     for (const grab of this.grabs.slice()) this.release(grab.pointer);
   }
 
-  /** A body is no more: marks the grabs on it and stops hovering over it. */
+  /** A body was destroyed: marks the grabs on it and stops hovering over it. */
   forget(body: number): void {
     for (const grab of this.grabs) if (grab.body === body) grab.isGone = true;
     for (const pointer of this.pointers_) {

@@ -202,7 +202,7 @@ export class ScreenInput {
     const body = pointer.grab?.body ?? (finger.button === 2 ? pointer.hovered : -1);
     pointer.pressed = false;
     pointer.at = event.timeStamp;
-    // It may have moved since the last frame: then this is no click.
+    // It may have moved since the last frame: then this is not a click.
     if (!canceled) this.aimAt_(pointer, event.clientX, event.clientY);
     if (finger.touch) {
       this.gestures_.remove(pointer);

@@ -70,7 +70,7 @@ export class Navigation {
   private readonly eye_ = new Vector3();
   private readonly middle_ = new Vector3(0, 1, 0);
   private size_ = 2;
-  /** Who walks through a room does not creep because the thing on its table is small. */
+  /** The size for the speed of walks: a room may have a small scene on its table. */
   private walkSize_ = 2;
   /** After a walk over an edge: the height over the floor where the eyes come to rest, m, and their speed, m/s. */
   private fall_: { readonly height: number; speed: number } | null = null;

@@ -37,7 +37,7 @@ export function takeFilmFrame({ viewer, world }: Pick<PageParts, "viewer" | "wor
   return viewer.renderer.domElement.toDataURL("image/jpeg", 0.95);
 }
 
-/** A page that nobody sees has no frames. */
+/** A hidden page has no frames. */
 const longestWaitMs = 500;
 
 /** Until what has come from the server is written for the renderer, which a frame does. */

@@ -14,7 +14,7 @@ const everyMs = 1000 / 60;
 
 export class PointerMoves {
   private readonly parts_: Pick<PageParts, "world" | "session" | "gestures" | "viewer">;
-  /** What was told last, by name. */
+  /** The last message of each pointer, by its name. */
   private readonly told_ = new Map<string, string>();
   private last_ = 0;
   private readonly a_ = new Vector3();

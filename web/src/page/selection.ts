@@ -196,7 +196,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return undefined;
   }
 
-  /** Of a grab whose body is no more: the server's hold is on what that became part of; without one the grab ends. */
+  /** Of a grab whose body was destroyed: the server's hold is on the body that absorbed it; without a hold the grab ends. */
   private findBody_(grab: Grab): void {
     const { entities, poses } = this.world_;
     if (poses.newestStamp === this.goneAt_) return;  // the holds that are known are from before that

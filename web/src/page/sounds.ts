@@ -174,7 +174,7 @@ async function decode(context: AudioContext, file: Uint8Array): Promise<AudioBuf
   return context.decodeAudioData(bytes.buffer);
 }
 
-/** Of a file, by its header, s. Rejects for one that is no sound. */
+/** Of a file, by its header, s. Rejects for a file that is not a sound. */
 async function lengthOf(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
   const address = URL.createObjectURL(new Blob([bytes]));
   try {

@@ -72,7 +72,7 @@ function addControls(playback: Playback): () => void {
   };
 }
 
-/** Recordings carry no code, so that whoever plays one trusts nobody: says what is therefore missing. */
+/** Recordings carry no code, so that playing one is safe: tells the user what is therefore missing. */
 function tellLeftOut({ events, world }: Page): void {
   const note = make("p", "note");
   note.hidden = true;

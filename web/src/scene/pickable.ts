@@ -14,7 +14,7 @@ export interface CoverHit {
   readonly localPoint: Float32Array;
 }
 
-/** What is drawn between bodies and stands for them, as a cloth does for its knots; a hit is one of the nearest body that it is on. */
+/** A drawing between bodies that represents them, such as a cloth on its knots: a hit on it is a hit on the nearest of its bodies. */
 export interface Cover {
   /** Along a ray with unit direction; `tolerance`: tangent of the half-angle of the cone in which a miss counts for thin ones. */
   hitByRay(origin: ArrayLike<number>, direction: ArrayLike<number>, tolerance: number, hit: CoverHit): void;

@@ -196,7 +196,7 @@ export class Stage {
   private readonly ambient_ = { value: groundAmbient };
   private readonly contact_: ContactShadow;
   private readonly middle_ = new Vector3(0, 1, 0);
-  /** What is lit with shadows. */
+  /** The ball in which things are lit with shadows. */
   private readonly lit_ = new Sphere();
   private size_ = 1;
   private hasGround_ = true;
@@ -311,7 +311,7 @@ export class Stage {
     this.ground.scale.setScalar(this.size_);
     this.ground.position.x = tileSize * this.size_ * Math.round(middle[0] / (tileSize * this.size_));
     this.ground.position.z = tileSize * this.size_ * Math.round(middle[2] / (tileSize * this.size_));
-    // What is lit goes down to the ground not far below, where shadows are.
+    // The lit ball reaches down to a ground that is not far below, since shadows fall on it.
     const gap = this.hasGround_ ? middle[1] - size - this.ground.position.y : 0;
     const below = gap > 0 && gap < farGround * size ? gap / 2 : 0;
     const scene = new Sphere(new Vector3(middle[0], middle[1] - below, middle[2]), size + below);

@@ -40,7 +40,7 @@ void main() {
   shade = color;
   bool isHidden = radii.x < 0.0;
 #ifdef SHADOW
-  // What is as thin on the screen wherever it is has no thickness in the world.
+  // A stroke of constant thickness on the screen has none in the world, so it has no shadow.
   isHidden = isHidden || thin > 0.5;
 #endif
   gl_Position = isHidden ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * vec4(place, 1.0);

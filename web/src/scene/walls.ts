@@ -14,7 +14,7 @@ export interface Solid {
   distance(x: number, y: number, z: number): number;
 }
 
-/** What a way meets. */
+/** The first wall on a way. */
 export interface Obstacle {
   /** The part of the way up to it; 1: nothing is met. */
   share: number;
@@ -27,7 +27,7 @@ const mostPushes = 4;
 /** A floor that is higher or lower than the last one by this much is climbed, m; in a small world, by so many radii of the walker. */
 const stair = 0.4;
 const stairRadii = 4;
-/** Who has the eyes higher over the floor than this looks from above and does not fall off it, m; in a small world radii. */
+/** Users whose eyes are higher over the floor than this look from above, and do not fall off edges, m; in a small world, radii. */
 const tallest = 2.5;
 const tallestRadii = 40;
 /** How far below the eyes a floor is looked for where there is no ground, m. */

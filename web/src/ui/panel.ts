@@ -12,7 +12,7 @@ type PanelPage = Pick<Page, "world" | "session" | "viewer">;
 /** A shown control. */
 interface Shown {
   readonly element: HTMLElement;
-  /** Those values of its record that need another element when they change. */
+  /** The values of its record whose change needs another element. */
   readonly face: string;
   show(widget: WidgetEntity): void;
 }

@@ -373,7 +373,7 @@ export class Headset implements PageListener, FramePart {
     return this.page_.viewer.rig.rotation.y + Math.atan2(elements[8], elements[10]);
   }
 
-  /** Who sits sees from the height of who stands; or back. */
+  /** Raises the eyes of a seated user to those of a standing one, or lowers them again. */
   private sit_(): void {
     const { rig, room } = this.page_.viewer;
     const before = this.raised_;

@@ -233,7 +233,7 @@ export class Locomotion {
     for (let index = 1; index < arcPoints; index++) {
       from.fromArray(points, 3 * index - 3);
       to.fromArray(points, 3 * index);
-      // Its end on the ground is no obstacle.
+      // Its end on the ground does not obstruct it.
       if (walls.meet(from, to, met).share >= 1 || (index === arcPoints - 1 && arc.valid && met.share > 0.999)) continue;
       from.lerp(to, met.share).toArray(landing);
       for (let rest = index; rest < arcPoints; rest++) from.toArray(points, 3 * rest);

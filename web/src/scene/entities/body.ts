@@ -352,7 +352,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     if (entity === undefined) return "";
     if (entity.name !== "") return entity.name;
     const name = this.styles_.nameOf(entity.style);
-    // Those that the world or the server makes up mean nothing to users.
+    // Names that the world or the server makes up mean nothing to users.
     return `${/^class \d+$|^\(/.test(name) ? "body" : name} ${body}`;
   }
 
