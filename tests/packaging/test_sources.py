@@ -121,6 +121,18 @@ def test_every_cpp_source_has_a_test_of_its_name() -> None:
     assert [name for name in elsewhere if not list(tests.rglob(name))] == []
 
 
+@pytest.mark.parametrize(
+    ("page", "root", "sources"), [("docs/architecture.md", "src", "*.h"), ("web/README.md", "web/src", "*.ts")]
+)
+def test_the_table_of_folders_has_every_folder(page: str, root: str, sources: str) -> None:
+    base = (ROOT / root).parent
+    folders = {path.parent.relative_to(base).as_posix() for path in (ROOT / root).rglob(sources)}
+    table = [line for line in (ROOT / page).read_text().splitlines() if line.startswith("| `")]
+    named = set(re.findall(r"`(src/[\w/]+)`", "\n".join(line.split("|")[1] for line in table)))
+    assert len(folders) > 10 and sorted(folders - named) == []
+    assert sorted(name for name in named if not (base / name).is_dir()) == []
+
+
 def test_the_protocol_is_told_whole() -> None:
     told = (ROOT / "protocol" / "README.md").read_text()
     schema = json.loads((ROOT / "protocol" / "schema.json").read_text())
