@@ -85,41 +85,20 @@ bool project(Editor& e, std::span<const std::uint32_t> bodies, bool positions, i
 /// Signed, times six.
 double calc_volume(const std::array<Vec3, 4>& x) { return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])); }
 
-bool is_mirrored(const model::Model& model, const Solid& solid) {
+bool is_mirrored(const model::Model& model, const BodyBefore& before) {
   std::array<Vec3, 4> now;
   for (int i = 0; i < 4; ++i) {
-    if (!model.particles.is_alive(solid.basis[i])) return false;
-    now[i] = model.position(solid.basis[i]);
+    if (!model.particles.is_alive(before.basis[i])) return false;
+    now[i] = model.position(before.basis[i]);
   }
-  return calc_volume(now) * calc_volume(solid.places) < 0;
-}
-
-/// The rotation that takes vectors x nearest to vectors y, by the sum of weighted products y x' (Kabsch 1976): by its
-/// singular vectors, the smallest one turned round if that would mirror.
-Mat3 fit_rotation(const Mat3& products) {
-  const Mat3 back = products.transposed();
-  Mat3 squares;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 column = back * Vec3{products.m[0][i], products.m[1][i], products.m[2][i]};
-    squares.m[0][i] = column.x, squares.m[1][i] = column.y, squares.m[2][i] = column.z;
-  }
-  const SymmetricEigen eigen = symmetric_eigen(squares);
-  std::array<int, 3> order{0, 1, 2};
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return eigen.values[i] > eigen.values[j]; });
-  const Vec3 x1 = eigen.axes[order[0]], x2 = eigen.axes[order[1]];
-  Vec3 y1 = products * x1, y2 = products * x2;
-  if (!(norm(y1) > 0)) return Mat3::diagonal(1);
-  y1 = (1 / norm(y1)) * y1;
-  y2 = y2 - dot(y1, y2) * y1;
-  y2 = norm(y2) > 0 ? (1 / norm(y2)) * y2 : any_perpendicular(y1);
-  return Mat3::outer(y1, x1) + Mat3::outer(y2, x2) + Mat3::outer(cross(y1, y2), cross(x1, x2));
+  return calc_volume(now) * calc_volume(before.places) < 0;
 }
 
 /// Puts a body's free points where the unmirrored body is nearest to its points, first of all to those that it shares
 /// or that are pinned.
-void fit(model::Model& model, const Solid& solid, island::MovedRings& moved) {
-  const model::Body& body = model.bodies[solid.body];
-  if (body.basis != solid.basis) return;  // absorbed meanwhile
+void fit(model::Model& model, const BodyBefore& earlier, island::MovedRings& moved) {
+  const model::Body& body = model.bodies[earlier.body];
+  if (body.basis != earlier.basis) return;  // absorbed meanwhile
   struct Point {
     std::uint32_t ring;
     Vec3 before, now;
@@ -128,10 +107,10 @@ void fit(model::Model& model, const Solid& solid, island::MovedRings& moved) {
   std::vector<Point> points;
   Vec3 before, now;
   double weights = 0;
-  model.for_each_particle_of(solid.body, [&](std::uint32_t p) {
+  model.for_each_particle_of(earlier.body, [&](std::uint32_t p) {
     Point point{model.particles[p].ring, {}, model.position(p), 1};
     const std::array<double, 4> shares = model.weights(p);
-    for (int i = 0; i < 4; ++i) point.before += shares[i] * solid.places[i];
+    for (int i = 0; i < 4; ++i) point.before += shares[i] * earlier.places[i];
     if (model.rings[point.ring].count == 1 && !model.is_pinned(point.ring)) point.weight = 1e-3;
     before += point.weight * point.before, now += point.weight * point.now, weights += point.weight;
     points.push_back(point);
@@ -139,7 +118,7 @@ void fit(model::Model& model, const Solid& solid, island::MovedRings& moved) {
   before = (1 / weights) * before, now = (1 / weights) * now;
   Mat3 products;
   for (const Point& p : points) products += p.weight * Mat3::outer(p.now - now, p.before - before);
-  const Mat3 turn = fit_rotation(products);
+  const Mat3 turn = nearest_rotation(products);
   for (const Point& p : points)
     if (p.weight < 1) moved.put(model, p.ring, now + turn * (p.before - before), model.rings[p.ring].velocity);
 }
@@ -148,7 +127,7 @@ void fit(model::Model& model, const Solid& solid, island::MovedRings& moved) {
 ///
 /// A projection finds the nearest positions with the right distances, which a mirror image has too: with one point of a
 /// solid taken far away, every second solid became its own. Those are fitted to their points, and projected again.
-Conserved settle(Editor& e, std::span<const std::uint32_t> edited, bool positions, std::span<const Solid> solids,
+Conserved settle(Editor& e, std::span<const std::uint32_t> edited, bool positions, std::span<const BodyBefore> general,
                  RestructureReport& report) {
   constexpr int most_attempts = 4;  // a solid that is fitted may mirror its neighbor
   island::MovedRings moved;
@@ -157,10 +136,10 @@ Conserved settle(Editor& e, std::span<const std::uint32_t> edited, bool position
   for (int attempt = 1;; ++attempt) {
     island::MovedRings projected;
     const bool met = project(e, bodies, positions, projected);
-    std::vector<const Solid*> mirrored;
+    std::vector<const BodyBefore*> mirrored;
     if (positions && attempt < most_attempts)
-      for (const Solid& solid : solids)
-        if (is_mirrored(e.model, solid)) mirrored.push_back(&solid);
+      for (const BodyBefore& body : general)
+        if (is_mirrored(e.model, body)) mirrored.push_back(&body);
     if (mirrored.empty()) {
       moved.before.insert(moved.before.end(), projected.before.begin(), projected.before.end());
       if (!met) {
@@ -171,7 +150,7 @@ Conserved settle(Editor& e, std::span<const std::uint32_t> edited, bool position
       return calc_change(e.model, moved);
     }
     projected.exchange(e.model);
-    for (const Solid* solid : mirrored) fit(e.model, *solid, moved), bodies.push_back(solid->body);
+    for (const BodyBefore* before : mirrored) fit(e.model, *before, moved), bodies.push_back(before->body);
   }
 }
 
@@ -256,8 +235,8 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
   for (const std::uint32_t b : around_) {
     const model::Body& body = editor.model.bodies[b];
     if (body.rank < 4 || !model::is_free(body.kind)) continue;
-    Solid& solid = solids_.emplace_back(Solid{b, body.basis, {}});
-    for (int i = 0; i < 4; ++i) solid.places[i] = editor.model.position(body.basis[i]);
+    BodyBefore& before = bodies_before_.emplace_back(BodyBefore{b, body.basis, {}});
+    for (int i = 0; i < 4; ++i) before.places[i] = editor.model.position(body.basis[i]);
   }
 }
 
@@ -305,7 +284,7 @@ void Restructuring::settle_and_measure(const model::Edit& owed) {
   std::optional<Conserved> before = before_;  // of everything that may have changed; nothing if something is pinned
   if (owed.moved || owed.velocity_dirty) {
     const std::vector<std::uint32_t> touched = with_created(edited());
-    change.add(settle(editor_, touched, owed.moved, solids_, report_));
+    change.add(settle(editor_, touched, owed.moved, bodies_before_, report_));
     before = give_back_momenta(editor_, touched, change);
   }
   report_.energy_change = change.energies.total();

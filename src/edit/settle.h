@@ -23,8 +23,8 @@ struct Conserved {
   Conserved& add(const Conserved& other, double sign = 1);
 };
 
-/// A body of four basis points as it was before a change.
-struct Solid {
+/// A general body, with four basis points, as it was before a change.
+struct BodyBefore {
   std::uint32_t body;
   std::array<std::uint32_t, 4> basis;
   std::array<Vec3, 4> places;
@@ -70,7 +70,7 @@ class Restructuring {
   // The bodies whose energy and momentum the edit itself may change; changes by projections further away are added.
   std::vector<std::uint32_t> around_;
   Conserved before_;
-  std::vector<Solid> solids_;  ///< of them
+  std::vector<BodyBefore> bodies_before_;  ///< the general ones of them
 };
 
 }  // namespace iota::edit

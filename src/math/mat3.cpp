@@ -2,6 +2,7 @@
 #include "math/mat3.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace iota {
@@ -63,6 +64,25 @@ Vec3 solve_semidefinite(const SymmetricEigen& e, const Vec3& b, double tolerance
   for (int k = 0; k < 3; ++k)
     if (e.values[k] > tolerance * largest) x += (dot(e.axes[k], b) / e.values[k]) * e.axes[k];
   return x;
+}
+
+Mat3 nearest_rotation(const Mat3& products) {
+  const Mat3 back = products.transposed();
+  Mat3 squares;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 column = back * Vec3{products.m[0][i], products.m[1][i], products.m[2][i]};
+    squares.m[0][i] = column.x, squares.m[1][i] = column.y, squares.m[2][i] = column.z;
+  }
+  const SymmetricEigen eigen = symmetric_eigen(squares);
+  std::array<int, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return eigen.values[i] > eigen.values[j]; });
+  const Vec3 x1 = eigen.axes[order[0]], x2 = eigen.axes[order[1]];
+  Vec3 y1 = products * x1, y2 = products * x2;
+  if (!(norm(y1) > 0)) return Mat3::diagonal(1);
+  y1 = (1 / norm(y1)) * y1;
+  y2 = y2 - dot(y1, y2) * y1;
+  y2 = norm(y2) > 0 ? (1 / norm(y2)) * y2 : any_perpendicular(y1);
+  return Mat3::outer(y1, x1) + Mat3::outer(y2, x2) + Mat3::outer(cross(y1, y2), cross(x1, x2));
 }
 
 Quaternion multiply(const Quaternion& a, const Quaternion& b) {

@@ -56,6 +56,11 @@ Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
 /// The same with known eigenvectors: for many right-hand sides.
 Vec3 solve_semidefinite(const SymmetricEigen& a, const Vec3& b, double tolerance);
 
+/// The rotation that takes vectors x nearest to vectors y in the sense of weighted least squares, from the sum of
+/// weighted products y x' (Kabsch 1976, doi:10.1107/S0567739476001873). It never mirrors. Vectors on one line leave the
+/// turn about this line open; no vectors give the identity.
+Mat3 nearest_rotation(const Mat3& products);
+
 // Quaternions.
 Quaternion multiply(const Quaternion& a, const Quaternion& b);
 Quaternion normalized(const Quaternion& q);

@@ -95,6 +95,76 @@ TEST(SolveSemidefinite, solves_what_is_regular_and_leaves_out_directions_that_ar
   EXPECT_EQ(solve_semidefinite(Mat3{}, {1, 2, 3}), Vec3{});
 }
 
+/// The sum of y . R x that a nearest rotation R makes largest, from the sum of products y x'.
+double agreement(const Mat3& products, const Mat3& rotation) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum += products.m[i][j] * rotation.m[i][j];
+  return sum;
+}
+
+Mat3 product(const Mat3& a, const Mat3& b) {
+  Mat3 c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) c.m[i][j] += a.m[i][k] * b.m[k][j];
+  return c;
+}
+
+Mat3 matrix(const Quaternion& turn) {
+  Mat3 columns;
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    columns += Mat3::outer(rotate(turn, axis), axis);
+  return columns;
+}
+
+TEST(NearestRotation, finds_the_turn_back_of_any_two_directions_at_any_size) {
+  Random random;
+  for (const double size : {1e-9, 1.0, 1e9})
+    for (int i = 0; i < 50; ++i) {
+      const Mat3 turn = matrix(random.turn());
+      Mat3 products;
+      for (int k = 0; k < 2 + i % 3; ++k) {
+        const Vec3 x = size * random.direction();
+        products += Mat3::outer(turn * x, x);
+      }
+      const Mat3 found = nearest_rotation(products);
+      const Vec3 v = random.direction();
+      EXPECT_LT(distance(found * v, turn * v), 1e-6);
+    }
+}
+
+TEST(NearestRotation, is_a_rotation_and_no_other_is_nearer_also_to_a_mirror_image) {
+  Random random;
+  for (int i = 0; i < 100; ++i) {
+    Mat3 products;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 x = random.vector();
+      products += Mat3::outer(i % 2 ? Vec3{-x.x, x.y, x.z} : random.vector(), x);
+    }
+    const Mat3 found = nearest_rotation(products);
+    const Vec3 x = found * Vec3{1, 0, 0}, y = found * Vec3{0, 1, 0};
+    EXPECT_NEAR(norm(x), 1, 1e-12);
+    EXPECT_NEAR(norm(y), 1, 1e-12);
+    EXPECT_NEAR(dot(x, y), 0, 1e-12);
+    EXPECT_LT(distance(cross(x, y), found * Vec3{0, 0, 1}), 1e-12) << "right-handed";
+    const double best = agreement(products, found);
+    for (int k = 0; k < 50; ++k) {
+      const Mat3 turn = matrix(axis_angle(random.direction(), k % 2 ? 1e-3 : 3 * random.number()));
+      EXPECT_LE(agreement(products, product(turn, found)), best + 1e-12);
+    }
+  }
+}
+
+TEST(NearestRotation, of_nothing_is_no_turn_and_of_one_line_turns_this_line) {
+  EXPECT_EQ(nearest_rotation({}) * (Vec3{1, 2, 3}), (Vec3{1, 2, 3}));
+  Random random;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 x = random.direction(), y = random.direction();
+    EXPECT_LT(distance(nearest_rotation(Mat3::outer(y, x)) * x, y), 1e-7);
+  }
+}
+
 TEST(Quaternion, turns_by_its_angle_about_its_axis) {
   const double right = std::numbers::pi / 2;
   EXPECT_LT(distance(rotate(axis_angle({0, 0, 1}, right), {1, 0, 0}), {0, 1, 0}), 1e-15);
