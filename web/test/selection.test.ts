@@ -4,7 +4,7 @@ import { Pointer } from "../src/interact/gestures.ts";
 import { Events } from "../src/page/events.ts";
 import { Selection } from "../src/page/selection.ts";
 import type { ClientMessage, Id } from "../src/protocol/generated.ts";
-import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, frame, id, part, style, TestWorld } from "./test_world.ts";
 
 /** A selection over two balls, 2 m apart on the x axis, and its messages to the server. */
 class Bench extends TestWorld {
@@ -105,6 +105,58 @@ describe("the selection", () => {
     bench.aim(3.5);
     expect(bench.sent.at(-1)).toMatchObject({ type: "grabMove", hold });
     expect(bench.sent.filter((message) => message.type === "grabEnd")).toEqual([]);
+  });
+
+  it("goes on holding the part that was taken from the held body, which still exists", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    const [grab] = bench.selection.gestures.grabs;
+    const { hold } = grab;
+    bench.set("body", bodyEntity(2, { id: id(2, 1) }));
+    const turned = [0, 0, Math.SQRT1_2, Math.SQRT1_2];  // by 90 degrees about z
+    bench.world.takePoses(frame(9, [body(1, 3), body(2, 7, turned)], {
+      structureVersion: 2, holds: [{ client: 1, hold, body: 2, point: [7, 0.1, 0], target: [7, 0.5, 0], force: 2 }],
+    }), 200);
+    bench.selection.update(); // before the first picture of the new body
+    bench.update();
+    const { selection } = bench;
+    expect([selection.held, selection.actionBodies, selection.selected]).toEqual([2, [2], 2]);
+    const at = new Float32Array(3);
+    selection.gestures.grabbedPoint(grab, at);
+    expect(Math.hypot(at[0] - 7, at[1] - 0.1, at[2]), "m from where the server holds it").toBeLessThan(2e-3);
+    bench.press(false);
+    expect(bench.sent.filter(({ type }) => type === "grabEnd")).toEqual([{ type: "grabEnd", hold }]);
+    expect(bench.sent.filter(({ type }) => type === "select").at(-1)).toEqual({ type: "select", body: id(2, 1) });
+    expect(selection.actionBodies, "after the hand has let go").toEqual([2]);
+  });
+
+  it("leaves what the user selected meanwhile, and several, selected when the held part goes to another body", () => {
+    for (const select of [(selection: Selection) => selection.select(0), (selection: Selection) => selection.selectMany([1, 0])]) {
+      const bench = new Bench();
+      bench.aim(3);
+      bench.press(true);
+      select(bench.selection);
+      const { selected, several } = bench.selection;
+      const [{ hold }] = bench.selection.gestures.grabs;
+      bench.set("body", bodyEntity(2));
+      bench.poses([body(0, 1), body(1, 3), body(2, 7)], { holds: [{ client: 1, hold, body: 2, point: [7, 0, 0], target: [7, 0, 0], force: 0 }] });
+      bench.selection.update();
+      expect([bench.selection.held, bench.selection.selected, bench.selection.several]).toEqual([2, selected, several]);
+    }
+  });
+
+  it("keeps the held point in its place when an edit moves the origin of its body", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    const [grab] = bench.selection.gestures.grabs;
+    const { hold } = grab;
+    bench.poses([body(1, 3)], { holds: [{ client: 1, hold, body: 1, point: [3, 0, 0.2], target: [3, 0, 0.2], force: 0 }] });
+    bench.selection.update();
+    bench.poses([body(1, 4)], { structureVersion: 2, holds: [{ client: 1, hold, body: 1, point: [3, 0, 0], target: [3, 0, 0], force: 0 }] });
+    bench.selection.update();
+    expect(grab.localPoint[0], "m from the origin, which is 1 m from the held point").toBeCloseTo(-1, 3);
   });
 
   it("points at nothing where the body that was pointed at is gone", () => {

@@ -19,7 +19,7 @@ export class Hit {
 const local = new Float32Array(3);
 
 /** World point into a body's frame. */
-export function toBody(scene: Pickable, body: number, x: number, y: number, z: number, out: Float32Array): void {
+export function toBody(scene: Pick<Pickable, "position" | "rotation">, body: number, x: number, y: number, z: number, out: Float32Array): void {
   const p = body * 3;
   const r = body * 4;
   rotate(

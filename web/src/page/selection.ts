@@ -27,6 +27,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   private readonly more_ = new Set<number>();
   /** Stamp of the last poses before a body was gone, ms. */
   private goneAt_ = 0;
+  /** Version of the structure in which the holds were followed last. */
+  private followedVersion_ = 0;
 
   constructor(world: World, session: SelectionSession, viewer: Pick<Viewer, "invalidate">, events: Events) {
     this.world_ = world;
@@ -119,7 +121,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   // --- FramePart
 
   update(): void {
-    for (const grab of this.gestures.grabs.slice()) if (grab.isGone) this.findBody_(grab);
+    for (const grab of this.gestures.grabs.slice()) this.followHold_(grab);
+    this.followedVersion_ = this.world_.structureVersion;
     this.drawHeldAtOnce_();
     if (this.gestures.grabs.length > 0) this.viewer_.invalidate();
   }
@@ -196,16 +199,27 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return undefined;
   }
 
-  /** Of a grab whose body was destroyed: the server's hold is on the body that absorbed it; without a hold the grab ends. */
-  private findBody_(grab: Grab): void {
-    const { entities, poses } = this.world_;
+  /**
+   * After an edit a grab is where the server's hold is: on the body that absorbed its own, or on the part that was taken from it. If the
+   * body was destroyed and there is no hold, the grab ends. The same body may also have another frame, with its origin in another place.
+   */
+  private followHold_(grab: Grab): void {
+    const { poses, structureVersion } = this.world_;
     if (poses.newestStamp === this.goneAt_) return;  // the holds that are known are from before that
     const hold = this.holdOf_(grab);
-    if (hold === undefined || !entities.body.has(hold.body)) return this.gestures.release(grab.pointer);
+    if (hold === undefined || poses.known[hold.body] !== 1) {
+      if (grab.isGone) this.gestures.release(grab.pointer);
+      return;
+    }
+    const { body: before, isGone: wasGone } = grab;
+    if (!wasGone && hold.body === before && structureVersion === this.followedVersion_) return;
     grab.body = hold.body;
-    toBody(entities.body, hold.body, hold.point[0], hold.point[1], hold.point[2], grab.localPoint);
     grab.isGone = false;
-    if (this.selected_ < 0) this.select(grab.body);
+    // In the poses that came with it: the drawn ones are older, and a new body has none before its first picture.
+    toBody(poses.newest, hold.body, hold.point[0], hold.point[1], hold.point[2], grab.localPoint);
+    // What was selected by the hand stays what it holds.
+    const wasSelected = !wasGone && before === this.selected_ && this.more_.size === 0;
+    if (this.selected_ < 0 || wasSelected) this.select(grab.body);
   }
 
   /** Draws held bodies and their articulates without delay; otherwise a held body would seem to leave its neighbors. */
