@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clicks, as they are told to a script, on a page that draws few pictures.
+// Clicks and buttons, as they are told to a script, on a page that draws few pictures.
 
 import { PerspectiveCamera } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
@@ -12,6 +12,8 @@ import { PointerKind, type ClientMessage } from "../src/protocol/generated.ts";
 import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
 
 let told: ClientMessage[];
+let world: TestWorld["world"];
+let reports: Reports;
 let selection: Selection;
 let pointer: Pointer;
 
@@ -21,7 +23,7 @@ beforeEach(() => {
   vi.stubGlobal("window", { addEventListener() {} });
   told = [];
   const tested = new TestWorld();
-  const { world } = tested;
+  world = tested.world;
   tested.set("style", style(0, "ball", part("sphere", [0.2])));
   tested.set("body", bodyEntity(0));
   tested.poses([body(0, 1)]);
@@ -33,8 +35,8 @@ beforeEach(() => {
   };
   selection = new Selection(world, session, { invalidate: () => {} }, events);
   events.add(selection);
-  const viewer = { camera: new PerspectiveCamera() };
-  new Reports({ world, session, gestures: selection.gestures, viewer, events } as unknown as PageParts);
+  const viewer = { camera: new PerspectiveCamera(), lookDistance: () => 2, presenting: false };
+  reports = new Reports({ world, session, gestures: selection.gestures, viewer, events } as unknown as PageParts);
   pointer = new Pointer("mouse");
   pointer.active = true;
   selection.gestures.add(pointer);
@@ -84,4 +86,51 @@ it("a press that ends with the connection is no click", () => {
   selection.link("lost");
   button(false, 1);
   expect(clicks()).toBe(0);
+});
+
+describe("a script that listens to pointers", () => {
+  const buttons = () => told.flatMap((message) => (message.type === "pointer" && message.kind === PointerKind.move ? [[message.name, ...message.buttons]] : []));
+
+  beforeEach(async () => {
+    vi.stubGlobal("navigator", { getGamepads: () => [] });
+    world.listens = { clicks: false, hovers: false, moves: true, keys: [] };
+    pointer.origin.set([1, 0, 2]);
+    reports.interact();
+    await import("../src/page/pointer_moves.ts");  // which the page fetches with the first such frame
+    reports.interact();
+    expect(buttons()).toEqual([["mouse", 0]]);
+    told.length = 0;
+  });
+
+  it.each([["a body", 1], ["nothing", 5]])("is told of a press on %s between two frames", (_, x) => {
+    button(true, x);
+    button(false, x);
+    reports.interact();
+    expect(buttons()).toEqual([["mouse", 1], ["mouse", 0]]);
+  });
+
+  it.each([["a body", 1], ["nothing", 5]])("is told that a finger on %s was lifted, though it is no more then", (_, x) => {
+    const finger = new Pointer("touch 1");
+    finger.active = finger.pressed = true;
+    finger.origin.set([x, 0, 2]);
+    selection.gestures.add(finger);
+    selection.gestures.update(finger);
+    selection.gestures.remove(finger);
+    expect(buttons()).toEqual([["touch 1", 1], ["touch 1", 0]]);
+  });
+
+  it("is told once that a controller is gone whose button was down", () => {
+    const hand = new Pointer("right");
+    hand.active = true;
+    hand.buttons.push(0.3, 1);
+    selection.gestures.add(hand);
+    const frame = () => {
+      vi.advanceTimersByTime(20);
+      reports.interact();
+    };
+    frame();
+    selection.gestures.remove(hand);
+    for (let time = 0; time < 3; time++) frame();
+    expect(buttons()).toEqual([["right", expect.closeTo(0.3), 1], ["right", 0, 0]]);
+  });
 });

@@ -16,6 +16,8 @@ export class PointerMoves {
   private readonly parts_: Pick<PageParts, "world" | "session" | "gestures" | "viewer">;
   /** The last message of each pointer, by its name. */
   private readonly told_ = new Map<string, string>();
+  /** Those that were told last with something pressed. */
+  private readonly pressed_ = new Set<Pointer>();
   private last_ = 0;
   private readonly a_ = new Vector3();
   private readonly b_ = new Vector3();
@@ -29,13 +31,24 @@ export class PointerMoves {
     const now = performance.now();
     if (now - this.last_ < everyMs - 2) return;
     this.last_ = now;
-    for (const pointer of this.parts_.gestures.pointers) if (pointer.active) this.send_(this.moveOf_(pointer));
+    for (const pointer of this.parts_.gestures.pointers) if (pointer.active) this.tellNow(pointer);
+    // A controller may be gone with a button down.
+    for (const pointer of this.pressed_) if (!pointer.active) this.tellNow(pointer);
     const pad = navigator.getGamepads().find((each) => each !== null);
     if (pad !== undefined && pad !== null && !this.parts_.viewer.presenting) this.send_(this.moveOfPad_(pad));
   }
 
+  /** A press or release must not wait for a frame: both may be before the next one, and a finger is gone when it is lifted. */
+  tellNow(pointer: Pointer): void {
+    const told = this.moveOf_(pointer);
+    if (told.buttons.some((value) => value > 0)) this.pressed_.add(pointer);
+    else this.pressed_.delete(pointer);
+    this.send_(told);
+  }
+
   private moveOf_(pointer: Pointer): Move {
-    const buttons = pointer.buttons.length > 0 ? pointer.buttons : [pointer.pressed ? 1 : 0];
+    const known = pointer.buttons.length > 0 ? pointer.buttons : [pointer.pressed ? 1 : 0];
+    const buttons = pointer.active ? known : known.map(() => 0);
     return move(pointer.name, this.placeOf_(pointer), pointer.origin, pointer.direction, pointer.rotation, buttons, pointer.axes, pointer.joints);
   }
 

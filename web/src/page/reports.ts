@@ -75,10 +75,12 @@ export class Reports implements PageListener, FramePart {
   // --- inside
 
   private press_(pointer: Pointer, grab: Grab | null): void {
+    this.tellNow_(pointer);
     this.presses_.set(pointer, { at: timeOf(pointer), direction: [...pointer.direction], grab });
   }
 
   private release_(pointer: Pointer): void {
+    this.tellNow_(pointer);
     const press = this.presses_.get(pointer);
     this.presses_.delete(pointer);
     // A press can also end while the button is down, with its body or with the connection.
@@ -96,6 +98,10 @@ export class Reports implements PageListener, FramePart {
       point: body >= 0 ? vec3(point ?? pointer.hit.point) : origin, origin, direction: vec3(pointer.direction),
       rotation: [0, 0, 0, 1], buttons: noNumbers, axes: noNumbers, joints: noNumbers,
     });
+  }
+
+  private tellNow_(pointer: Pointer): void {
+    if (this.parts_.world.listens.moves) this.moves_?.tellNow(pointer);
   }
 
   /** By code that is fetched for the first script that listens to it. */
