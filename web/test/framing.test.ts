@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-import { describe, expect, it } from "vitest";
+import { PerspectiveCamera, Vector3 } from "three";
+import { afterEach, describe, expect, it, vi } from "vitest";
+import { Navigation } from "../src/navigate/navigation.ts";
+import { Framing } from "../src/page/framing.ts";
+import type { Viewer } from "../src/page/viewer.ts";
 import { addOutermost, fitView, shareOutside, standBack, viewAxes, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
+import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
 
 const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
 
@@ -119,5 +124,56 @@ describe("a script's camera in a narrow window", () => {
     }
     expect(kept.count).toBe(19 * 4);
     expect(fullness(all, view)).toBeCloseTo(1, 6);
+  });
+});
+
+describe("another scene on the same page", () => {
+  afterEach(() => void vi.unstubAllGlobals());
+
+  /** Joins a world of two balls, so many m apart, without a camera of the script. */
+  function join(test: TestWorld, framing: Framing, title: string, radius: number, [first, second]: readonly [number, number]): void {
+    test.join();
+    test.world.take({
+      type: "worldSettings", title, looks: [], look: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
+      ground: 0, modules: [],
+    });
+    framing.changed("settings");
+    test.set("style", style(0, "ball", part("sphere", [radius])));
+    test.set("body", bodyEntity(0), bodyEntity(1));
+    test.poses([body(0, first), body(1, second)]);
+  }
+
+  it.each([["of another title", "other", "connected"], ["of another server, with the same title", "one", "lost"]] as const)("%s is framed as it would be alone, though the user has moved the camera before", (_, title, link) => {
+    vi.stubGlobal("innerWidth", 1280);
+    vi.stubGlobal("innerHeight", 720);
+    const camera = new PerspectiveCamera(42, 16 / 9);
+    const seen = (...scenes: readonly (readonly [string, number, readonly [number, number]])[]) => {
+      const test = new TestWorld();
+      const navigation = new Navigation(camera);
+      let size = 1;
+      const viewer = {
+        camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
+        renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
+      };
+      const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+      for (const scene of scenes) {
+        join(test, framing, ...scene);
+        for (let frame = 0; frame < 100; frame++) {
+          framing.update(1 / 30);
+          navigation.update(1 / 30);
+        }
+        if (scene === scenes.at(-1)) break;
+        navigation.orbit(200, 30);
+        framing.link(link);
+      }
+      camera.updateMatrixWorld();
+      return [5, 0, 0, ...navigation.goal.pivot, navigation.goal.distance];
+    };
+    const [small, large] = [["one", 0.02, [4.9, 5.1]], [title, 0.5, [0, 10]]] as const;
+    const alone = seen(large);
+    expect(seen(small, large)).toEqual(alone);
+    const corner = new Vector3(10.5, 0, 0).project(camera);
+    expect(Math.abs(corner.x), "of the half width of the window").toBeGreaterThan(0.6);
+    expect(Math.abs(corner.x)).toBeLessThan(1);
   });
 });

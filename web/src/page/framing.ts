@@ -5,6 +5,7 @@
 import { MathUtils } from "three";
 import { addOutermost, fitView, shareOutside, standBack, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
+import type { LinkState } from "../net/connection.ts";
 import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import type { World } from "../world/world.ts";
@@ -49,6 +50,8 @@ export class Framing implements FramePart, PageListener {
   private script_ = "";
   private wait_ = 0;
   private falling_ = false;
+  /** The connection was lost since the last look: another scene is of another script, though that may have the same title. */
+  private rejoined_ = false;
   /** Of the window that the first view was worked out for. */
   private aspect_ = 0;
 
@@ -86,6 +89,10 @@ export class Framing implements FramePart, PageListener {
     this.script_ = script;
   }
 
+  link(state: LinkState): void {
+    if (state !== "connected") this.rejoined_ = true;
+  }
+
   // --- FramePart
 
   update(seconds: number): void {
@@ -104,8 +111,9 @@ export class Framing implements FramePart, PageListener {
     if (!this.world_.described || this.script_ === "") return;
     const bounds = this.look_();
     if (bounds === null) return;
-    const before = this.framed_;
-    const isOther = before === null || isAnother(bounds, before);
+    const isOther = this.framed_ === null || isAnother(bounds, this.framed_);
+    const before = isOther && this.rejoined_ ? null : this.framed_;
+    this.rejoined_ = false;
     if (isOther) {
       this.kept_.clear();
       this.framed_ = bounds;
