@@ -15,6 +15,7 @@ import { World } from "../world/world.ts";
 import { Events, type PageListener } from "./events.ts";
 import { Framing } from "./framing.ts";
 import { Highlights } from "./highlights.ts";
+import { othersOf } from "./others.ts";
 import { pageCommands, scriptCommands } from "./page_commands.ts";
 import type { PageParts } from "./page_parts.ts";
 import { Reports } from "./reports.ts";
@@ -113,21 +114,6 @@ class Themes implements FramePart {
     this.highlights_.setTheme(theme);
     particleSet.setTheme(theme);
   }
-}
-
-/** Other users, fetched with the first one. */
-function othersOf({ world, session, viewer }: PageParts): PageListener {
-  let asked = false;
-  return {
-    changed: (what) => {
-      if (asked || what !== "clients" || world.clients.every(({ client }) => client === session.clientId)) return;
-      asked = true;
-      void import("./people.ts").then(({ People }) => {
-        viewer.add(new People(world, session, viewer));
-        viewer.invalidate();
-      });
-    },
-  };
 }
 
 /** The ground at the script's height. */

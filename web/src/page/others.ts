@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { PageListener } from "./events.ts";
+import type { PageParts } from "./page_parts.ts";
+
+/** Other users, fetched with the first one. */
+export function othersOf({ world, session, viewer }: Pick<PageParts, "world" | "session" | "viewer">): PageListener {
+  let asked = false;
+  return {
+    changed: (what) => {
+      if (asked || what !== "clients" || world.clients.every(({ client }) => client === session.clientId)) return;
+      asked = true;
+      void import("./people.ts").then(({ People }) => {
+        viewer.add(new People(world, session, viewer));
+        viewer.invalidate();
+      });
+    },
+  };
+}
