@@ -24,6 +24,8 @@ constexpr std::size_t max_name = 63;  // of a body, bytes
 constexpr double usual_thickness = 0.03;
 constexpr const char* every_look = "*";
 constexpr double of_body = 0.1;  // length of a look that fits its body, m: any value
+/// Of movable solids without a look: the page's paint has the color of its ground, before which they are hardly seen.
+constexpr std::uint32_t slate = 0x5f88b0;
 constexpr std::array tie_names{"spring", "rope", "rod"};
 
 /// 0 for values that are not finite, so that an invalid world is shown as far as possible.
@@ -74,6 +76,13 @@ protocol::Part make_part(std::string look, protocol::Shape shape, std::string ma
   part.look = std::move(look), part.shape = std::move(shape), part.material = std::move(material);
   part.rotation = {0, 0, 0, 1};
   part.color = protocol::no_color;
+  return part;
+}
+
+/// Of solids without a look.
+protocol::Part paint_without_look(BodyKind kind) {
+  protocol::Part part = make_part(every_look, {}, "paint");
+  if (kind != BodyKind::static_) part.color = slate;
   return part;
 }
 
@@ -320,7 +329,7 @@ std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assig
 }
 
 std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, const Class* like) {
-  const protocol::Part paint = make_part(every_look, {}, "paint");
+  const protocol::Part paint = paint_without_look(body.kind);
   std::vector<protocol::Part> parts;
   for (const auto& [look, first] :
        like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &paint}}) {

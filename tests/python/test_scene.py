@@ -2,16 +2,20 @@
 from __future__ import annotations
 
 import math
+import re
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from shown import show
 
 import iota
 from iota import looks
-from iota._protocol import BodyKind, TieKind
+from iota._protocol import NO_COLOR, BodyKind, TieKind
 from iota.world.frames import into_frame, turn_from_x
 from iota.world.scene import Scene
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.System) -> None:
@@ -25,6 +29,24 @@ def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.Syste
         (thick,), (round_,) = shown.parts(rod), shown.parts(ball)
         assert thick["shape"]["kind"] == "capsule" and thick["shape"]["sizes"][0] == pytest.approx(0.12)
         assert round_["shape"]["kind"] == "sphere" and round_["look"] == "*"
+
+
+def test_movable_solids_without_a_look_stand_out_from_the_ground_in_light_and_dark(system: iota.System) -> None:
+    def luminance(code: str) -> float:
+        shares = [int(code[at : at + 2], 16) / 255 for at in (0, 2, 4)]
+        linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    movable = system.body(shape=iota.Sphere(0.1), mass=1)
+    fixed = system.body(shape=iota.Box((1, 1, 1)), position=(3, 0, 0), kind="static")
+    with show(system) as shown:
+        (drawn,), (plain,) = shown.parts(movable), shown.parts(fixed)
+    assert plain["color"] == NO_COLOR, "what is fixed is as its surroundings"
+    own = luminance(f"{drawn['color']:06x}")
+    grounds = re.findall(r'ground: "#(\w{6})"', (ROOT / "web/src/scene/stage.ts").read_text())
+    assert len(grounds) == 2
+    for ground in map(luminance, grounds):
+        assert (max(own, ground) + 0.05) / (min(own, ground) + 0.05) > 1.9, "under the same light"
 
 
 def test_a_rod_is_drawn_from_end_to_end_whatever_its_masses_and_joints(system: iota.System) -> None:
