@@ -4,12 +4,12 @@
 // bodies in place of one. Printed, not tested: the script time of one edit, from the arriving bytes to the additional
 // work of the next frame.
 
-import { BodyKind, encodeEntities, encodePoses, encodeServerMessage, NO_COLOR, type EntityKind, type EntityRecords } from "../src/protocol/generated.ts";
+import { BodyKind, encodeEntities, encodePoses, encodeServerMessage, NO_COLOR, PROTOCOL_VERSION, type EntityKind, type EntityRecords } from "../src/protocol/generated.ts";
 import { preview } from "vite";
 import { Browser } from "./browser.ts";
 
 const links = 10_000;
-const cuts = 60;
+const cuts = 20;
 const limitMs = 4;
 
 const kindNames = { style: "style", body: "body", membership: "membership" } as const;
@@ -33,7 +33,7 @@ const part = (look: string, kind: string, sizes: number[]) => ({
 
 /** All messages to a page that joins. */
 const joining: number[][] = [
-  bytes(encodeServerMessage({ type: "welcome", version: 3, world: "", client: 1 })),
+  bytes(encodeServerMessage({ type: "welcome", version: PROTOCOL_VERSION, world: "", client: 1 })),
   set("style", [{ id: id(0), name: "link", parts: [part("rope", "capsule", [0.012, 0.1])] }]),
   set("body", Array.from({ length: links }, (_, slot) => link(slot))),
   set("membership", Array.from({ length: links }, (_, slot) => ({ id: id(slot), articulate: 0 }))),
