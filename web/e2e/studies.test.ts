@@ -285,6 +285,14 @@ class Study {
     await this.tab.pause(false);
   }
 
+  /** The text of its help. */
+  async help(): Promise<string> {
+    await this.key("?");
+    const help = (await this.tab.page.locator("#help[open]").textContent()) ?? "";
+    await this.key("Escape");
+    return help;
+  }
+
   /** To the first view, at once. */
   private jumpHome(): Promise<void> {
     return this.tab.page.evaluate(() => iota.page.navigation.jumpHome());
@@ -411,6 +419,8 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.does("r", "it begins anew, whatever its story has broken on a slow machine", ({ sticks, time }) => sticks === 24 && time < 2);
     await study.does("b", "a bond breaks", (now, before) => now.sticks === before.sticks - 1 && now.articulates === 1);
     await study.does("b", "half of it falls", ({ articulates }) => articulates === 2);
+    // In place of the page's reset.
+    expect(await study.help()).toMatch(/r *puts the ring together again.*Reset *r is this world's key here: press the button in the bar/);
     await study.does("r", "it is whole", ({ articulates, time }) => articulates === 1 && time < 2);
   },
   "physics-class": async (study) => {
