@@ -285,6 +285,22 @@ class Study {
     await this.tab.pause(false);
   }
 
+  /** Triangles of a picture with its shadows, in the detail of a window of 1280 x 720; only one picture is drawn, of this one. */
+  triangles(): Promise<number> {
+    return this.tab.page.evaluate(() => {
+      const { viewer: { renderer, scene, camera }, world: { entities: { body } } } = iota.page;
+      // The detail is chosen in every sixth frame.
+      for (let frame = 0; frame < 6; frame++) {
+        body.pixels = (720 / 2) * camera.projectionMatrix.elements[5];
+        body.draw(0);
+      }
+      renderer.shadowMap.autoUpdate = true;
+      renderer.render(scene, camera);
+      renderer.shadowMap.autoUpdate = false;
+      return renderer.info.render.triangles;
+    });
+  }
+
   /** The text of its help. */
   async help(): Promise<string> {
     await this.key("?");
@@ -476,6 +492,9 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   },
   weather: async (study) => {
     await study.does("n", "the wind drops", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
+    const triangles = await study.triangles();
+    expect(triangles).toBeLessThan(150_000);
+    expect(triangles, "all of it is drawn").toBeGreaterThan(50_000);
     await study.key("u");
     await study.tab.until("the fountain has run dry", () => iota.page.world.entities.particleSet.count === 0);
     await study.drag([20, some], (body) => body < 104 && body % 13 > 6);  // of the flag, far from its pole
