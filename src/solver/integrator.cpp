@@ -121,12 +121,23 @@ bool Integrator::may_halve(const Part& part, const AdvanceReport& report) const 
   return part.depth < settings_.max_depth && report.iterations <= settings_.patience;
 }
 
+namespace {
+
+/// Of targets that pull against rows that do not yield, by forces that only the compliance of the rows limits: what is missing
+/// beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in one step, all of it lost.
+double idle_work(const StepEnergy& step) {
+  const double motion = std::max(step.kinetic_before, step.kinetic) + std::max(0.0, step.impact);
+  return std::clamp(step.missing() - motion, 0.0, std::max(0.0, step.external_work));
+}
+
+}  // namespace
+
 bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt, AdvanceReport& report) {
   const bool is_mid_point = attempt.scheme == Scheme::mid_point, is_soft = attempt.compliance > exact_rows;
   Stage stage =
       is_mid_point ? Stage::mid_point(part.h, part.from, part.to) : Stage::end_point(part.h, part.from, part.to);
   stage.tolerance *= settings_.tolerance, stage.compliance = attempt.compliance;
-  stage.part = is_soft ? 1 : compliance_part(part);
+  stage.part = is_soft ? 1 : compliance_part(part, attempt.scheme);
   problem.copy_multipliers_to(multipliers_saved_);
   const Trial trial{.scheme = attempt.scheme,
                     .is_finest = !attempt.is_halved || !may_halve(part, report),
@@ -140,6 +151,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
+  if (drives_rows_) energy.external_work -= idle_work(energy);
   commit(problem, stage, energy, report);
   if (free) {
     keep_momenta(problem, *free, part.h);
@@ -235,12 +247,13 @@ bool Integrator::coast_a_piece(Problem& problem, double h) {
   return false;
 }
 
-// Sub-steps have the row compliance of the whole step, as a taut net of bars stores energy in it; only down to a quarter,
-// which is enough there, as a millionfold heavy end opens joints by it. Not where rows are driven: an arm that is pulled
-// beyond its reach would store more before its elbow snaps (227 J of kinetic energy instead of 37). Its price: the energy
-// of a four-bar linkage deviates by 1.4e-8 instead of 4e-9.
-double Integrator::compliance_part(const Part& part) const {
-  constexpr double smallest = 0.25;
+// Sub-steps have the row compliance of the whole step, as a taut net of bars stores energy in it: a shorter one with less would
+// return more than was stored, in steps of 1/60 s 100 to 660 J. Only down to a quarter by the end-point rule, which gains none,
+// and to a sixteenth by the mid-point rule, as a millionfold heavy end and springs of 1e12 N m/rad open joints by it. Not
+// where rows are driven: an arm that is pulled beyond its reach would store more before its elbow snaps (227 J of kinetic energy
+// instead of 37). Its price: the energy of a four-bar linkage deviates by 1.4e-8 instead of 4e-9.
+double Integrator::compliance_part(const Part& part, Scheme scheme) const {
+  const double smallest = scheme == Scheme::mid_point ? 1.0 / 16 : 0.25;
   return drives_rows_ ? 1 : std::max(part.to - part.from, smallest);
 }
 

@@ -85,7 +85,7 @@ class Integrator {
   void commit(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   bool coast_a_piece(Problem&, double h);
-  double compliance_part(const Part&) const;
+  double compliance_part(const Part&, Scheme) const;
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
   static void track(Problem&, double fraction);

@@ -272,6 +272,8 @@ TEST(Singular, arm_pulled_beyond_its_reach_gives_without_a_hiccup) {
     }
   }
   EXPECT_LT(substeps, 800) << "held to their lengths they took 3000";
+  EXPECT_LT(std::abs(system.energy().external_work), 1e5)
+      << "pulled against lengths that do not yield, the nail does no work";
 }
 
 TEST(Mode, accurate_goes_through_a_whip_without_falling_back) {
