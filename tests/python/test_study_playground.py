@@ -240,7 +240,7 @@ def test_constraints_that_cannot_be_saved_are_named(world: iota.World) -> None:
         (b"[1, 2", "Expecting"),
         (b"\xff\xfe\x00", "can't decode"),
         (b"[" * 100_000, "recursion"),
-        (b"{}", "no saved playground"),
+        (b"{}", "not a saved playground"),
         (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}, "hinges": [[0, 7]]}, "combined": []}', "7"),
         (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}}, "combined": [[0, 9]]}', "not there"),
     ],
