@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The build script: quiet and quick when nothing changed, plain when something fails."""
 
-import importlib.util
 import os
 import re
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from importlib.metadata import distribution
 from pathlib import Path
 from types import ModuleType
@@ -17,13 +17,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
-def builder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+def builder(load_tool: Callable[[str], ModuleType], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """tools/build.py with its logs in a folder of the test's."""
-    spec = importlib.util.spec_from_file_location("build_under_test", ROOT / "tools" / "build.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, spec.name, module)
-    spec.loader.exec_module(module)
+    module = load_tool("build")
     for name in ("ROOT", "BUILD", "LOGS"):
         monkeypatch.setattr(module, name, tmp_path)
     monkeypatch.setattr(sys, "argv", ["build.py", "build"])

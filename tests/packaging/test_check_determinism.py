@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The script that compares the hashes of scenes names what differs from the kept ones."""
 
-import importlib.util
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
-SCRIPT = Path(__file__).resolve().parents[2] / "tools" / "check_determinism.py"
-
 
 @pytest.fixture
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("check_determinism", SCRIPT)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def script(load_tool: Callable[[str], ModuleType]) -> ModuleType:
+    return load_tool("check_determinism")
 
 
 def test_a_hash_that_changed_is_named_with_its_scene_and_time(script: ModuleType, tmp_path: Path) -> None:
