@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Grip, Mesh, Shape, Solid, Vec3
+from iota.world.floor import support_points
 from iota.world.frames import axes_of
 from iota.world.view import View
 from iota.world.world import World
@@ -200,17 +201,11 @@ def lines_of(body: Body) -> Iterator[Points]:
 @lru_cache(maxsize=256)
 def silhouettes(shape: Shape) -> list[Points]:
     """The outlines of a shape, or of its convex hull, seen along each axis of its frame; none of an endless shape. m."""
-    low, high = shape.bounds
-    size = max(high - low)
-    if not np.isfinite(size):
+    if not np.isfinite(shape.bounds).all():
         return []
     turn = np.linspace(0, 2 * np.pi, 25)
     circle = np.stack([0 * turn, np.cos(turn), np.sin(turn)], axis=1)
-    # The point nearest to a far place is the farthest in its direction.
-    return [
-        np.array([tuple(shape.closest(tuple(1e3 * size * direction))) for direction in np.roll(circle, axis, axis=1)])
-        for axis in range(3)
-    ]
+    return [support_points(shape, np.roll(circle, axis, axis=1)) for axis in range(3)]
 
 
 def outline(solid: Solid) -> Iterator[Points]:

@@ -452,9 +452,14 @@ def touching_points(shape: Shape) -> tuple[Array, float]:
         return vertices[np.unique(np.argmax(vertices @ _directions().T, axis=0))], 0.0
     if isinstance(shape, HalfSpace):
         return np.empty((0, 3)), 0.0
-    # The point of a convex shape nearest to a far place is the support point in that direction.
+    return support_points(shape, _directions()), 0.0
+
+
+def support_points(shape: Shape, directions: Array) -> Array:
+    """The points of a bounded shape, or of its convex hull, that are farthest in some directions, in its frame: (n, 3), m."""
+    # The point nearest to a far place is the farthest in its direction.
     far = 1e3 * max(abs(number) for number in shape.numbers)
-    return np.array([tuple(shape.closest(tuple(far * d))) for d in _directions()]), 0.0
+    return np.array([tuple(shape.closest(tuple(far * direction))) for direction in directions])
 
 
 def _directions() -> Array:
