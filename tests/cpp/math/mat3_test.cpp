@@ -103,18 +103,11 @@ double agreement(const Mat3& products, const Mat3& rotation) {
   return sum;
 }
 
-Mat3 product(const Mat3& a, const Mat3& b) {
-  Mat3 c;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) c.m[i][j] += a.m[i][k] * b.m[k][j];
-  return c;
-}
-
-Mat3 matrix(const Quaternion& turn) {
+/// Of a linear map of vectors.
+template <class Map>
+Mat3 matrix(Map map) {
   Mat3 columns;
-  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
-    columns += Mat3::outer(rotate(turn, axis), axis);
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) columns += Mat3::outer(map(axis), axis);
   return columns;
 }
 
@@ -122,7 +115,8 @@ TEST(NearestRotation, finds_the_turn_back_of_any_two_directions_at_any_size) {
   Random random;
   for (const double size : {1e-9, 1.0, 1e9})
     for (int i = 0; i < 50; ++i) {
-      const Mat3 turn = matrix(random.turn());
+      const Quaternion q = random.turn();
+      const Mat3 turn = matrix([&](const Vec3& v) { return rotate(q, v); });
       Mat3 products;
       for (int k = 0; k < 2 + i % 3; ++k) {
         const Vec3 x = size * random.direction();
@@ -150,8 +144,9 @@ TEST(NearestRotation, is_a_rotation_and_no_other_is_nearer_also_to_a_mirror_imag
     EXPECT_LT(distance(cross(x, y), found * Vec3{0, 0, 1}), 1e-12) << "right-handed";
     const double best = agreement(products, found);
     for (int k = 0; k < 50; ++k) {
-      const Mat3 turn = matrix(axis_angle(random.direction(), k % 2 ? 1e-3 : 3 * random.number()));
-      EXPECT_LE(agreement(products, product(turn, found)), best + 1e-12);
+      const Quaternion q = axis_angle(random.direction(), k % 2 ? 1e-3 : 3 * random.number());
+      const Mat3 other = matrix([&](const Vec3& v) { return rotate(q, found * v); });
+      EXPECT_LE(agreement(products, other), best + 1e-12);
     }
   }
 }
