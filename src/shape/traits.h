@@ -93,12 +93,12 @@ template <class... Parts>
   throw std::invalid_argument(text.str());
 }
 
-/// "a box", "an ellipsoid", "a half-space".
+/// "a box", "an octahedron", "a half-space".
 template <class S>
 std::string spoken() {
   std::string text(Traits<S>::name);
   std::replace(text.begin(), text.end(), '_', '-');
-  return (text.front() == 'e' ? "an " : "a ") + text;
+  return (std::string_view("aeiou").find(text.front()) != std::string_view::npos ? "an " : "a ") + text;
 }
 
 /// The diagonal of MassProperties::mean_squares.
