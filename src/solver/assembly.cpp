@@ -190,9 +190,11 @@ void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool,
   }
 }
 
-double Assembly::strain_released(const Problem& problem, const Stage& stage, const Vec3* x) const {
+Strain Assembly::strain_released(const Problem& problem, const Stage& stage, const Vec3* x,
+                                 std::span<const double> multipliers_before) const {
   const double give = row_compliance(stage);
-  double released = 0;
+  Strain strain;
+  const double* lambda = multipliers_before.data();
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
@@ -205,14 +207,18 @@ double Assembly::strain_released(const Problem& problem, const Stage& stage, con
         gradients.of_node(i, rows);
         for (int r = 0; r < C::rows; ++r) mobility[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
       }
-      for (int r = 0; r < C::rows; ++r) {
+      for (int r = 0; r < C::rows; ++r, ++lambda) {
         const bool is_soft = pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold ||
                                                  pool.states[k * C::rows + r].side != 0);
-        if (!is_soft) released += (before[r] * before[r] - after[r] * after[r]) / (2 * give * mobility[r] + 1e-300);
+        if (is_soft) continue;
+        const double compliance = give * mobility[r] + 1e-300;
+        const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;
+        strain.released += (at_start - at_end) / 2;
+        strain.of_stored += (std::min(at_start, std::abs(*lambda * before[r])) - at_end) / 2;
       }
     }
   });
-  return released;
+  return strain;
 }
 
 namespace {

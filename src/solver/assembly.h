@@ -11,6 +11,11 @@
 
 namespace iota::solver {
 
+/// Elastic energy of compliant rows, J.
+struct Strain {
+  double released = 0;   ///< by the compliance of this (sub-)step
+  double of_stored = 0;  ///< and by what they had stored
+};
 /// Residuals of the equations of a step; all scaled, dimensionless.
 struct Residual {
   double worst = 0;      ///< of all equations, without forces that are round-off
@@ -45,8 +50,9 @@ class Assembly {
   /// times the round-off of the places.
   template <bool Midpoint>
   bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
-  /// The elastic energy that compliant rows have released on the way to a solution at x, J.
-  double strain_released(const Problem&, const Stage&, const Vec3* x) const;
+  /// The elastic energy that compliant rows have released on the way to a solution at x. They had stored what the multipliers
+  /// before this (sub-)step, N, have done on the gaps that it starts from, however long the steps then were.
+  Strain strain_released(const Problem&, const Stage&, const Vec3* x, std::span<const double> multipliers_before) const;
   /// Of the equations M a + G' lambda = f, G a + v' G' v = 0 at a = 0, lambda = 0, at the problem's positions and
   /// velocities: their solution is minus the step of a projection's matrix, without Hessian. Rows at a bound are left out.
   void load_rates(const Problem&);

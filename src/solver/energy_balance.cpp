@@ -190,7 +190,7 @@ void EnergyBalance::measure_kinetic(const Problem& problem) {
 }
 
 StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newton, const Stage& stage,
-                                      bool drives_rows) const {
+                                      bool drives_rows, std::span<const double> multipliers_before) const {
   const Solved step{problem, newton, stage};
   StepEnergy energy{.kinetic_before = kinetic, .total_before = total};
   energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
@@ -201,15 +201,17 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   if (energy.gained() > energy.round_off)
     energy.round_off += jitter_energy(problem, newton.reference_length(), stage.h);
   energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
-  if (energy.made() > energy.slack)
-    energy.slack +=
-        step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, newton.strain_released(problem, stage));
+  if (energy.made() > energy.slack) {
+    const Strain strain = newton.strain_released(problem, stage, multipliers_before);
+    energy.slack += step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, strain.released);
+    energy.overdrawn = std::max(0.0, strain.released) - std::max(0.0, strain.of_stored);
+  }
   return energy;
 }
 
 void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
   kinetic = step.kinetic, total = step.total;
-  missing += step.missing(), slack += step.slack;
+  missing += step.missing(), slack += step.slack - step.overdrawn;
   const double impact = std::clamp(missing, 0.0, std::max(0.0, step.impact));  // at most what is missing
   missing -= impact;
   report.external_work += step.external_work, report.dissipated += step.dissipated + impact;

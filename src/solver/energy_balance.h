@@ -4,6 +4,9 @@
 #include "solver/advance_report.h"
 #include "solver/newton.h"
 
+#include <algorithm>
+#include <span>
+
 namespace iota::solver {
 
 /// The energies of a solved (sub-)step that is not committed, J.
@@ -14,12 +17,19 @@ struct StepEnergy {
   double dissipated = 0;          ///< work of dampers, dashpots and friction
   double impact = 0;              ///< upper bound of what rows that have just become active dissipate
   double round_off = 0;
-  double slack = 0;  ///< what the tolerance of the solve explains, of energy that is made; with round-off
+  double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
+  double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored
 
   double missing() const { return total_before + external_work - dissipated - total; }
   double made() const { return -missing(); }
   /// Without what is dissipated, whose round-off is large in stiff dashpots: made for sure.
   double gained() const { return total - total_before - external_work; }
+  /// Of targets that pull against rows that do not yield, by forces that only the compliance of the rows limits: what is
+  /// missing beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in one step, all of it lost.
+  double idle_work() const {
+    const double motion = std::max(kinetic_before, kinetic) + std::max(0.0, impact);
+    return std::clamp(missing() - motion, 0.0, std::max(0.0, external_work));
+  }
   double size() const { return std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated); }
 };
 
@@ -37,8 +47,9 @@ struct EnergyBalance {
   void measure_kinetic(const Problem&);
   /// The energy that the tolerance of a solve may make if energies are of this size, J.
   static double tolerance(double kinetic, double size);
-  /// Newton's solution is the end of the step, with the velocities of its scheme.
-  StepEnergy of_solution(const Problem&, const Newton&, const Stage&, bool drives_rows) const;
+  /// Newton's solution is the end of the step, with the velocities of its scheme; the multipliers are those before it.
+  StepEnergy of_solution(const Problem&, const Newton&, const Stage&, bool drives_rows,
+                         std::span<const double> multipliers_before) const;
   /// Continues from the end of a step.
   void take(const StepEnergy&, AdvanceReport&);
   /// The end of a (sub-)step of h seconds with its corrections: reports what is missing as lost, or as made. A surplus within

@@ -121,17 +121,6 @@ bool Integrator::may_halve(const Part& part, const AdvanceReport& report) const 
   return part.depth < settings_.max_depth && report.iterations <= settings_.patience;
 }
 
-namespace {
-
-/// Of targets that pull against rows that do not yield, by forces that only the compliance of the rows limits: what is missing
-/// beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in one step, all of it lost.
-double idle_work(const StepEnergy& step) {
-  const double motion = std::max(step.kinetic_before, step.kinetic) + std::max(0.0, step.impact);
-  return std::clamp(step.missing() - motion, 0.0, std::max(0.0, step.external_work));
-}
-
-}  // namespace
-
 bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt, AdvanceReport& report) {
   const bool is_mid_point = attempt.scheme == Scheme::mid_point, is_soft = attempt.compliance > exact_rows;
   Stage stage =
@@ -151,7 +140,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
-  if (drives_rows_) energy.external_work -= idle_work(energy);
+  if (drives_rows_) energy.external_work -= energy.idle_work();
   commit(problem, stage, energy, report);
   if (free) {
     keep_momenta(problem, *free, part.h);
@@ -174,14 +163,14 @@ bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial
   if (stage.midpoint && turns_too_far(problem)) return false;
   if (stage.midpoint && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
-  energy = energy_.of_solution(problem, newton_, stage, drives_rows_);
+  energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
   Verdict verdict = judge(trial, energy);
   if (verdict == Verdict::refine) {
     Stage finer = stage;
     finer.tolerance *= 1e-4;
     (void)solve(problem, finer, report);
     trial.is_refined = true;
-    energy = energy_.of_solution(problem, newton_, stage, drives_rows_);
+    energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
     verdict = judge(trial, energy);
   }
   return verdict == Verdict::accept;

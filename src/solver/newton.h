@@ -41,8 +41,9 @@ class Newton {
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
-  double strain_released(const Problem& problem, const Stage& stage) const {  ///< see Assembly
-    return assembly_.strain_released(problem, stage, x_.data());
+  /// See Assembly.
+  Strain strain_released(const Problem& problem, const Stage& stage, std::span<const double> multipliers_before) const {
+    return assembly_.strain_released(problem, stage, x_.data(), multipliers_before);
   }
   /// The array of the next solution: scratch until then.
   std::span<Vec3> room() { return x_; }
