@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = ROOT / ".venv" / "bin"
-CPP_FOLDERS = ["include", "src", "bindings", "scenes", "tests/cpp", "bench", "examples/cpp"]
+CPP_FOLDERS = ["include", "src", "bindings", "scenes", "tests/cpp", "tests/one_more", "bench", "examples/cpp"]
 PYTHON_FOLDERS = [f for f in ["python", "tests", "tools", "bench", "examples", "scenes"] if (ROOT / f).is_dir()]
 
 SHOWN_LINES = 60

@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Adds one ingredient and one shape to a copy of the sources, builds it, and runs the tests that each of them passes.
+
+    tools/check_one_more.py
+
+An ingredient shall cost a header, a source, a test and a line; a shape a struct, a header, a file of the page, an example
+in two tests and a line each (docs/architecture.md, docs/bodies.md). The new files are in tests/one_more, the new lines
+below; no other file is changed. The copy is build/one_more. The first run builds everything, a later one what has changed.
+Run `make test` before: the copy uses its packages.
+"""
+
+from __future__ import annotations
+
+import filecmp
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+COPY = ROOT / "build" / "one_more"
+ADDED = ROOT / "tests" / "one_more"
+
+OCTAHEDRON = """struct Octahedron {
+  double radius = 0.5;
+  friend bool operator==(const Octahedron&, const Octahedron&) = default;
+};
+"""
+# File -> texts that are there once, and the text that is put in front of each.
+LINES = {
+    "src/ingredient/ingredient_list.h": {
+        '#include "ingredient/bonds.h"': '#include "ingredient/balloons.h"\n',
+        "    AngleSprings>": "    Balloons,\n",
+    },
+    "include/iota/shapes.h": {"/// Their order is that of": OCTAHEDRON, ">;\n\nusing Matrix3": ", Octahedron"},
+    "src/shape/shape_list.h": {'#include "shape/sphere.h"': '#include "shape/octahedron.h"\n'},
+    "protocol/shapes.json": {"\n  ]": ',\n    { "name": "octahedron", "sizes": ["radius"] }'},
+    "python/iota/__init__.py": {"    Ellipsoid,\n": "    Octahedron,\n", '    "Ellipsoid",\n': '    "Octahedron",\n'},
+    "web/src/scene/shapes/shape_list.ts": {
+        'import { sphere }': 'import { octahedron } from "./octahedron.ts";\n',
+        "];\n\nconst byName": ", octahedron",
+    },
+    "tests/cpp/shape/shape_test.cpp": {"          HalfSpace{{1, 2, -0.5}}": "          Octahedron{s},\n"},
+    "tests/shapes/make_samples.py": {"    lambda s: iota.HalfSpace": "    lambda s: iota.Octahedron(s),\n"},
+}  # fmt: skip
+
+
+def with_lines(name: str, text: str) -> str:
+    for place, added in LINES.get(name, {}).items():
+        if text.count(place) != 1:
+            sys.exit(
+                f"{name}: {place!r} is there {text.count(place)} times, not once. See LINES in tools/check_one_more.py"
+            )
+        text = text.replace(place, added + place)
+    return text
+
+
+def make_copy() -> None:
+    """The files that git knows or would, with the additions; a file that is the same keeps its time."""
+    listed = ["git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = subprocess.run(listed, check=True, capture_output=True, text=True).stdout.split("\0")
+    sources = {name: ROOT / name for name in names if name and (ROOT / name).is_file()}
+    sources |= {str(path.relative_to(ADDED)): path for path in ADDED.rglob("*") if path.is_file()}
+    for name, source in sources.items():
+        target = COPY / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if name in LINES:
+            text = with_lines(name, source.read_text())
+            if not target.is_file() or target.read_text() != text:
+                target.write_text(text)
+        elif not target.is_file() or not filecmp.cmp(source, target, shallow=False):
+            shutil.copy(source, target)
+    for packages in (".venv", "web/node_modules"):
+        if not (ROOT / packages).is_dir():
+            sys.exit(f"{packages} is missing. Run `make test` first")
+        if not (COPY / packages).is_symlink():
+            (COPY / packages).symlink_to(ROOT / packages)
+
+
+def run(title: str, *command: str, folder: str = ".") -> None:
+    print(f"{title} ...", flush=True)
+    environment = os.environ | {"PYTHONPATH": str(COPY / "python")}
+    done = subprocess.run(command, cwd=COPY / folder, env=environment, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(
+            f"{done.stdout[-6000:]}\n{done.stderr[-2000:]}\n{title}: {' '.join(command)} failed in {COPY / folder}"
+        )
+    if tests := [line.strip() for line in done.stdout.splitlines() if "PASSED" in line or "passed" in line]:
+        print("\n".join(tests))
+
+
+def main() -> int:
+    make_copy()
+    jobs = str(len(os.sched_getaffinity(0)))
+    tests = "Balloons.*:IngredientList.*:*EveryShape*:Shape.*:FollowingIsland.*:Archive.*"
+    run("configuring", "cmake", "--preset", "release")
+    run("building", "cmake", "--build", "build", "--parallel", jobs, "--target", "everyday", "iota_tests")
+    run("tests of ingredients and shapes", "build/iota_tests", "--gtest_brief=1", f"--gtest_filter={tests}")
+    run("distances of shapes, by the engine", ".venv/bin/python", "tests/shapes/make_samples.py")
+    npx = ("../.venv/bin/npx", "--no-install")
+    run("types of the page", *npx, "tsc", "--noEmit", folder="web")
+    run("shapes of the page", *npx, "vitest", "run", "test/shapes.test.ts", folder="web")
+    print("one more ingredient and one more shape work by their own files and lines")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
