@@ -38,7 +38,7 @@ def test_a_build_after_a_build_takes_seconds_and_repeats_no_step() -> None:
     assert all("building engine" in line for line in lines), lines
 
 
-def test_a_failed_step_says_which_why_where_and_what_to_try(
+def test_a_failed_step_names_itself_its_reason_place_and_remedy(
     builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     script = "print('\\n'.join(map(str, range(99)))); print('error: no such thing'); raise SystemExit(3)"

@@ -133,7 +133,7 @@ def test_the_table_of_folders_has_every_folder(page: str, root: str, sources: st
     assert sorted(name for name in named if not (base / name).is_dir()) == []
 
 
-def test_the_protocol_is_told_whole() -> None:
+def test_the_protocol_page_has_all_messages() -> None:
     told = (ROOT / "protocol" / "README.md").read_text()
     schema = json.loads((ROOT / "protocol" / "schema.json").read_text())
     messages = [message["name"] for side in ("client_messages", "server_messages") for message in schema[side]]

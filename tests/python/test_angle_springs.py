@@ -43,7 +43,7 @@ def test_a_chain_of_rods_sags_by_its_weight_as_a_clamped_beam(mode: str) -> None
     assert system.energy.made < 1e-9
 
 
-def test_its_options_and_readings_follow_what_is_assigned() -> None:
+def test_its_options_and_readings_follow_assignments() -> None:
     system = iota.System(gravity=(0, 0, 0))
     one, other = system.body(), system.body()
     p, middle = one.particle((0, 1, 0)), one.particle((0, 0, 0))

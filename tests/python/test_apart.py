@@ -49,7 +49,7 @@ def test_a_file_is_read_by_another_process_which_stays_for_the_next_one() -> Non
     ],
     ids=["crash", "exit", "stopped", "crash after its output", "memory", "time"],
 )
-def test_what_ends_the_reader_is_one_error_and_the_next_file_is_read(
+def test_a_killed_reader_is_one_error_and_the_next_file_is_read(
     text: str, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     apart(eval)("1")  # it takes a moment to start

@@ -119,7 +119,7 @@ def test_torques_and_forces_of_an_array_are_those_of_each_body() -> None:
     np.testing.assert_allclose(moved(True)[:, 6:], np.arange(9.0).reshape(3, 3), rtol=1e-6, atol=1e-9)
 
 
-def test_what_is_wrong_with_an_array_is_said_and_nothing_is_changed() -> None:
+def test_a_wrong_array_is_named_and_nothing_is_changed() -> None:
     system = iota.System()
     grains = system.particle_array(np.zeros((3, 3)))
     before = system.state_hash()

@@ -164,7 +164,7 @@ def test_ten_thousand_bodies_take_less_than_a_tenth_of_asking_a_thousand_one_by_
         assert quick < 0.1 * least(partial(getattr(slow, name), *arguments), 3), name
 
 
-def test_what_is_fixed_is_met_too_the_ground_a_wall_and_a_room_from_a_file() -> None:
+def test_the_ground_a_wall_and_a_room_from_a_file_are_met_too() -> None:
     world = iota.World(iota.System(gravity=(0, 0, 0)), ground=-1)
     wall = world.add_static(iota.looks.box((0.2, 4, 4)), (2, 0, 0))
     beam = world.add_strut((0, 3, -2), (0, 3, 2), iota.looks.cylinder(0.1))

@@ -82,7 +82,7 @@ def test_a_force_at_a_place_is_a_force_and_its_moment(kind: str) -> None:
     np.testing.assert_allclose(at[1], 1e-3 * np.cross(lever, force), rtol=1e-5)
 
 
-def test_a_rod_is_turned_about_what_it_has_inertia_about() -> None:
+def test_a_rod_is_turned_about_axes_with_inertia() -> None:
     system = iota.System(gravity=(0, 0, 0))
     rod = system.body()
     rod.particle((0, 0, 0))
@@ -145,7 +145,7 @@ def test_a_name_is_kept_with_the_body() -> None:
     assert system.validate() == [] and box(system).name == ""
 
 
-def test_what_is_done_to_bodies_is_recorded_and_undone() -> None:
+def test_edits_of_bodies_are_recorded_and_undone() -> None:
     system = iota.System()
     body = box(system)
     before = system.state_hash()

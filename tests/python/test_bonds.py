@@ -207,7 +207,9 @@ def test_a_function_may_cut_and_join_and_this_is_done_after_the_step(
         lambda s: s.grip(s.bodies[0]),
     ],
 )
-def test_a_function_may_not_do_what_cannot_wait(space: iota.System, pair: Pair, edit: Callable[..., Any]) -> None:
+def test_a_function_may_not_make_calls_that_cannot_wait(
+    space: iota.System, pair: Pair, edit: Callable[..., Any]
+) -> None:
     def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         edit(space)
         return (0, 0, 0)
@@ -241,7 +243,7 @@ def test_methods_partials_and_objects_serve_as_functions(space: iota.System, pai
     assert pair[0].velocity.x == pytest.approx(0.2)
 
 
-def test_a_bond_tells_its_force_breaks_and_is_mended() -> None:
+def test_a_bond_reports_its_force_breaks_and_is_repaired() -> None:
     system = iota.System(mode="robust")
     hook = system.body().particle()
     weight = system.body().particle(position=(0, -1, 0), mass=2)

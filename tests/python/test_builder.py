@@ -139,7 +139,7 @@ def test_couplings_of_joints_are_merged_saved_and_kept(system: iota.System) -> N
         assert speeds[1] == pytest.approx(3 * speeds[0], rel=1e-5) and abs(speeds[0]) > 0.05
 
 
-def test_couplings_of_what_is_not_there_are_named() -> None:
+def test_couplings_of_missing_joints_are_named() -> None:
     s = belt()
     s.couple((5, "angle", 1))
     s.couple((0, "length", 1), name="odd")  # type: ignore[arg-type]
@@ -164,7 +164,7 @@ def test_a_structure_comes_back_from_json(system: iota.System) -> None:
     assert system.state_hash() == other.state_hash()
 
 
-def test_what_json_cannot_hold_is_named() -> None:
+def test_values_that_json_cannot_hold_are_named() -> None:
     s = swing()
     s.bond(0, 1, lambda bond: (0, 0, 0), name="pull")
     with pytest.raises(ValueError, match='SoftBond 1 "pull": law cannot be saved'):
@@ -204,7 +204,7 @@ PROBLEMS: dict[str, tuple[Callable[[iota.builder.Structure], object], str]] = {
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_what_is_wrong_is_named_and_nothing_is_made(system: iota.System, name: str) -> None:
+def test_errors_are_named_and_nothing_is_made(system: iota.System, name: str) -> None:
     change, text = PROBLEMS[name]
     structure = swing()
     change(structure)
@@ -213,7 +213,7 @@ def test_what_is_wrong_is_named_and_nothing_is_made(system: iota.System, name: s
     assert system.bodies == []
 
 
-def test_what_the_system_refuses_is_named_and_undone(system: iota.System) -> None:
+def test_refusals_of_the_system_are_named_and_undone(system: iota.System) -> None:
     for change, text in (
         (lambda s: s.bond(0, 6, "spring", stifness=3, name="b"), 'bond 1 "b": .*stifness'),
         (lambda s: s.joint("revolute", 3, at=(0, 3, 0), name="j"), 'revolute 1 "j": '),

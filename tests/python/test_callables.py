@@ -101,7 +101,7 @@ def test_a_surface_that_fails_at_once_is_not_made(wrong: Surface) -> None:
     marble.system.step()
 
 
-def test_curves_pass_on_what_their_function_raises_and_show_what_is_no_point() -> None:
+def test_curves_pass_errors_of_their_function_on_and_name_invalid_points() -> None:
     marble = Marble()
     before, constraints = marble.system.state_hash(), marble.system.constraints
     with pytest.raises(ZeroDivisionError):
@@ -162,7 +162,7 @@ CALLERS: dict[str, Callable[[Marble, Callable[[], Any]], Any]] = {
 
 @pytest.mark.parametrize("caller", CALLERS)
 @pytest.mark.parametrize("edit", EDITS)
-def test_what_cannot_be_done_during_a_step_is_an_error_that_says_so(caller: str, edit: str) -> None:
+def test_an_impossible_call_during_a_step_is_a_clear_error(caller: str, edit: str) -> None:
     marble = Marble()
     CALLERS[caller](marble, lambda: EDITS[edit](marble))
     with pytest.raises(iota.ForceError) as caught:
@@ -174,7 +174,7 @@ def test_what_cannot_be_done_during_a_step_is_an_error_that_says_so(caller: str,
 
 @pytest.mark.parametrize("caller", CALLERS)
 @pytest.mark.parametrize("edit", QUEUED)
-def test_what_is_asked_for_during_a_step_is_done_right_after_it(caller: str, edit: str) -> None:
+def test_calls_during_a_step_are_done_right_after_it(caller: str, edit: str) -> None:
     marble, done_within = Marble(), []
     request, is_done = QUEUED[edit]
 

@@ -415,7 +415,7 @@ def test_a_script_that_ends_without_close_leaves_nothing_on_the_terminal(tmp_pat
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_ends_cleanly_when_told_to(number: signal.Signals) -> None:
+def test_it_ends_cleanly_on_request(number: signal.Signals) -> None:
     command = [sys.executable, "-m", "iota", "run", "chain", "--no-open", "--port", "0"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)
     assert process.stdout is not None and process.stderr is not None
@@ -450,7 +450,7 @@ def test_bench_forces_prints_a_row_for_every_way_of_writing_a_force(capsys: pyte
     assert all(row["ns"] > 0 for row in rows)
 
 
-def test_import_tells_what_is_in_a_file_and_saves_it(tmp_path: Path) -> None:
+def test_import_lists_the_contents_of_a_file_and_saves_it(tmp_path: Path) -> None:
     water = tmp_path / "water.xyz"
     water.write_text("3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")
     done = run("import", water, "--json", "--save", tmp_path / "out.json")
@@ -461,7 +461,7 @@ def test_import_tells_what_is_in_a_file_and_saves_it(tmp_path: Path) -> None:
     assert "edges: 12" in run("import", "cube").stdout
 
 
-def test_import_says_in_one_line_what_is_wrong(tmp_path: Path) -> None:
+def test_import_reports_an_error_in_one_line(tmp_path: Path) -> None:
     broken = tmp_path / "broken.off"
     broken.write_text("OFF\n1 1 0\n0 0 0\n3 0 1 2\n")
     assert fails_with_one_line("import", broken) == (
@@ -476,7 +476,7 @@ def test_import_says_in_one_line_what_is_wrong(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [broken]
 
 
-def test_profile_tells_where_the_time_goes(tmp_path: Path) -> None:
+def test_profile_shows_the_times_of_the_parts_of_a_step(tmp_path: Path) -> None:
     path = tmp_path / "slow.py"
     path.write_text(
         textwrap.dedent("""

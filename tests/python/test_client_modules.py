@@ -92,7 +92,7 @@ def test_only_clients_learn_where_the_named_modules_are_and_they_are_gone_afterw
     assert list(temporary.iterdir()) == []
 
 
-def test_what_is_no_module_is_refused_where_it_is_named(tmp_path: Path) -> None:
+def test_a_file_that_is_no_module_is_refused_where_it_is_named(tmp_path: Path) -> None:
     world, _ = make_world()
     (tmp_path / "a.py").write_text("")
     (tmp_path / "huge.js").write_bytes(bytes((4 << 20) + 1))

@@ -127,7 +127,7 @@ def test_an_angle_can_be_set_in_a_loop_with_a_compliant_joint() -> None:
     assert joints[0].angle.value == pytest.approx(0.2, abs=1e-6), "nothing was stretched"
 
 
-def test_what_cannot_yield_says_so() -> None:
+def test_a_callback_that_cannot_yield_is_a_clear_error() -> None:
     system = iota.System()
     a, b = system.particle_array([(0, 0, 0), (1, 0, 0)])
     path = system.on_path(a, [(0, 0, 0), (1, 0, 0), (2, 1, 0)])

@@ -22,7 +22,7 @@ def run(system: iota.System, seconds: float, dt: float = 1 / 120) -> iota.types.
     return report
 
 
-def test_a_joint_tells_its_bodies_place_axis_and_reaction() -> None:
+def test_a_joint_has_its_bodies_place_axis_and_reaction() -> None:
     system, box = hanging_box()
     joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 2))
     run(system, 0.2)
@@ -196,7 +196,7 @@ def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     assert bowl.kind == "inside"
 
 
-def test_what_breaks_is_named_and_can_be_repaired() -> None:
+def test_a_broken_joint_is_named_and_can_be_repaired() -> None:
     system, box = hanging_box()
     joint = system.ball(box, at=(0, -0.3, 0), break_force=30)
     run(system, 0.2)
@@ -216,7 +216,7 @@ def test_what_breaks_is_named_and_can_be_repaired() -> None:
     assert joint.gap < 1e-8
 
 
-def test_a_hinge_tells_what_it_carries_and_breaks_under_too_much() -> None:
+def test_a_hinge_reports_its_load_and_breaks_under_too_much() -> None:
     system = iota.System(damping=5)
     links = iota.builder.chain(links=3, length=0.3).realize(system).bodies
     run(system, 3)
@@ -254,7 +254,7 @@ def test_the_function_of_a_bond_may_change_joints_for_after_the_step() -> None:
     assert joint.angle.speed == pytest.approx(-1, rel=1e-2)
 
 
-def test_a_joint_that_moves_wakes_what_rests() -> None:
+def test_a_joint_that_moves_wakes_resting_bodies() -> None:
     system, box = hanging_box()
     joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1), motor=(0, 100))
     box.kind = "resting"

@@ -377,7 +377,7 @@ def test_couplings_are_restored_undone_and_replayed() -> None:
     run(system, 0.1)
 
 
-def test_couplings_end_with_what_they_couple_and_say_so() -> None:
+def test_couplings_end_with_their_joints_and_report_it() -> None:
     system, rope, gear, heavy = crane()
     (_joint, _), (_, ratio) = gear.terms
     assert ratio == -1

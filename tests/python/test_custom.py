@@ -18,7 +18,7 @@ from iota.film.browser import open_browser
 Runner = Callable[[iota.World], str]
 
 
-def test_an_object_has_its_values_and_follows_what_it_is_on(run_world: Runner) -> None:
+def test_an_object_has_its_values_and_follows_its_anchor(run_world: Runner) -> None:
     system = iota.System(gravity=(0, 0, 0))
     ball = system.body().particle((0, 1, 0)).body
     world = iota.World(system, ground=None)

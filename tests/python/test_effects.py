@@ -120,7 +120,7 @@ def test_the_skin_of_one_particle_is_a_ball_and_near_ones_melt_into_one() -> Non
     assert volumes[2] == pytest.approx(2 * ball.volume, rel=0.01)
 
 
-def test_a_skin_follows_its_particles_and_refuses_what_it_cannot_make() -> None:
+def test_a_skin_follows_its_particles_and_refuses_impossible_sizes() -> None:
     system = iota.System()
     jelly = iota.builder.soft_block(cells=(3, 2, 2)).realize(system)
     before, triangles = effects.skin(system.positions, radius=0.1)

@@ -285,14 +285,14 @@ def test_a_mistake_in_the_script_layer_is_named(name: str) -> None:
     assert len(world.things) - things <= 1
 
 
-def test_the_names_that_are_told_are_there() -> None:
+def test_the_listed_names_exist() -> None:
     world = iota.World(iota.System())
     for use in ELSEWHERE.values():
         for of, name in re.findall(r"(world|looks)\.(\w+)", use):
             assert callable(getattr({"world": world, "looks": looks}[of], name))
 
 
-def test_what_is_misspelled_in_a_callback_is_told_with_a_near_name() -> None:
+def test_a_misspelled_name_in_a_callback_is_reported_with_a_near_one() -> None:
     particle = iota.System().body().particle(V)
     told = {}
     for name in ("positon", "zzz"):
@@ -371,7 +371,7 @@ DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
 
 
 @pytest.mark.parametrize("name", DEGENERATE)
-def test_what_cannot_be_is_refused_where_it_is_written(name: str) -> None:
+def test_impossible_arguments_are_refused_where_they_are_written(name: str) -> None:
     use, text = DEGENERATE[name]
     with pytest.raises((TypeError, ValueError), match=text):
         use(iota.World(iota.System()))

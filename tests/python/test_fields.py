@@ -274,7 +274,7 @@ def test_laws_of_normals_are_for_pairs_of_oriented_particles(space: iota.System)
     assert pairs.energy == pytest.approx(1 + abs(q.position - p.position) ** -1 * (q.position - p.position).z)
 
 
-def test_two_particles_at_one_place_are_told(space: iota.System) -> None:
+def test_two_particles_at_one_place_are_reported(space: iota.System) -> None:
     for _ in range(2):
         space.body().particle()
     pairs = space.pair_force("coulomb", cutoff=1)

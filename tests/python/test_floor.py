@@ -48,7 +48,7 @@ def lowest(body: iota.Body, shape: iota.Shape) -> float:
 
 @pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
 @pytest.mark.parametrize("kind", SHAPES)
-def test_what_is_dropped_comes_to_lie_on_the_ground(kind: str, size: float) -> None:
+def test_dropped_bodies_come_to_rest_on_the_ground(kind: str, size: float) -> None:
     shape = SHAPES[kind](size)
     world, body = dropped(shape, 5 * size)
     run(world, 3 + 2 * math.sqrt(size))
@@ -69,7 +69,7 @@ def test_a_cylinder_touches_the_ground_with_its_rounded_edges(rounding: float) -
         assert max(places @ down) + radius == pytest.approx(lowest_point @ down, rel=1e-6)
 
 
-def test_what_is_thrown_down_fast_hardly_comes_back() -> None:
+def test_a_body_that_is_thrown_down_fast_hardly_bounces() -> None:
     """It falls as from 80 m; what it keeps is spin, of which its corners make a little height."""
     world, body = dropped(iota.Box((0.3, 0.2, 0.1)), 1.0, velocity=(2, -40, 0))
     highest = 0.0
@@ -109,7 +109,7 @@ def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -
     assert heights.max() < 0.1
 
 
-def test_the_ground_is_under_what_is_there_and_what_hangs() -> None:
+def test_the_ground_is_under_all_bodies_and_what_hangs_from_them() -> None:
     def ground_of(make: Callable[[iota.System], None]) -> float | None:
         system = iota.System()
         make(system)
@@ -129,7 +129,7 @@ def test_the_ground_is_under_what_is_there_and_what_hangs() -> None:
     assert -1.5 < low < -1
 
 
-def test_what_starts_below_a_given_ground_is_left_there() -> None:
+def test_bodies_that_start_below_a_given_ground_are_left_there() -> None:
     system = iota.System(gravity=(0, -9.81, 0))
     below, above = system.body().particle((0, -1, 0)), system.body().particle((1, 1, 0))
     run(iota.World(system, ground=0.0), 2)
@@ -144,7 +144,7 @@ def test_without_a_ground_things_fall_on() -> None:
     assert point.position.y == pytest.approx(1 - 9.81 * 2, rel=0.02)
 
 
-def test_what_is_kept_of_bodies_between_edits_is_what_a_new_list_has() -> None:
+def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
     """A floor that has followed random edits, and one that lists everything anew."""
     random = np.random.default_rng(3)
     system = iota.System(damping=1.0)

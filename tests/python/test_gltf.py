@@ -138,7 +138,7 @@ def test_coordinates_may_be_whole_numbers(tmp_path: Path) -> None:
         assert checked.coordinates == pytest.approx(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), abs=1e-9)
 
 
-def test_colors_are_converted_from_light_to_what_screens_take(tmp_path: Path) -> None:
+def test_colors_are_converted_from_linear_to_srgb(tmp_path: Path) -> None:
     head, buffer = described(None, CHECK)
     head["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = [0.5, 0.0031308, 0.001, 1]
     # IEC 61966-2-1: 0.5 is 188 of 255.

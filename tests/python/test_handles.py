@@ -77,7 +77,7 @@ def test_a_destroyed_particle_says_so(system: iota.System) -> None:
     assert "gone" in repr(particle)
 
 
-def test_an_absorbed_particle_names_what_absorbed_it(system: iota.System) -> None:
+def test_an_absorbed_particle_names_its_successor(system: iota.System) -> None:
     body = system.body()
     p, q, _ = body.particle(), body.particle((1, 0, 0)), body.particle((2, 0, 0))
     p.combine(q)
@@ -87,7 +87,7 @@ def test_an_absorbed_particle_names_what_absorbed_it(system: iota.System) -> Non
     assert isinstance(caught.value, ValueError)
 
 
-def test_an_absorbed_body_names_what_absorbed_it(system: iota.System) -> None:
+def test_an_absorbed_body_names_its_successor(system: iota.System) -> None:
     a, b = system.body(), system.body()
     a.particle()
     b.particle((1, 0, 0))
@@ -180,14 +180,14 @@ def test_the_function_of_a_destroyed_bond_is_let_go(system: iota.System) -> None
     assert sys.getrefcount(force) == before
 
 
-def test_handles_show_what_they_are(system: iota.System, chain: list[iota.Body]) -> None:
+def test_handles_print_their_kind_and_id(system: iota.System, chain: list[iota.Body]) -> None:
     assert repr(chain[0]) == "<Body 0: dynamic, 2 particles>"
     assert repr(chain[0].particles[0]) == "<Particle 0 of body 0 at (0, 2, 0)>"
     assert "6 bodies in 1 articulates" in repr(system)
     assert "1 articulates" in repr(system.step())
 
 
-def test_what_a_script_still_has_at_its_end_is_let_go_quietly() -> None:
+def test_objects_that_a_script_has_at_its_end_are_freed_quietly() -> None:
     """A function that the system holds sees the script's names, which hold the system: a ring that must come free."""
     script = """
 import iota

@@ -55,7 +55,7 @@ def test_a_body_hears_of_its_own_contacts_and_anything_of_all() -> None:
     assert some == [hinges[0].a, hinges[2].a]
 
 
-def test_what_breaks_calls_and_may_be_edited_there() -> None:
+def test_a_break_calls_the_script_which_may_edit_there() -> None:
     world = iota.World(iota.System(), dt=1 / 120, ground=None)
     system = world.system
     hook, load = system.body(kind="static").particle((0, 0, 0)), system.body().particle((0, -1, 0), mass=1)
@@ -89,6 +89,6 @@ def test_one_that_raises_is_switched_off_and_the_others_go_on(capsys: pytest.Cap
 
 
 @pytest.mark.parametrize("target", ["nothing", "everything", 3, []])
-def test_what_is_no_thing_is_refused(target: object) -> None:
+def test_values_that_are_no_things_are_refused(target: object) -> None:
     with pytest.raises(TypeError, match="must be a body, a constraint, several"):
         iota.World(iota.System()).on_contact(target)

@@ -415,7 +415,7 @@ def test_articulates_have_colors_of_their_own_also_after_a_break(chain: list[iot
         page.wait_for(lambda: not page.entities["paint"])
 
 
-def test_what_is_carried_follows_the_hand_exactly_with_what_hangs_on_it_and_is_thrown(run_world: Runner) -> None:
+def test_a_carried_body_follows_the_hand_exactly_with_all_that_hangs_on_it_and_is_thrown(run_world: Runner) -> None:
     system = iota.System(gravity=(0, 0, 0))
     links = iota.builder.chain(3, 0.6, top=(0, 2, 0), nailed=False).realize(system).bodies
     other = system.body(shape=iota.Sphere(0.1), mass=1.0, position=(3, 2, 0))

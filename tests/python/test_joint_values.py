@@ -21,7 +21,7 @@ def arm(system: iota.System, links: int = 3, held: bool = True) -> list[iota.Con
     ]
 
 
-def test_a_joint_that_is_set_turns_what_hangs_on_it() -> None:
+def test_a_joint_that_is_set_turns_the_bodies_behind_it() -> None:
     system = iota.System(gravity=(0, 0, 0))
     shoulder, elbow, wrist = arm(system)
     elbow.angle.value = math.pi / 2
@@ -46,7 +46,7 @@ def test_an_angle_is_counted_on_through_full_turns(aim: float) -> None:
     assert shoulder.angle.value == pytest.approx(aim)
 
 
-def test_what_is_held_stays_and_the_other_side_moves() -> None:
+def test_the_held_side_stays_and_the_other_side_moves() -> None:
     system = iota.System(gravity=(0, 0, 0))
     wall = system.body("static", shape=iota.Box((1, 1, 1)))
     door = system.body(shape=iota.Box((1, 1, 0.1)), mass=1, position=(1.5, 0, 0))
@@ -158,7 +158,7 @@ def test_efforts_of_motor_stop_friction_and_spring_are_told_apart() -> None:
     assert efforts["stop"] < -7
 
 
-def test_reaching_and_leaving_a_stop_is_told_once() -> None:
+def test_reaching_and_leaving_a_stop_is_reported_once() -> None:
     system = iota.System(gravity=(0, 0, 0))
     (shoulder,) = arm(system, links=1)
     shoulder.angle.limits, shoulder.angle.motor = (-0.5, 0.2), (1.0, 10.0)
@@ -173,7 +173,7 @@ def test_reaching_and_leaving_a_stop_is_told_once() -> None:
     assert 120 <= told[1][0] <= 122 and 200 <= told[2][0] <= 210
 
 
-def test_meeting_and_parting_of_a_rope_is_told() -> None:
+def test_meeting_and_parting_of_a_rope_is_reported() -> None:
     system = iota.System()
     anchor, weight = system.body().particle((0, 2, 0)), system.body().particle((0, 1.5, 0))
     anchor.nail()

@@ -107,7 +107,7 @@ def rows_of(system: iota.System) -> list[tuple[iota.Body, list[int]]]:
     ],
     ids=["cut", "destroyed", "released"],
 )
-def test_what_users_broke_begins_anew_and_the_rest_goes_on(
+def test_parts_that_users_broke_begin_anew_and_the_rest_goes_on(
     tmp_path: Path, during: Callable[[iota.System], None]
 ) -> None:
     file = tmp_path / "world"

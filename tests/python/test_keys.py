@@ -23,7 +23,7 @@ def test_the_list_of_the_pages_keys_is_that_of_the_page() -> None:
     assert keys | set(re.findall(r"(\w): \[", walk[1])) == set(PAGE_KEYS)
 
 
-def test_a_key_that_is_taken_from_the_page_is_told_at_the_start(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_key_that_is_taken_from_the_page_is_reported_at_the_start(capsys: pytest.CaptureFixture[str]) -> None:
     world = iota.World(iota.System())
     world.action("mend", key="r", help="mends", on="world")(lambda: None)
     world.action("push", key="k", help="pushes", on="world")(lambda: None)

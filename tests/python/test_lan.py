@@ -60,7 +60,7 @@ def test_a_client_that_does_not_know_the_certificate_refuses_it(world: iota.Worl
         urllib.request.urlopen(world.lan_url)
 
 
-def test_the_fingerprint_told_is_that_of_the_certificate_sent(world: iota.World, state: Path) -> None:
+def test_the_printed_fingerprint_is_that_of_the_certificate(world: iota.World, state: Path) -> None:
     sent = ssl.get_server_certificate(place(world.lan_url))
     assert fingerprint(sent) == fingerprint((state / "certificate.pem").read_text())
 

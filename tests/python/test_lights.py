@@ -15,7 +15,7 @@ from iota._protocol import NO_BODY, NO_COLOR, LightKind
 Runner = Callable[[iota.World], str]
 
 
-def test_lights_have_the_records_of_the_protocol_and_follow_what_they_are_on(run_world: Runner) -> None:
+def test_lights_have_the_records_of_the_protocol_and_follow_their_anchor(run_world: Runner) -> None:
     system = iota.System(gravity=(0, 0, 0))
     lamp = system.body().particle((0, 2, 0)).body
     world = iota.World(system)

@@ -48,7 +48,7 @@ def make_world() -> iota.World:
     return world
 
 
-def test_a_recording_has_what_two_users_did_and_its_file_plays_at_any_time(tmp_path: Path) -> None:
+def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_path: Path) -> None:
     file = tmp_path / "lesson.iota"
     world = make_world()
     with world.record(file) as recording:

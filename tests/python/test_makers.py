@@ -17,7 +17,7 @@ MAKERS = ["rope", "ring", "snake", "net", "cloth", "leaf", "cuboid", "bridge", "
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_what_is_made_can_be_realized_saved_and_left_to_itself(name: str) -> None:
+def test_a_structure_can_be_realized_saved_and_left_to_itself(name: str) -> None:
     made: Structure = getattr(builder, name)()
     assert made.problems() == []
     again = Structure.from_json(json.loads(json.dumps(made.to_json())))

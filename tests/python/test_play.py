@@ -49,7 +49,7 @@ def iota(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=170, stdin=subprocess.DEVNULL)
 
 
-def test_what_cannot_be_played_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_played_is_reported_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "bad.iota").write_bytes(b"bad")
     for arguments, words in (
         (["none.iota"], "No such file"),
@@ -63,7 +63,7 @@ def test_what_cannot_be_played_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
-def test_the_page_shows_what_was_there_at_any_time_without_a_server(tmp_path: Path) -> None:
+def test_the_page_shows_the_scene_of_any_time_without_a_server(tmp_path: Path) -> None:
     sync = pytest.importorskip("playwright.sync_api")
     script = tmp_path / "ball.py"
     script.write_text(
@@ -95,7 +95,7 @@ def test_the_page_shows_what_was_there_at_any_time_without_a_server(tmp_path: Pa
 
 
 @pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
-def test_the_page_says_that_it_lacks_what_the_scripts_own_code_draws(tmp_path: Path) -> None:
+def test_the_page_says_that_it_lacks_drawings_by_code_of_the_script(tmp_path: Path) -> None:
     sync = pytest.importorskip("playwright.sync_api")
     (tmp_path / "flower.js").write_text('iota.define("flower", { make: () => new iota.three.Group() });')
     script = """

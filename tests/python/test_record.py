@@ -110,7 +110,7 @@ def test_a_film_shows_the_plots_of_the_script_on_request(script: Path, tmp_path:
 
 
 @needs_browser
-def test_what_fails_leaves_the_old_film_and_nothing_else(script: Path, tmp_path: Path) -> None:
+def test_a_failure_leaves_the_old_film_and_nothing_else(script: Path, tmp_path: Path) -> None:
     film = tmp_path / "old.mp4"
     film.write_bytes(b"old")
     script.write_text(script.read_text().replace("return world", "world.at(0.05)(lambda: exit(3)); return world"))
@@ -145,7 +145,7 @@ def test_a_terminal_shows_how_far_the_film_is(
         (("-o", "{}/film.mp4", "--size", "641x480"), "even"),
     ],
 )
-def test_bad_requests_are_told_in_one_line(
+def test_bad_requests_are_reported_in_one_line(
     script: Path, tmp_path: Path, arguments: tuple[str, ...], words: str
 ) -> None:
     done = record(script, *(word.format(tmp_path) for word in arguments))
@@ -154,7 +154,7 @@ def test_bad_requests_are_told_in_one_line(
     assert not list(tmp_path.glob("*.mp4"))
 
 
-def test_a_missing_browser_or_package_is_named_with_what_to_do(script: Path, tmp_path: Path) -> None:
+def test_a_missing_browser_or_package_is_named_with_advice(script: Path, tmp_path: Path) -> None:
     film = tmp_path / "film.mp4"
     done = record(script, "-o", film, CHROMIUM=str(tmp_path / "none"))
     assert done.returncode == 1 and "apt-get install chromium" in done.stderr

@@ -190,7 +190,7 @@ def test_a_chain_of_rods_keeps_its_inertia() -> None:
     assert lows[1] / lows[0] == pytest.approx(1.5, rel=0.03)
 
 
-def test_an_articulate_is_what_hangs_together_now(system: iota.System, chain: list[iota.Body]) -> None:
+def test_an_articulate_is_the_presently_connected_bodies(system: iota.System, chain: list[iota.Body]) -> None:
     whole = chain[0].articulate
     assert list(whole) == chain and len(whole) == 6 and chain[5] in whole and whole == chain[3].articulate
     chain[2].particles[1].separate(chain[3].particles[0])

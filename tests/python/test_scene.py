@@ -85,7 +85,7 @@ def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list
         assert style["name"] == "link" and [part["look"] for part in style["parts"]] == ["rope", "chain"]
 
 
-def test_pages_are_told_the_names_that_the_script_gives_and_of_a_new_one_only_that_body(
+def test_pages_get_the_names_of_the_script_and_for_a_new_name_only_that_body(
     system: iota.System, chain: list[iota.Body]
 ) -> None:
     chain[1].name = "left arm"
@@ -161,7 +161,7 @@ def test_particles_with_a_radius_are_drawn_as_balls_on_their_body_and_go_with_it
         assert shown.parts(points[1].body)[-1]["shape"]["sizes"] == pytest.approx([0.1])
 
 
-def test_an_edit_tells_only_what_it_touches(system: iota.System) -> None:
+def test_an_edit_sends_only_the_entities_that_it_touches(system: iota.System) -> None:
     links = iota.builder.chain(links=100).realize(system).bodies
     with show(system) as shown:
         assert len(shown.bodies) == 100
@@ -170,7 +170,9 @@ def test_an_edit_tells_only_what_it_touches(system: iota.System) -> None:
         assert shown.look() == 0
 
 
-def test_what_is_gone_is_told_and_its_slot_gets_another_generation(system: iota.System, chain: list[iota.Body]) -> None:
+def test_a_destroyed_entity_is_reported_and_its_slot_gets_another_generation(
+    system: iota.System, chain: list[iota.Body]
+) -> None:
     with show(system) as shown:
         slot, before = chain[5].slot, shown.bodies[chain[5].slot]["id"]
         chain[5].destroy()
@@ -218,7 +220,7 @@ def test_springs_ropes_and_rods_are_ties_while_they_are_active(system: iota.Syst
         assert not ties
 
 
-def test_joints_nails_and_emitters_are_told(system: iota.System, chain: list[iota.Body]) -> None:
+def test_joints_nails_and_emitters_are_sent(system: iota.System, chain: list[iota.Body]) -> None:
     box, other = (system.body(shape=iota.Box((1, 1, 1)), position=(x, 5, 0)) for x in (0, 2))
     hinge = system.revolute(box, other, at=(1, 5, 0), axis=(0, 0, 2))
     fire = system.emitter(rate=1, max_count=7)
@@ -278,7 +280,7 @@ def test_turn_from_x_takes_x_to_a_direction(direction: tuple[float, float, float
     assert tuple(back) == pytest.approx((1, 0, 0), abs=1e-6)
 
 
-def test_shapes_refuse_what_they_do_not_know() -> None:
+def test_shapes_refuse_unknown_names() -> None:
     with pytest.raises(ValueError, match=r"material must be one of steel.*not 'gold'"):
         looks.sphere(0.1, "gold")
     with pytest.raises(ValueError, match=r"the radius of a sphere must be between .* got -1"):

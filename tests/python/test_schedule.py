@@ -38,7 +38,7 @@ def test_periodic_events_do_not_drift() -> None:
     assert times == list(range(30, 1000, 10))
 
 
-def test_rewind_brings_back_what_was_asked_for_before_the_run_only() -> None:
+def test_rewind_restores_only_settings_from_before_the_run() -> None:
     schedule = Schedule()
     schedule.add(1.0, hook("planned"))
     schedule.begin()
@@ -91,7 +91,7 @@ def test_a_world_calls_its_timed_events_at_their_steps() -> None:
     assert steps == list(range(35)) and summary.steps == 35
 
 
-def test_an_event_that_raises_is_told_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_event_that_raises_is_reported_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
     world = iota.World(iota.System(), dt=0.01)
     seen: list[float] = []
 
@@ -126,7 +126,7 @@ def test_an_on_step_that_raises_is_switched_off(capsys: pytest.CaptureFixture[st
     assert capsys.readouterr().err.count("ValueError: on purpose") == 1
 
 
-def test_a_bond_that_fails_in_a_world_is_told_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_bond_that_fails_in_a_world_is_reported_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
     system = iota.System()
     p, q = system.body().particle(), system.body().particle((1, 0, 0))
     bond = system.bond(p, q, lambda bond: 1 / 0)

@@ -349,7 +349,7 @@ def test_atoms_on_top_of_each_other_and_far_away_are_refused_at_once(write: Writ
     fails(write("python.xyz", WATER_XYZ.replace("0.96", "1_0")), "line 4", "'1_0'")
 
 
-def test_what_a_molecule_leaves_out_is_noted(write: Write) -> None:
+def test_omissions_of_a_molecule_are_noted(write: Write) -> None:
     symmetry = "loop_\n_symmetry_equiv_pos_as_xyz\n'x,y,z'\n'-x,-y,z'\n"
     for more, words in (
         (symmetry, "2 operations of symmetry"),
@@ -678,7 +678,7 @@ def test_damaged_surfaces_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("w.gltf", json.dumps(packed)), "compressed (KHR_draco_mesh_compression)")
 
 
-def test_surfaces_of_impossible_size_are_refused_with_what_to_give(write: Write) -> None:
+def test_surfaces_of_impossible_size_are_refused_with_advice(write: Write) -> None:
     fails(write("a.off", CUBE_OFF.replace("1 1 1 #", "1 1e12 1 #")), "point 7 (of 8)", "smaller scale")
     with pytest.raises(shapelib.FileError, match=r"b.off: a body of it has 1e-42 kg; give scale"):
         shapelib.polyhedron(write("b.off", CUBE_OFF), scale=1e-15)
@@ -739,7 +739,7 @@ def test_a_urdf_pendulum_swings_with_the_period_of_its_inertia(write: Write) -> 
     assert crossings[1] - crossings[0] == pytest.approx(period, rel=2e-3)
 
 
-def test_what_a_urdf_has_that_we_have_not_is_listed(write: Write) -> None:
+def test_unsupported_parts_of_a_urdf_are_listed(write: Write) -> None:
     more = """
   <link name="finger"/><link name="other"/><link name="cover"><visual><geometry><mesh filename="package://x/lid.stl"/>
   </geometry></visual></link>
@@ -880,7 +880,7 @@ def test_an_mjcf_file_that_would_fill_the_memory_is_refused_before_mujoco_builds
     fails(write("c.xml", '<mujoco><include file="inner.xml"/></mujoco>'), "makes 1000000", at="inner.xml")
 
 
-def test_an_mjcf_file_includes_neither_itself_nor_what_is_outside_of_its_folder(write: Write, tmp_path: Path) -> None:
+def test_an_mjcf_file_includes_neither_itself_nor_files_outside_of_its_folder(write: Write, tmp_path: Path) -> None:
     (tmp_path / "inner").mkdir()
     inner = MJCF.replace('<mujoco model="arm">', "<mujoco>")
     write("inner/arm.xml", inner)
@@ -921,7 +921,7 @@ def test_a_file_that_an_mjcf_file_includes_may_have_any_ending_and_lie_beside_th
     fails(tmp_path / "b.xml", "line 3", "unrecognized attribute: 'sise'", at="inner/arm.txt")
 
 
-def test_what_mujoco_warns_of_is_noted_and_not_written_into_a_file(
+def test_warnings_of_mujoco_are_noted_and_not_written_into_a_file(
     write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -19,7 +19,7 @@ SAMPLES = json.loads((ROOT / "tests" / "shapes" / "samples.json").read_text())
 KINDS = get_args(iota.Shape)
 
 
-def test_the_samples_are_what_the_engine_says() -> None:
+def test_the_samples_are_the_distances_of_the_engine() -> None:
     spec = importlib.util.spec_from_file_location("make_samples", ROOT / "tests" / "shapes" / "make_samples.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)

@@ -38,7 +38,7 @@ def test_a_skin_is_the_surface_around_its_particles_and_follows_them(run_world: 
         assert skin.alive
 
 
-def test_a_skin_around_what_a_function_returns_is_switched_off_by_an_error(run_world: Runner) -> None:
+def test_a_skin_around_points_of_a_function_is_switched_off_by_an_error(run_world: Runner) -> None:
     world = iota.World(iota.System())
     places: Any = [[0, 0, 0]]
     skin = world.skin(lambda: places, 0.1, cell=0.05)

@@ -71,7 +71,7 @@ def test_attachments_are_ordinary_particles(system: iota.System) -> None:
     assert door.inertia.trace() == pytest.approx(inertia.trace())
 
 
-def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
+def test_sizes_that_make_no_shape_are_refused(system: iota.System) -> None:
     with pytest.raises(ValueError, match="the radius of a sphere must be between 1e-09 and"):
         iota.Sphere(-1)
     with pytest.raises(ValueError, match="not closed: triangle"):

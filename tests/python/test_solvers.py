@@ -63,7 +63,7 @@ def test_every_solver_solves_broydens_tridiagonal_equations(method: str) -> None
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_the_equations_raise_reaches_the_caller(method: str) -> None:
+def test_errors_of_the_equations_reach_the_caller(method: str) -> None:
     def f(x: Any) -> Any:
         raise ZeroDivisionError("by hand")
 
@@ -228,7 +228,7 @@ def test_an_unknown_solver_of_a_system_is_refused(system: iota.System) -> None:
     assert system.solver == "direct"
 
 
-def test_a_diagnosis_names_what_is_said_twice(system: iota.System) -> None:
+def test_a_diagnosis_names_redundant_constraints(system: iota.System) -> None:
     def rod(a: Any, b: Any) -> iota.Body:
         body = system.body()
         body.particle(a)

@@ -17,7 +17,7 @@ from iota.world.step_costs import EVERY, PARTS, StepCosts
 Runner = Callable[[iota.World], str]
 
 
-def test_the_times_of_steps_add_up_to_what_passes(chain: list[iota.Body]) -> None:
+def test_the_times_of_steps_add_up_to_the_passing_time(chain: list[iota.Body]) -> None:
     system = chain[0].system
     system.step()
     with StepTimes() as times:
@@ -50,7 +50,7 @@ def test_costs_of_other_parts_are_means_of_a_step() -> None:
     }
 
 
-def test_pages_are_told_the_parts_of_a_step_while_one_asks(chain: list[iota.Body], run_world: Runner) -> None:
+def test_pages_get_the_parts_of_a_step_while_one_asks(chain: list[iota.Body], run_world: Runner) -> None:
     world = iota.World(chain[0].system)
     calls: list[float] = []
 

@@ -50,7 +50,7 @@ def test_its_title_says_how_large_it_is(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(set(studies.names()) - {"bucky"}))  # whose nail is the middle of the ball
-def test_what_is_nailed_is_at_something_that_is_seen(name: str) -> None:
+def test_every_nail_is_at_something_visible(name: str) -> None:
     world = studies.module(name).build()
     held = [p for p in world.system.particles if p.is_nailed]
     held += [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]

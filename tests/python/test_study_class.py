@@ -60,7 +60,7 @@ def test_the_appendix_scripts_fall_swing_and_fold_and_land_on_the_ground() -> No
         assert lowest > appendix_e1.GROUND - 0.1
 
 
-def test_the_class_measures_what_the_formulas_say() -> None:
+def test_the_class_measures_the_values_of_the_formulas() -> None:
     world = physics_class.build()
     system = world.system
     run(world, 9.0)
@@ -85,7 +85,7 @@ def test_the_class_measures_what_the_formulas_say() -> None:
     assert system.energy.total == pytest.approx(before, abs=1e-6)
 
 
-def test_the_plots_of_the_class_show_what_moves() -> None:
+def test_the_plots_of_the_class_show_its_motions() -> None:
     world = physics_class.build()
     run(world, 2.0)
     system = world.system
@@ -105,7 +105,7 @@ def test_the_plots_of_the_class_show_what_moves() -> None:
         assert newest[label] == pytest.approx(value, rel=1e-9), label
 
 
-def test_the_sliders_of_the_class_do_what_they_say() -> None:
+def test_the_sliders_of_the_class_set_their_values() -> None:
     world = physics_class.build()
     change(world, "length", 0.5)
     change(world, "gravity", 4.0)

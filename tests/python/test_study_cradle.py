@@ -156,7 +156,7 @@ def test_the_middle_one_of_seven_takes_four_along_to_either_side(way: int, expec
     assert sizes(made) == expected[::-1]
 
 
-def test_what_meets_a_held_group_is_taken_along() -> None:
+def test_balls_that_meet_a_held_group_are_taken_along() -> None:
     world, made = build(0, 1)
     world.step()
     ball = made.balls[0]

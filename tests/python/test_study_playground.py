@@ -59,7 +59,7 @@ def shape_of(system: iota.System) -> list[tuple[float, ...]]:
     return sorted(tuple(round(x, 6) for x in (*body.center_of_mass, body.mass)) for body in system.bodies)
 
 
-def test_a_click_places_what_is_chosen_where_the_ray_meets_the_middle_or_the_ground(world: iota.World) -> None:
+def test_a_click_places_the_chosen_thing_where_the_ray_meets_the_middle_or_the_ground(world: iota.World) -> None:
     before = len(world.system.bodies)
     click(world, "nothing", (0, 1, 4), (0, 0, -1))
     assert len(world.system.bodies) == before
@@ -78,7 +78,7 @@ def test_a_click_places_what_is_chosen_where_the_ray_meets_the_middle_or_the_gro
     run(world, 1.0)
 
 
-def test_nails_ties_and_combining_do_what_they_say_and_are_undone(world: iota.World) -> None:
+def test_nails_ties_and_combining_act_and_are_undone(world: iota.World) -> None:
     system = world.system
     ball = playground.PLACE["ball"](world, iota.Vec3(2, 1.5, 0))
     box = playground.PLACE["box"](world, iota.Vec3(2.3, 1.5, 0))
@@ -100,7 +100,7 @@ def test_nails_ties_and_combining_do_what_they_say_and_are_undone(world: iota.Wo
     assert not any(particle.is_nailed for particle in ball.particles)
 
 
-def test_what_is_saved_is_loaded_again_and_goes_on_as_before(world: iota.World, tmp_path: Path) -> None:
+def test_a_saved_world_is_loaded_and_goes_on_as_before(world: iota.World, tmp_path: Path) -> None:
     ball = playground.PLACE["ball"](world, iota.Vec3(2, 1.5, 0))
     ball.combine(playground.PLACE["box"](world, iota.Vec3(2.2, 1.5, 0)))
     run(world, 0.5)
@@ -117,7 +117,7 @@ def test_what_is_saved_is_loaded_again_and_goes_on_as_before(world: iota.World, 
     assert [file.name for file in tmp_path.iterdir() if file.is_file()] == ["playground.json"]
 
 
-def test_axles_ropes_and_rods_hold_what_they_tie(world: iota.World) -> None:
+def test_axles_ropes_and_rods_hold_their_bodies(world: iota.World) -> None:
     system = world.system
     wheel = playground.PLACE["box"](world, iota.Vec3(2, 1.5, 0))
     act(world, "axle", wheel)
@@ -256,7 +256,7 @@ def test_a_file_that_cannot_be_loaded_leaves_the_world_as_it_is(
     assert len(texts) == 1 and "playground.json" in texts[0] and words in texts[0], texts
 
 
-def test_files_go_nowhere_else_and_failures_are_told(world: iota.World, tmp_path: Path) -> None:
+def test_files_stay_in_their_folder_and_failures_are_reported(world: iota.World, tmp_path: Path) -> None:
     texts = told(world)
     for name in ("../out", "/tmp/out", "a b", "", "x" * 300):
         widget(world, "file").value = name

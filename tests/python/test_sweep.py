@@ -67,7 +67,7 @@ def ends(scene: sweep.Scene) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", list(ends(sweep.Scene())))
-def test_what_others_refer_to_may_be_destroyed(name: str) -> None:
+def test_a_thing_that_others_refer_to_may_be_destroyed(name: str) -> None:
     scene = sweep.Scene()
     thing = ends(scene)[name]
     refused = sweep.refused(thing.destroy, {})

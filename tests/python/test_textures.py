@@ -92,7 +92,7 @@ def test_a_file_that_cannot_be_used_is_refused_by_its_name(tmp_path: Path, data:
         (7, 1, "path of a PNG or JPEG file, or an array"),
     ],
 )
-def test_a_bad_image_is_refused_with_what_is_wrong(image: Any, repeat: Any, said: str) -> None:
+def test_a_bad_image_is_refused_with_the_reason(image: Any, repeat: Any, said: str) -> None:
     with pytest.raises((ValueError, TypeError), match=said):
         looks.sphere(1, texture=image, repeat=repeat)
 

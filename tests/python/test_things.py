@@ -34,7 +34,7 @@ def entity(page: PageClient, kind: str, slot: int = 0) -> dict[str, Any]:
     return found
 
 
-def test_assigning_is_updating_and_only_what_changed_is_told(rod: iota.Body, run_world: Runner) -> None:
+def test_assigning_updates_and_only_changes_are_sent(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system)
     label = world.label("one", at=rod.particles[1], offset=(0, 0.25, 0), color="#ff8000")
     others = [world.label(number) for number in range(50)]
@@ -60,7 +60,7 @@ def test_assigning_is_updating_and_only_what_changed_is_told(rod: iota.Body, run
         assert new.text == "in the place of the first"
 
 
-def test_what_is_on_a_particle_stays_on_it_when_bodies_are_cut(run_world: Runner) -> None:
+def test_drawings_on_a_particle_stay_on_it_when_bodies_are_cut(run_world: Runner) -> None:
     system = iota.System()
     body, other = system.body(), system.body()
     first = body.particle((0, 1, 0))
@@ -184,7 +184,9 @@ def test_more_things_than_pages_draw_are_refused_and_the_others_stay(
     assert len(world.things) == 2 and world.label("c") in world.things
 
 
-def test_a_thing_that_cannot_be_shown_is_told_to_pages_that_open_later(rod: iota.Body, run_world: Runner) -> None:
+def test_pages_that_open_later_get_the_notice_of_a_thing_that_cannot_be_shown(
+    rod: iota.Body, run_world: Runner
+) -> None:
     world = iota.World(rod.system)
     world.points([(0, 0, 0)] * 3, radius=[0.1, 0.2])
     url = run_world(world)
@@ -291,7 +293,7 @@ def test_controls_reach_the_script_and_all_pages(system: iota.System, run_world:
         assert check.value is True
 
 
-def test_a_control_that_raises_is_told_and_the_world_goes_on(run_world: Runner) -> None:
+def test_a_control_that_raises_is_reported_and_the_world_goes_on(run_world: Runner) -> None:
     world = iota.World(iota.System())
     slider = world.slider("s", 0, 1)
 
@@ -500,7 +502,7 @@ def test_a_pointer_is_seen_by_the_script_and_a_particle_that_bonds_pull_at(run_w
         page.wait_for(lambda: world.call(lambda: abs(ball.position - iota.Vec3(3, 1, 0))) < 0.5)
 
 
-def test_keys_joins_and_frames_are_told_until_forgotten(run_world: Runner) -> None:
+def test_keys_joins_and_frames_are_called_until_forgotten(run_world: Runner) -> None:
     world = iota.World(iota.System())
     heard: list[Any] = []
 
@@ -530,7 +532,7 @@ def test_keys_joins_and_frames_are_told_until_forgotten(run_world: Runner) -> No
     assert heard[3] == ("leave", number)
 
 
-def test_an_on_frame_that_raises_is_told_once(run_world: Runner) -> None:
+def test_an_on_frame_that_raises_is_reported_once(run_world: Runner) -> None:
     world = iota.World(iota.System())
 
     @world.on_frame
@@ -620,7 +622,7 @@ def test_bodies_are_painted_by_one_array_and_the_survivor_keeps_its_own(run_worl
         world.paint("all", "#102030")
 
 
-def test_frames_carry_hide_and_take_away_what_is_on_them(rod: iota.Body, run_world: Runner) -> None:
+def test_frames_carry_hide_and_remove_their_drawings(rod: iota.Body, run_world: Runner) -> None:
     slot = rod.slot
     world = iota.World(rod.system)
     outer = world.frame(rod, rotation=(0, 0, 0, 2))
@@ -697,7 +699,7 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
         ),
     ],
 )
-def test_wrong_shapes_are_refused_with_what_is_wrong(system: iota.System, make: Callable[..., Any], says: str) -> None:
+def test_wrong_shapes_are_refused_with_the_reason(system: iota.System, make: Callable[..., Any], says: str) -> None:
     with pytest.raises((ValueError, TypeError), match=says):
         make(iota.World(system))
 

@@ -26,7 +26,7 @@ def in_thread(function: Callable[[], Any]) -> BaseException | None:
     return caught[0] if caught else None
 
 
-def test_another_thread_is_told_the_rule(system: iota.System, chain: list[iota.Body]) -> None:
+def test_a_call_from_another_thread_names_the_rule(system: iota.System, chain: list[iota.Body]) -> None:
     particle = chain[0].particles[1]
     bond = system.bond(particle, chain[3].particles[1], "drag")
     uses: list[Callable[[], Any]] = [

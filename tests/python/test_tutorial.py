@@ -77,7 +77,7 @@ def studies_of(page: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("page", STUDY_PAGES, ids=lambda page: page.stem)
-def test_the_page_on_a_study_shows_it_names_its_keys_and_says_what_to_try(page: Path) -> None:
+def test_the_page_on_a_study_has_its_picture_its_keys_and_things_to_try(page: Path) -> None:
     text = page.read_text()
     actions = [action for name in studies_of(page) for action in studies.module(name).build()._state.actions]
     keys = {action.key for action in actions if action.key is not None and len(action.key) == 1}

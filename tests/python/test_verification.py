@@ -13,7 +13,7 @@ from iota.verify.run import Case, Run
 
 
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
-def test_what_is_computed_agrees_with_what_is_known(case: Case) -> None:
+def test_computed_values_agree_with_known_ones(case: Case) -> None:
     run = Run(scale="quick")
     case.check(run)
     assert [row for row in run.rows if not row.passed] == []

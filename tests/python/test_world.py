@@ -30,7 +30,7 @@ def world() -> iota.World:
     return world
 
 
-def test_a_page_learns_what_there_is_and_sees_it_move(world: iota.World, run_world: Runner) -> None:
+def test_a_page_gets_the_scene_and_its_motion(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: {"world_settings", "world_state", "actions"} <= page.last.keys())
         assert page.last["world_state"]["dt"] == 1 / 120
@@ -65,7 +65,7 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
         assert page.notices == []
 
 
-def test_a_script_that_changes_looks_does_not_tell_pages_its_actions_anew(world: iota.World, run_world: Runner) -> None:
+def test_a_script_that_changes_looks_does_not_send_its_actions_again(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.parts() == 1)
         styles = page.entities["body"][0]["style"]
@@ -136,7 +136,7 @@ def test_the_forces_of_two_holders_add_up(run_world: Runner) -> None:
         two.wait_for(lambda: two.places[0] == pytest.approx((0.5, 1.5, 0), abs=0.01))
 
 
-def test_what_a_leaving_page_held_is_let_go(world: iota.World, run_world: Runner) -> None:
+def test_a_page_that_leaves_lets_go_of_its_bodies(world: iota.World, run_world: Runner) -> None:
     url = run_world(world)
     with PageClient(url) as stays:
         with PageClient(url) as leaves:
@@ -169,7 +169,7 @@ def test_pause_step_speed_and_reset(world: iota.World, run_world: Runner) -> Non
         assert page.notices == []
 
 
-def test_reset_runs_timed_events_again_and_tells_the_script(run_world: Runner) -> None:
+def test_reset_runs_timed_events_again_and_calls_the_script(run_world: Runner) -> None:
     system = iota.System()
     system.body().particle((0, 1, 0))
     world = iota.World(system)
@@ -186,7 +186,7 @@ def test_reset_runs_timed_events_again_and_tells_the_script(run_world: Runner) -
     assert calls == ["event", "reset", "event"]
 
 
-def test_an_action_that_raises_is_told_on_the_page_with_its_line(
+def test_an_action_that_raises_is_shown_on_the_page_with_its_line(
     run_world: Runner, capsys: pytest.CaptureFixture[str]
 ) -> None:
     system = iota.System()
@@ -230,7 +230,7 @@ def test_an_error_is_shown_to_pages_that_open_later_until_reset(run_world: Runne
         assert page.notices == []
 
 
-def test_a_page_that_opens_while_a_callback_hangs_is_told_so(run_world: Runner) -> None:
+def test_a_page_that_opens_while_a_callback_hangs_gets_a_notice(run_world: Runner) -> None:
     system = iota.System()
     system.body().particle()
     world = iota.World(system)
@@ -318,7 +318,7 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
     assert "'ponder' took 2.0 s" in capsys.readouterr().err
 
 
-def test_a_step_that_takes_long_is_told_while_it_lasts(run_world: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_step_is_reported_while_it_lasts(run_world: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("iota.world.stepper.SLOW_STEP", 1.0)
     system = iota.System()
     p, q = (system.body().particle((x, 1, 0)) for x in (0, 1))
@@ -442,7 +442,7 @@ def test_a_script_may_have_a_loop_of_its_own(world: iota.World) -> None:
     world.close()
 
 
-def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
+def test_structure_changes_reach_the_page_with_the_looks_of_new_bodies(
     system: iota.System, chain: list[iota.Body], run_world: Runner
 ) -> None:
     world = iota.World(system)
@@ -460,7 +460,7 @@ def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
         assert all(body["style"] in page.entities["style"] for body in page.entities["body"].values())
 
 
-def test_what_names_a_body_that_is_gone_is_answered_by_a_notice(system: iota.System, run_world: Runner) -> None:
+def test_a_message_about_a_destroyed_body_is_answered_by_a_notice(system: iota.System, run_world: Runner) -> None:
     bodies = [system.body() for _ in range(2)]
     for index, body in enumerate(bodies):
         body.particle((index, 1, 0))

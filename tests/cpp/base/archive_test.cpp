@@ -28,7 +28,7 @@ std::vector<std::byte> written(Record record, std::vector<double> list) {
   return bytes;
 }
 
-TEST(Archive, reads_back_what_it_wrote_in_the_same_order) {
+TEST(Archive, reads_values_back_in_the_order_of_writing) {
   const std::vector<std::byte> bytes = written({2.5, 7, {1, -1, 0, 127}}, {1, 2, 3});
   Record record;
   std::vector<double> list;
@@ -104,7 +104,7 @@ TEST(Hasher, is_the_64_bit_fnv_1a) {
   EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8u);
 }
 
-TEST(Hasher, tells_zero_from_minus_zero_as_bits_are_what_it_compares) {
+TEST(Hasher, tells_zero_from_minus_zero_since_it_compares_bits) {
   Hasher plus, minus;
   plus.value(0.0), minus.value(-0.0);
   EXPECT_NE(plus.result(), minus.result());

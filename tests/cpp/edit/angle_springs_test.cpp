@@ -10,7 +10,7 @@
 namespace iota {
 namespace {
 
-TEST(AngleSprings, refuse_what_is_no_angle_and_stay_as_they_are) {
+TEST(AngleSprings, refuse_invalid_angles_and_stay_unchanged) {
   System system{SystemOptions{.gravity = {}}};
   std::array<ParticleId, 3> ends;
   for (std::size_t i = 0; i < 3; ++i)
@@ -32,7 +32,7 @@ TEST(AngleSprings, refuse_what_is_no_angle_and_stay_as_they_are) {
 }
 
 /// A spring that is changed moves a system that has come to rest.
-TEST(AngleSprings, wake_what_rests_when_they_are_changed) {
+TEST(AngleSprings, wake_resting_bodies_when_they_are_changed) {
   System system{SystemOptions{.gravity = {}, .rest = {.after = 0.1, .speed = 0.01}}};
   std::array<ParticleId, 3> ends;
   for (std::size_t i = 0; i < 3; ++i)

@@ -65,7 +65,7 @@ TEST(Pose, that_is_assigned_turns_velocities_along_and_keeps_the_energy) {
   EXPECT_NEAR(system.energy().kinetic / kinetic, 1, 1e-13);
 }
 
-TEST(Velocities, that_are_assigned_change_only_what_they_name) {
+TEST(Velocities, that_are_assigned_change_only_the_named_particles) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId box =
       system.bodies().create(Box{{0.2, 0.4, 0.6}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 4}, .attachments = {{}}});

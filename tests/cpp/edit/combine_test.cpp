@@ -416,7 +416,7 @@ TEST(Combine, in_one_body_keeps_the_nail_of_the_particle_that_is_removed) {
   EXPECT_WHOLE(system);
 }
 
-TEST(Combine, reports_what_a_nail_takes) {
+TEST(Combine, reports_the_impulse_of_a_nail) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId nailed = system.particles().create(system.bodies().create(), {0, 0, 0}),
                    flying = system.particles().create(system.bodies().create(), {0.1, 0, 0}, 2, {3, 0, 0});

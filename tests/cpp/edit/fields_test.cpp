@@ -60,7 +60,7 @@ TEST(Field, without_such_a_name_or_parameter_is_refused_with_those_that_there_ar
   EXPECT_THROW(system.fields().set_parameter(wind, "nothing", 1), std::invalid_argument);
 }
 
-TEST(Pairs, without_what_their_law_needs_are_refused) {
+TEST(Pairs, that_lack_the_data_of_their_law_are_refused) {
   System system;
   const GroupId group = system.groups().create("group");
   const LawId soft = system.laws().find("soft_repulsion");

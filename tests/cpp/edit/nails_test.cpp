@@ -59,7 +59,7 @@ TEST(Nail, that_brings_a_solid_from_afar_does_not_mirror_it) {
     }
 }
 
-TEST(Nail, of_what_a_static_body_holds_may_not_move_it) {
+TEST(Nail, of_a_point_that_a_static_body_holds_may_not_move_it) {
   Dumbbell d;
   d.system.bodies().set_kind(d.body, BodyKind::static_);
   const std::uint64_t before = d.system.state_hash();

@@ -68,7 +68,7 @@ TEST(Split, a_bond_on_a_ring_of_bonds_breaks_without_a_split) {
   EXPECT_EQ(m.system.cosmetic_bonds().destroy(closing).created_bodies.size(), 1u);
 }
 
-TEST(Split, what_has_no_bond_goes_with_the_nearer_piece) {
+TEST(Split, particles_without_a_bond_go_with_the_nearer_piece) {
   Molecule m({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}});
   System& system = m.system;
   const ParticleId near_left = system.particles().create(m.body, {0, 1, 0}),
@@ -211,7 +211,7 @@ TEST(Split, unlocking_a_hinge_brings_the_hinge_back) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, net_force_and_torque_are_what_acts_from_outside) {
+TEST(Split, net_force_and_torque_are_those_from_outside) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system({.mode = mode});
     const double h = 0.001;

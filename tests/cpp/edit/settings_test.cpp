@@ -45,7 +45,7 @@ TEST(Settings, at_the_ends_of_their_ranges_are_kept) {
   }
 }
 
-TEST(Settings, of_gravity_wake_what_rests) {
+TEST(Settings, of_gravity_wake_resting_bodies) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId body = system.bodies().create();
   const ParticleId p = system.particles().create(body, {});

@@ -171,7 +171,7 @@ TEST(Rod, ends_when_others_hinge_its_two_ends_together) {
   EXPECT_LT(system.step(1.0 / 60).worst_gap, 1e-6);
 }
 
-TEST(Gap, between_two_nails_is_told_and_is_nobodys_where_nobody_can_move_or_is_there) {
+TEST(Gap, between_two_nails_is_reported_and_not_booked_on_bodies_that_cannot_move) {
   System system;
   const BodyId still = system.bodies().create(), other = system.bodies().create();
   const ParticleId p = system.particles().create(still, {0, 0, 0}), q = system.particles().create(other, {1, 0, 0});
@@ -219,7 +219,7 @@ TEST(Path, with_sharp_bends_makes_up_no_energy) {
   }
 }
 
-TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
+TEST(Grip, holds_the_remaining_particles_when_one_of_them_is_destroyed) {
   Plate plate;
   const GripId grip = plate.system.grips().create(plate.body, {0.1, 0, 0}, {1, 1, 1});
   plate.system.particles().destroy(plate.points[3]);

@@ -67,7 +67,7 @@ TEST(ConvexHull, holds_all_of_many_points_and_obeys_eulers_formula) {
   }
 }
 
-TEST(ConvexHull, of_a_ball_of_points_weighs_what_a_ball_does) {
+TEST(ConvexHull, of_a_ball_of_points_has_the_mass_of_a_ball) {
   std::vector<Vec3> points;
   for (int i = 0; i < 4000; ++i) {  // a Fibonacci lattice
     const double z = 1 - (2 * i + 1) / 4000.0, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
@@ -78,7 +78,7 @@ TEST(ConvexHull, of_a_ball_of_points_weighs_what_a_ball_does) {
   EXPECT_NEAR(hull.mean_squares[0].x, ball.mean_squares[0].x, 5e-4);
 }
 
-TEST(ConvexHull, says_what_encloses_no_volume) {
+TEST(ConvexHull, refuses_points_that_enclose_no_volume) {
   const auto refusal = [](std::vector<Vec3> points) -> std::string {
     try {
       (void)convex_hull(points);

@@ -46,7 +46,7 @@ TEST(Polyline, rounds_its_corners_without_a_jump_of_the_tangent) {
   EXPECT_LT(norm(last.position - Vec3{2, 1, 1}), 2 * step);
 }
 
-TEST(Polyline, refuses_what_is_no_curve) {
+TEST(Polyline, refuses_points_that_are_no_curve) {
   EXPECT_THROW(Polyline(std::vector<Vec3>{{0, 0, 0}}), std::invalid_argument);
   EXPECT_THROW(Polyline(std::vector<Vec3>{{1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
   EXPECT_THROW(Polyline(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}), std::invalid_argument)

@@ -77,7 +77,7 @@ TEST(Overlap, of_a_ball_and_a_convex_shape_is_where_the_shape_is_nearer_than_the
   EXPECT_LT(met, 9 * tried / 10);
 }
 
-TEST(Overlap, of_boxes_is_that_by_separating_axes) {
+TEST(Overlap, of_boxes_equals_that_by_separating_axes) {
   Chance chance;
   int met = 0;
   for (int question = 0; question < 3000; ++question) {

@@ -177,7 +177,7 @@ TEST(Law, that_is_held_neither_gains_nor_loses_energy_in_the_long_run) {
   EXPECT_NEAR(late / early, 1, 0.01) << "3 Hz for 100 s";
 }
 
-TEST(Law, the_energy_book_counts_what_pushes_and_what_changes_with_time) {
+TEST(Law, the_energy_book_counts_pushes_and_changes_with_time) {
   for (const std::string text :
        {"force = 3", "energy = 50*(r - 1 - 0.2*sin(5*t))^2", "force = -40*(r - 1) + 4*sin(7*t)", "force = 2*v"}) {
     System system;
@@ -316,7 +316,7 @@ TEST(Law, bad_ones_are_refused_before_anything_changes) {
   EXPECT_THROW(system.bonds().create(p, q, SharedLaw{code}), StaleIdError);
 }
 
-TEST(Bonds, tell_what_they_carry_whichever_way_they_are_written) {
+TEST(Bonds, report_their_force_in_every_form_of_writing) {
   const std::vector<LawParameter> parameters{{"k", 20}, {"r0", 0.5}};
   const double weight = 0.3 * 9.81;
   for (const int way : {0, 1, 2, 3, 4}) {

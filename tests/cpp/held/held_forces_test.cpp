@@ -83,7 +83,7 @@ TEST(HeldEnergy, errors_are_of_second_order) {
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.8);
 }
 
-TEST(HeldEnergy, of_what_is_known_in_closed_form) {
+TEST(HeldEnergy, equals_its_closed_form) {
   System system{{.gravity = {0, -2, 0}}};
   const ParticleId p = system.particles().create(system.bodies().create(), {3, 4, 0}, 2);
   const ParticleId q = system.particles().create(system.bodies().create(), {0, 0, 12}, 3);
@@ -104,7 +104,7 @@ TEST(HeldEnergy, of_what_is_known_in_closed_form) {
   EXPECT_NEAR(book(system.energy()), 0, 1e-12) << "all this was made by edits";
 }
 
-TEST(HeldEnergy, what_edits_change_is_booked_as_theirs) {
+TEST(HeldEnergy, changes_by_edits_are_booked_as_edits) {
   for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     Swarm swarm(mode);
     System& s = swarm.system;
@@ -136,7 +136,7 @@ TEST(HeldEnergy, what_edits_change_is_booked_as_theirs) {
   }
 }
 
-TEST(HeldEnergy, is_part_of_what_a_batch_of_edits_changes) {
+TEST(HeldEnergy, is_part_of_the_change_by_a_batch_of_edits) {
   Swarm swarm;
   const double before = swarm.system.energy().total();
   swarm.system.edits().begin();

@@ -63,7 +63,7 @@ TEST(ParticleSet, of_two_groups_knows_the_sides_of_each_row) {
   EXPECT_EQ(set.rings, (Slots{s.ring(s.first), s.ring(s.hinge)}));
 }
 
-TEST(ParticleSet, adds_its_forces_to_what_pushes_what_can_move) {
+TEST(ParticleSet, adds_its_forces_to_those_on_movable_particles) {
   HingedRods s;
   ParticleSet all;
   all.find(s.small.model);

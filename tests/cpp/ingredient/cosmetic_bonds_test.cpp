@@ -52,7 +52,7 @@ TEST(CosmeticBonds, that_are_cut_leave_the_velocities_of_the_pieces) {
   EXPECT_NEAR(line.system.bodies().angular_velocity(line.body_of(0)).z, 1, 1e-6);
 }
 
-TEST(CosmeticBonds, move_with_what_absorbs_an_end_and_go_with_what_is_destroyed) {
+TEST(CosmeticBonds, move_with_the_absorbing_particle_and_end_with_a_destroyed_one) {
   Square line({{0, 1}, {1, 2}});
   (void)line.system.edits().combine(line.corners[3], line.corners[2]);  // of one body: the latter is removed
   EXPECT_EQ(line.system.cosmetic_bonds().ends(line.bonds[1]), (std::pair{line.corners[1], line.corners[3]}));

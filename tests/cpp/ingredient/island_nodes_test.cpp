@@ -44,7 +44,7 @@ TEST(IslandNodes, are_the_points_that_are_unknown_each_ring_once_and_carry_the_o
   EXPECT_EQ(c.nodes.pinned_count(), 0u);
 }
 
-TEST(IslandNodes, leave_out_what_is_inactive_and_know_what_is_pinned) {
+TEST(IslandNodes, leave_out_inactive_particles_and_know_pinned_ones) {
   model::SmallModel small;
   const Slots rods = small.chain(3);
   small.model.bodies[rods[0]].kind = BodyKind::static_;

@@ -30,7 +30,7 @@ struct Wheel {
   double speed() const { return system.bodies().angular_velocity(body).z; }
 };
 
-TEST(Joints, a_dashpot_without_a_spring_slows_exponentially_and_books_what_it_takes) {
+TEST(Joints, a_dashpot_without_a_spring_slows_exponentially_and_its_loss_is_booked) {
   for (const IntegrationMode mode :
        {IntegrationMode::energy_keeping, IntegrationMode::robust, IntegrationMode::plausible}) {
     const double damping = 0.05;

@@ -51,7 +51,7 @@ TEST(LawTable, refuses_a_text_that_is_no_law_and_keeps_its_slot_free) {
   (void)model.compiled(slot);
 }
 
-TEST(LawTable, is_compiled_again_from_what_is_saved) {
+TEST(LawTable, is_compiled_again_from_saved_text) {
   Model model, restored;
   ingredient::Law law = with_text<ingredient::Law>("energy = k*r^2");
   law.kind = ingredient::LawKind::expression, law.parameter_count = 1;

@@ -20,7 +20,7 @@ TEST(Masses, weigh_and_resist_acceleration) {
   EXPECT_EQ(loads.on(p, Load::Kind::inertia), (Vec3{-6, 0, 0}));
 }
 
-TEST(Masses, are_damped_by_what_the_exponential_took) {
+TEST(Masses, are_damped_by_the_exponential_law) {
   model::SmallModel m;
   m.model.gravity = {};
   m.model.last_dt = 0.1, m.model.damping = 2;

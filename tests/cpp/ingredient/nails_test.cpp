@@ -26,7 +26,7 @@ struct Pendulum {
   }
 };
 
-TEST(Nails, push_with_what_changes_the_momentum_beyond_gravity) {
+TEST(Nails, push_with_the_change_of_momentum_less_gravity) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     Pendulum p(mode);
     constexpr double h = 1e-3;

@@ -71,7 +71,7 @@ TEST(Quantities, worst_gap_is_the_largest_of_rigid_distances_and_nails) {
   EXPECT_NEAR(worst_gap(m.model), 0.5, 1e-12);
 }
 
-TEST(Quantities, the_energy_of_a_spring_is_that_of_its_text) {
+TEST(Quantities, the_energy_of_a_spring_equals_that_of_its_text) {
   SmallModel m;
   m.model.gravity = {};
   const std::uint32_t p = m.particle(m.body({{0, 0, 0}}), 0), q = m.particle(m.body({{3, 0, 0}}), 0);
@@ -101,7 +101,7 @@ TEST(Quantities, a_gap_that_is_not_a_number_is_the_largest) {
   }
 }
 
-TEST(Quantities, what_edits_change_is_booked_once) {
+TEST(Quantities, energy_that_edits_change_is_booked_once) {
   SmallModel m;
   m.model.gravity = {};
   const std::uint32_t p = m.particle(m.body({{0, 0, 0}}), 0);

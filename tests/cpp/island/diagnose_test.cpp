@@ -130,7 +130,7 @@ TEST(Diagnosis, changes_nothing) {
   EXPECT_EQ(system.state_hash(), hash);
 }
 
-TEST(Diagnosis, refuses_what_is_gone_or_too_large) {
+TEST(Diagnosis, refuses_destroyed_bodies_and_too_large_islands) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 700});
   EXPECT_THROW((void)system.diagnose(chain.links[0]), std::invalid_argument);

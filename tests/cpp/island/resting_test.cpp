@@ -31,7 +31,7 @@ struct Sleeper {
   }
 };
 
-TEST(Resting, what_is_slow_for_a_while_falls_asleep_as_a_whole) {
+TEST(Resting, an_island_that_is_slow_for_a_while_falls_asleep_as_a_whole) {
   Sleeper s;
   const double start = book(s.system);
   s.wait();
@@ -111,7 +111,7 @@ TEST(Resting, a_sleeper_stays_asleep_through_snapshot_and_replay) {
   EXPECT_EQ(s.system.bodies().kind(s.chain.links[0]), BodyKind::resting);
 }
 
-TEST(Forces, on_what_does_not_move_by_them_are_over_with_the_step) {
+TEST(Forces, on_immovable_bodies_end_with_the_step) {
   for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::inactive}) {
     System system{{.gravity = {}}};
     const BodyId body = system.bodies().create();

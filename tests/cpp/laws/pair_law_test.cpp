@@ -19,7 +19,7 @@ void expect_near(double a, double b, const std::string& what) {
   EXPECT_NEAR(a, b, 1e-12 * (std::abs(a) + std::abs(b) + 1e-3)) << what;
 }
 
-TEST(PairLaw, every_law_of_the_list_is_what_its_text_says) {
+TEST(PairLaw, every_law_of_the_list_equals_its_text) {
   std::mt19937 random(5);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
   for (std::uint32_t number = 0; number < pair_law_count; ++number) {

@@ -81,7 +81,7 @@ TEST(SymmetricEigen, leaves_a_diagonal_matrix_as_it_is) {
   EXPECT_EQ(e.axes[0], (Vec3{1, 0, 0}));
 }
 
-TEST(SolveSemidefinite, solves_what_is_regular_and_leaves_out_directions_that_are_not) {
+TEST(SolveSemidefinite, solves_regular_directions_and_leaves_out_singular_ones) {
   Random random;
   for (int i = 0; i < 50; ++i) {
     const Vec3 u = random.direction(), v = any_perpendicular(u), x = random.vector();

@@ -163,7 +163,7 @@ TEST(Validate, finds_nothing_wrong_with_a_system_that_holds_one_of_everything) {
   EXPECT_GT(e.model.pushes.size(), 0u);
 }
 
-TEST(Validate, says_what_is_wrong_with_any_damaged_table) {
+TEST(Validate, names_the_error_of_any_damaged_table) {
   const Everything whole;
   for (const Damage& damage : damages) {
     Everything e = whole;

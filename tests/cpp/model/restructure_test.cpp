@@ -38,7 +38,7 @@ TEST_F(RestructureCombine, meets_at_the_mean_by_mass_and_with_the_momentum_of_bo
   EXPECT_EQ(model.articulates.size(), 1u);
 }
 
-TEST_F(RestructureCombine, meets_at_a_nail_or_at_what_does_not_give_way) {
+TEST_F(RestructureCombine, meets_at_a_nail_or_at_the_immovable_body) {
   for (const bool first : {true, false}) {
     const std::uint32_t loose = m.particle(m.body({{0, 0, 0}}), 0), nailed = m.particle(m.body({{4, 0, 0}}), 0);
     model.rings[model.particles[nailed].ring].nailed = 1;
@@ -53,7 +53,7 @@ TEST_F(RestructureCombine, meets_at_a_nail_or_at_what_does_not_give_way) {
   EXPECT_EQ(model.position(loose), (Vec3{7, 0, 0}));
 }
 
-TEST_F(RestructureCombine, refuses_what_cannot_be_and_changes_nothing) {
+TEST_F(RestructureCombine, refuses_impossible_pairs_and_changes_nothing) {
   const std::uint32_t rod = m.body({{0, 0, 0}, {1, 0, 0}}), other = m.body({{0, 0, 0}});
   m.hinge(m.particle(rod, 0), m.particle(other, 0));
   const std::uint32_t left = m.particle(m.body({{0, 5, 0}}, 1, BodyKind::static_), 0),

@@ -33,7 +33,7 @@ TEST(Model, puts_each_new_body_into_an_articulate_and_each_new_particle_into_a_r
   EXPECT_EQ(ingredient::validate(m.model), whole);
 }
 
-TEST(Model, destroys_a_ring_with_its_last_particle_and_what_is_kept_for_it) {
+TEST(Model, destroys_a_ring_and_its_records_with_its_last_particle) {
   SmallModel m;
   const auto chain = m.chain(2);
   const std::uint32_t p = m.particle(chain[0], 1), q = m.particle(chain[1], 0), ring = m.model.particles[p].ring;

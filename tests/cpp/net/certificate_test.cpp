@@ -28,7 +28,7 @@ TEST(Certificate, is_new_each_time_and_its_fingerprint_with_it) {
   EXPECT_EQ(fingerprint(one.chain).find_first_not_of("0123456789ABCDEF:"), std::string::npos);
 }
 
-TEST(Certificate, is_refused_for_what_is_no_host) {
+TEST(Certificate, is_refused_for_a_name_that_is_not_a_host) {
   EXPECT_THROW(make_certificate(Hosts{}), std::invalid_argument);
   EXPECT_THROW(make_certificate(Hosts{""}), std::invalid_argument);
   EXPECT_THROW(make_certificate(Hosts{"localhost,IP:1.2.3.4"}), std::invalid_argument);

@@ -49,7 +49,7 @@ TEST(EntityStore, a_new_client_gets_the_latest_record_of_each_and_none_of_destro
   EXPECT_EQ(told.records, (std::vector<std::uint8_t>{3, 2}));
 }
 
-TEST(EntityStore, a_client_that_is_behind_is_told_what_changed_since) {
+TEST(EntityStore, a_client_that_is_behind_gets_the_changes_since) {
   EntityStore store;
   store.apply(set(label, {0, 1}, {1}));
   store.apply(set(label, {1, 1}, {2}));
@@ -73,7 +73,7 @@ TEST(EntityStore, a_slot_that_is_used_again_has_the_newer_generation) {
   EXPECT_EQ(std::get<protocol::EntitiesSet>(messages_since(store, 0).at(0)).records, (std::vector<std::uint8_t>{2}));
 }
 
-TEST(EntityStore, what_others_refer_to_comes_first_and_goes_last) {
+TEST(EntityStore, referred_entities_are_created_first_and_destroyed_last) {
   EntityStore store;
   store.apply(set(label, {0, 1}, {1}));
   store.apply(set(style, {0, 1}, {2}));

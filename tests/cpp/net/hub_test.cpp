@@ -110,7 +110,7 @@ TEST_F(HubTest, asks_for_one_delivery_however_much_is_published) {
   EXPECT_TRUE(hub.publish({}, {})) << "nothing waits any more";
 }
 
-TEST_F(HubTest, tells_a_client_of_its_own_and_all_of_what_is_for_all) {
+TEST_F(HubTest, sends_private_messages_to_one_client_and_public_ones_to_all) {
   Link one, two;
   const std::uint32_t first = join(one);
   join(two);
@@ -187,7 +187,7 @@ TEST_F(HubTest, gives_the_latest_of_each_message_and_kept_notices_to_late_joiner
   EXPECT_EQ(later.all<protocol::Notice>().size(), 7u);
 }
 
-TEST_F(HubTest, cuts_a_notice_between_characters_and_mends_what_is_not_utf8) {
+TEST_F(HubTest, cuts_a_notice_between_characters_and_repairs_invalid_utf8) {
   Link link;
   join(link);
   std::string title;

@@ -111,7 +111,7 @@ TEST(PoseEncoder, a_body_takes_twelve_bytes) {
   EXPECT_EQ(receiver.bytes.size(), before - 1200);
 }
 
-TEST(PoseEncoder, only_what_moved_is_listed_after_the_first_frame) {
+TEST(PoseEncoder, only_moved_bodies_are_listed_after_the_first_frame) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(24);
   auto poses = receiver.next(snapshot);
@@ -249,7 +249,7 @@ TEST(PoseEncoder, slots_above_sixteen_bits_travel_too) {
   EXPECT_EQ(poses.far_bodies[0].body, 70000U);
 }
 
-TEST(PoseEncoder, what_is_not_finite_is_left_out_and_the_rest_is_sent) {
+TEST(PoseEncoder, poses_that_are_not_finite_are_left_out_and_the_others_sent) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(6);
   snapshot.bodies[0].position[1] = nan_value;

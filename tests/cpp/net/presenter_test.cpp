@@ -60,7 +60,7 @@ TEST(Presenter, tells_each_thing_once_until_it_changes) {
   EXPECT_EQ(second.generation.at("nail"), first.generation.at("nail"));
 }
 
-TEST(Presenter, tells_what_is_gone_once_and_a_later_thing_there_has_another_generation) {
+TEST(Presenter, reports_a_destroyed_entity_once_and_its_slot_gets_another_generation) {
   Presenter presenter;
   const Told first(presenter.present(one_of_each(true)));
   const Told gone(presenter.present(all_gone()));
@@ -71,7 +71,7 @@ TEST(Presenter, tells_what_is_gone_once_and_a_later_thing_there_has_another_gene
   for (const std::string& kind : simple_kinds) EXPECT_GT(again.generation.at(kind), first.generation.at(kind)) << kind;
 }
 
-TEST(Presenter, destroys_what_a_complete_list_does_not_have) {
+TEST(Presenter, destroys_entities_that_a_complete_list_lacks) {
   Presenter presenter;
   (void)presenter.present(one_of_each(true));
   SceneChanges partial;

@@ -123,7 +123,7 @@ TEST(Protocol, frames_that_are_cut_or_too_long_are_refused) {
   }
 }
 
-TEST(Protocol, encoding_refuses_what_a_decoder_would_refuse) {
+TEST(Protocol, encoding_refuses_messages_that_a_decoder_would_refuse) {
   EXPECT_THROW(encode(Action{std::string(129, 'x'), {}, {}}), std::length_error);
   EXPECT_THROW(encode(Action{"\xff", {}, {}}), std::invalid_argument);
   EXPECT_THROW(encode(Effect{"break", {0, std::numeric_limits<float>::quiet_NaN(), 0}}), std::invalid_argument);

@@ -57,7 +57,7 @@ TEST_F(RecorderTest, begins_with_the_present_state_and_is_no_client) {
   EXPECT_TRUE(hub.take_input().empty()) << "nobody joined";
 }
 
-TEST_F(RecorderTest, gets_what_all_are_told_and_nothing_for_one_client_until_its_end) {
+TEST_F(RecorderTest, gets_messages_for_all_clients_and_none_for_one_client_until_its_end) {
   hub.watch(recorder);
   publish(snapshot_at(1, 0));
   (void)recorder->take();

@@ -256,7 +256,7 @@ TEST_F(ServerTest, answers_odd_requests_with_the_right_status) {
   EXPECT_EQ(test::http_request(server_->port(), "GET", "/", {{"Content-Length", "5"}}).status, 400U);
 }
 
-TEST_F(ServerTest, survives_what_is_not_http) {
+TEST_F(ServerTest, survives_requests_that_are_not_http) {
   std::mt19937 random(3);
   for (int i = 0; i < 20; ++i) {
     std::string noise(1 + random() % 2000, '\0');
@@ -542,7 +542,7 @@ TEST_F(ServerTest, a_late_joiner_gets_settings_entities_and_all_poses) {
   EXPECT_EQ(poses->bodies.size(), 3U);
 }
 
-TEST_F(ServerTest, a_client_that_was_behind_is_told_of_each_entity_once_as_it_is_now) {
+TEST_F(ServerTest, a_client_that_was_behind_gets_each_entity_once_in_its_present_state) {
   const auto client = join("", true);
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   constexpr std::uint32_t rounds = 400, bodies = 2000;
@@ -574,7 +574,7 @@ TEST_F(ServerTest, a_client_that_was_behind_is_told_of_each_entity_once_as_it_is
   EXPECT_TRUE(is_alive(*client)) << "and is not dropped for being slow";
 }
 
-TEST_F(ServerTest, only_what_moved_is_sent_and_everything_once_a_second) {
+TEST_F(ServerTest, only_moved_bodies_are_sent_and_all_once_a_second) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   PoseSnapshot snapshot = make_snapshot(1, 50);
@@ -797,7 +797,7 @@ TEST_F(ServerTest, the_list_of_clients_is_sent_at_most_once_a_frame) {
   EXPECT_LE(told, took / 0.016 + 3) << "in " << took << " s";
 }
 
-TEST_F(ServerTest, a_place_beyond_the_engines_limit_is_that_clients_error_alone) {
+TEST_F(ServerTest, a_place_beyond_the_limit_is_an_error_of_that_client_alone) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*other));

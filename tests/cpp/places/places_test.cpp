@@ -113,7 +113,7 @@ TEST(Places, know_a_half_space_from_everywhere_and_a_mesh_by_its_triangles) {
   EXPECT_EQ(places.within({0, 1, 0}, 1.001).size(), 2u);
 }
 
-TEST(Places, know_holes_of_what_is_not_convex_and_both_sides_of_the_ground) {
+TEST(Places, have_the_holes_of_concave_shapes_and_both_sides_of_the_ground) {
   System system;
   const BodyId ring = system.bodies().create(Torus{1, 0.2}, {.position = {0, 5, 0}});
   (void)system.bodies().create(HalfSpace{{0, 1, 0}}, {.kind = BodyKind::static_});

@@ -63,7 +63,7 @@ TEST(Scripts, say_where_they_go_wrong) {
   EXPECT_EQ(scenes::play(start + "nail 0.1 5\n", tally), "line 3 (nail 0.1 5): the line is too long");
 }
 
-TEST(RandomScenes, are_told_as_scripts_that_do_the_same) {
+TEST(RandomScenes, are_printed_as_scripts_that_do_the_same) {
   scenes::Tally random, told;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto script = scenes::random_script(seed);
@@ -75,7 +75,7 @@ TEST(RandomScenes, are_told_as_scripts_that_do_the_same) {
   }
 }
 
-TEST(RandomScenes, that_fail_are_shrunk_to_what_matters_and_told) {
+TEST(RandomScenes, that_fail_are_reduced_and_printed) {
   const auto script = scenes::random_script(3);
   const auto count = [](const std::vector<scenes::Deed>& deeds, scenes::DeedKind kind) {
     return std::count_if(deeds.begin(), deeds.end(), [&](const scenes::Deed& deed) { return deed.kind == kind; });

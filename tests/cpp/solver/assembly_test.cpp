@@ -127,7 +127,7 @@ TEST(Assembly, residual_of_free_flight_is_the_weight) {
   EXPECT_EQ(r[2], 0);
 }
 
-TEST(Assembly, violation_is_told_relative_to_the_length_of_the_row) {
+TEST(Assembly, violation_is_relative_to_the_length_of_the_row) {
   Problem problem;
   const auto a = add_point(problem, {}), b = add_point(problem, {4.1, 0, 0});
   add_rod(problem, a, b, 4);

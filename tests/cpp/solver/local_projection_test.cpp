@@ -51,7 +51,7 @@ double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return most;
 }
 
-TEST(LocalProjection, is_what_projecting_the_whole_problem_gives) {
+TEST(LocalProjection, equals_the_projection_of_the_whole_problem) {
   for (const bool nailed : {false, true})
     for (const double by : {1e-6, 1e-3, 0.05}) {
       Problem local = make_zigzag(nailed), whole = make_zigzag(nailed);
@@ -85,7 +85,7 @@ TEST(LocalProjection, keeps_momentum_and_whatever_is_further_away) {
   }
 }
 
-TEST(LocalProjection, leaves_to_the_whole_problem_what_reaches_far) {
+TEST(LocalProjection, leaves_far_reaching_changes_to_the_whole_problem) {
   Problem problem = make_zigzag(true, 0.01);  // almost straight: a pull along it goes on for hundreds of links
   disturb(problem, 1e-4);
   const Problem before = problem;

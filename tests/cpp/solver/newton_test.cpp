@@ -116,7 +116,7 @@ TEST(Newton, says_that_a_conflict_is_not_solved_and_shares_it) {
   EXPECT_NEAR(newton.solution()[b].x, 1, 1e-6) << "both rods are too short by as much";
 }
 
-TEST(Newton, projects_velocities_onto_what_a_rod_allows) {
+TEST(Newton, projects_velocities_onto_the_motions_of_a_rod) {
   Problem problem;
   const auto hook = add_point(problem, {}), bob = add_point(problem, {3, 4, 0}, 2, {1, 2, 3});
   nail(problem, hook);
@@ -129,7 +129,7 @@ TEST(Newton, projects_velocities_onto_what_a_rod_allows) {
   EXPECT_LT(norm(problem.velocity[hook]), 1e-12);
 }
 
-TEST(Newton, projects_velocities_of_what_floats_without_touching_momentum) {
+TEST(Newton, projects_velocities_of_floating_bodies_without_changing_momentum) {
   Problem problem = zigzag(6);
   pool<AffineConstraint>(problem).items.clear();  // off its nail
   for (std::size_t i = 0; i < problem.size(); ++i)
@@ -163,7 +163,7 @@ struct Idle final : Solver {
   Ending search(NonlinearProblem&, std::span<double>, const SolverOptions&) override { return ++asked, Ending{}; }
 };
 
-TEST(Newton, solves_itself_what_another_solver_finds_no_root_of_and_asks_it_for_no_projection) {
+TEST(Newton, solves_equations_without_a_root_by_another_solver_and_all_projections_itself) {
   Problem problem = zigzag(5);
   Newton own, helped;
   const NewtonReport plain = solve(own, problem, Stage::end_point(h, 0, 1));

@@ -8,7 +8,7 @@
 namespace iota::solver {
 namespace {
 
-TEST(Pieces, are_what_rows_connect_or_forces_too) {
+TEST(Pieces, are_connected_by_rows_or_by_rows_and_forces) {
   Problem problem;
   for (int i = 0; i < 5; ++i) add_point(problem, {static_cast<double>(i), 0, 0});
   (void)add_rod(problem, 3, 0, 3), (void)add_rod(problem, 1, 4, 3);

@@ -249,7 +249,7 @@ TEST(Spin, of_a_ball_on_a_spring_stays_its_own) {
 
 /// What springs connect, damped or not: dumbbells of many sizes and masses, and a soft block. A part is lost only where the step
 /// loses too little energy: at the start, and while a spring contracts.
-TEST(Spin, of_what_springs_connect_nearly_stays) {
+TEST(Spin, of_bodies_on_springs_nearly_stays) {
   const auto lost = [](IntegrationMode mode, int hertz, auto make) {
     System system{SystemOptions{.gravity = {}, .mode = mode}};
     make(system);

@@ -319,7 +319,7 @@ TEST(Grip, neither_shoots_a_light_thing_nor_a_heavy_one) {
   }
 }
 
-TEST(Grip, survives_the_cut_and_the_merge_of_what_it_holds) {
+TEST(Grip, survives_the_cut_and_the_merge_of_its_body) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 6});
   const GripId grip = system.grips().create(chain.links[4], {}, {0.3, 0.3, 0});
@@ -479,7 +479,7 @@ TEST(BadInput, is_refused_with_the_condition_and_the_value_and_changes_nothing) 
   (void)hash;
 }
 
-TEST(StaleIds, say_what_became_of_them) {
+TEST(StaleIds, name_their_successor) {
   System system;
   const BodyId a = system.bodies().create(), b = system.bodies().create();
   const ParticleId p = system.particles().create(a, {}), q = system.particles().create(b, {});

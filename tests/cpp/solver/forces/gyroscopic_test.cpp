@@ -37,7 +37,7 @@ TEST(GyroscopicForce, has_the_stiffness_that_differences_give) {
   }
 }
 
-TEST(GyroscopicForce, does_no_work_and_its_moment_is_what_the_spin_loses) {
+TEST(GyroscopicForce, does_no_work_and_its_moment_is_the_loss_of_spin) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Turning t(seed);
     const Vec3 force = t.force.force(t.e0, t.e1, t.stage);

@@ -82,7 +82,7 @@ TEST(DenseLu, solves_random_equations_whose_first_pivots_are_zero) {
   }
 }
 
-TEST(DenseLu, refuses_what_is_not_finite) {
+TEST(DenseLu, refuses_numbers_that_are_not_finite) {
   Dense a(2, 2);
   a(0, 0) = a(1, 1) = 1, a(0, 1) = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(DenseLu().factorize(a));

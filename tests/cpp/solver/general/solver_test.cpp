@@ -87,7 +87,7 @@ TEST_P(AnySolver, says_so_where_there_is_no_root) {
   EXPECT_TRUE(std::isfinite(x[0]));
 }
 
-TEST_P(AnySolver, lets_what_the_equations_throw_pass_and_leaves_the_guess) {
+TEST_P(AnySolver, passes_exceptions_of_the_equations_on_and_leaves_the_guess) {
   int calls = 0;
   Given problem{1, [&](auto x, auto f) {
                   if (++calls == 3) throw std::runtime_error("no such ship");

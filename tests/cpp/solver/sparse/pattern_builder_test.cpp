@@ -172,7 +172,7 @@ struct Parts {
   }
 };
 
-TEST(BlockPattern, follows_what_is_near_a_change_as_it_follows_the_whole_graph) {
+TEST(BlockPattern, follows_a_local_change_as_it_follows_the_whole_graph) {
   std::mt19937 random(14);
   ChangingGraph changing(random, 200);
   int stayed_near = 0;
