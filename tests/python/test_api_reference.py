@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
 import re
-import sys
+import runpy
 import types
 from pathlib import Path
 
@@ -16,12 +15,8 @@ import iota
 from iota import builder, effects, shapelib
 
 ROOT = Path(__file__).parents[2]
-specification = importlib.util.spec_from_file_location("make_api", ROOT / "tools" / "make_api.py")
-assert specification is not None and specification.loader is not None
-make_api = importlib.util.module_from_spec(specification)
-sys.modules[specification.name] = make_api
-specification.loader.exec_module(make_api)
-PAGES = make_api.pages()
+MAKE_API = runpy.run_path(str(ROOT / "tools" / "make_api.py"))
+PAGES = MAKE_API["pages"]()
 HEADINGS = {heading for text in PAGES.values() for heading in re.findall(r"^## (\w+)$", text, re.M)}
 
 
@@ -47,7 +42,7 @@ def test_every_public_class_and_function_has_a_docstring() -> None:
 
 def test_members_are_those_of_the_living_classes() -> None:
     """Of a class with bases in other files, too."""
-    text = PAGES[make_api.PAGES / "world.md"].split("## World\n")[1].split("\n## ")[0]
+    text = PAGES[MAKE_API["PAGES"] / "world.md"].split("## World\n")[1].split("\n## ")[0]
     told = set(re.findall(r"^### `(\w+)\(", text, re.M)) | set(re.findall(r"^\| `(\w+)` \|", text, re.M))
     own = {name for name in dir(iota.World) if not name.startswith("_")}
     assert own == told - {"World"}

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
+import runpy
 from pathlib import Path
 from typing import get_args
 
@@ -20,11 +20,7 @@ KINDS = get_args(iota.Shape)
 
 
 def test_the_samples_are_the_distances_of_the_engine() -> None:
-    spec = importlib.util.spec_from_file_location("make_samples", ROOT / "tests" / "shapes" / "make_samples.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    made = module.samples()
+    made = runpy.run_path(str(ROOT / "tests" / "shapes" / "make_samples.py"))["samples"]()
     assert {sample["kind"] for sample in made} == {kind.kind for kind in KINDS}, "each shape has a sample"
     assert len(made) == len(SAMPLES)
     for sample, stored in zip(made, SAMPLES, strict=True):
