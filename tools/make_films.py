@@ -68,13 +68,20 @@ def main() -> int:
     options = parser.parse_args()
     listed = subprocess.run([*IOTA, "list"], check=True, capture_output=True, text=True).stdout
     names = options.names or [line.split()[0] for line in listed.splitlines()]
-    for folder in (FILMS, SHEETS, THUMBNAILS):
-        folder.mkdir(parents=True, exist_ok=True)
-    for number, name in enumerate(names, 1):
-        print(f"[{number}/{len(names)}] {name} ...", end="", flush=True)
-        began = time.monotonic()
-        make(name, not options.no_films)
-        print(f" {time.monotonic() - began:.0f} s", flush=True)
+    try:
+        for folder in (FILMS, SHEETS, THUMBNAILS):
+            folder.mkdir(parents=True, exist_ok=True)
+        for number, name in enumerate(names, 1):
+            print(f"[{number}/{len(names)}] {name} ...", end="", flush=True)
+            began = time.monotonic()
+            make(name, not options.no_films)
+            print(f" {time.monotonic() - began:.0f} s", flush=True)
+    except subprocess.CalledProcessError as error:  # which has said why
+        print(" failed", flush=True)
+        return error.returncode
+    except OSError as error:
+        print(f"make_films: {error}", file=sys.stderr)
+        return 1
     return 0
 
 
