@@ -27,6 +27,14 @@ VECTOR = ("Sequence", "NDArray")  # types accepted as a Vec3
 LARGEST = 2**31
 
 
+def of_type(value: Any, kind: type, name: str) -> Any:
+    """The value, of data from a file. Raises ValueError that names it unless it is of its kind; a tuple is a list."""
+    if isinstance(value, (list, tuple) if kind is list else kind) and not isinstance(value, bool):
+        return value
+    words = {dict: "an object", list: "a list", str: "a text", int: "a whole number"}
+    raise ValueError(f"{name} must be {words[kind]}, not {SHORT.repr(value)}")
+
+
 def explain_call(
     name: str, signatures: Sequence[tuple[Any, ...]], given: Sequence[Any], named: Mapping[str, Any]
 ) -> str:

@@ -30,7 +30,7 @@ import numpy as np
 
 from iota import shapes
 from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
-from iota.arguments import SHORT, is_number
+from iota.arguments import SHORT, is_number, of_type
 from iota.textures import Texture, check_image, material_name, texture_of
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
@@ -319,8 +319,8 @@ def to_json(look: Drawn) -> dict[str, Any]:
 def from_json(data: dict[str, Any]) -> Looks:
     """Reads the result of `to_json`. Raises ValueError that names the error."""
     styles: Looks = {}
-    for style, described in data.items():
-        looks = [_from_json(entry) for entry in described]
+    for style, described in of_type(data, dict, "a look").items():
+        looks = [_from_json(entry) for entry in of_type(described, list, f"its style {style!r}")]
         styles[style] = looks[0] if len(looks) == 1 else looks
     return styles
 
@@ -338,13 +338,15 @@ def _to_json(look: Look) -> dict[str, Any]:
 
 
 def _from_json(entry: dict[str, Any]) -> Look:
-    shape, image = entry.get("shape"), entry.get("texture")
+    shape, image = of_type(entry, dict, "a look").get("shape"), entry.get("texture")
     try:
         if image is not None:
             image = Texture(base64.b64decode(image, validate=True), tuple(entry["repeat"]))
             check_image(image.image)
         return Look(**{**entry, "shape": shape and shapes.from_json(shape), "texture": image})
-    except (TypeError, KeyError) as error:
+    except KeyError as error:
+        raise ValueError(f"a look has no {error.args[0]}") from None
+    except TypeError as error:
         raise ValueError(f"a look is described wrongly: {error}") from None
 
 

@@ -7,6 +7,7 @@ import copyreg
 from typing import Any, get_args
 
 from iota._core import Mesh, Shape
+from iota.arguments import of_type
 
 KINDS: dict[str, type[Any]] = {shape.kind: shape for shape in get_args(Shape)}
 
@@ -21,9 +22,9 @@ def to_json(shape: Shape) -> dict[str, Any]:
 
 def from_json(data: dict[str, Any]) -> Shape:
     """Reads the result of `to_json`. Raises ValueError that names the error."""
-    sizes = dict(data)
+    sizes = dict(of_type(data, dict, "a shape"))
     kind = sizes.pop("kind", None)
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"the kind of a shape must be one of {', '.join(KINDS)}, not {kind!r}")
     try:
         shape: Shape = KINDS[kind](**sizes)

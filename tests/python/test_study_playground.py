@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -236,11 +238,16 @@ def test_constraints_that_cannot_be_saved_are_named(world: iota.World) -> None:
     ("content", "words"),
     [
         (None, "No such file"),
-        (b"", "Expecting value"),
-        (b"[1, 2", "Expecting"),
-        (b"\xff\xfe\x00", "can't decode"),
-        (b"[" * 100_000, "recursion"),
-        (b"{}", "not a saved playground"),
+        (b"", "this is not JSON: Expecting value: line 1"),
+        (b"[1, 2", "this is not JSON: Expecting"),
+        (b"\xff\xfe\x00", "not a text in UTF-8"),
+        (b"[" * 100_000, "nested too deeply"),
+        (b"[]", "a saved playground must be an object, not []"),
+        (b"{}", "not a saved playground: it has no 'structure'"),
+        (
+            b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1, 2]}}, "combined": []}',
+            "mass has 2 rows for 1",
+        ),
         (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}, "hinges": [[0, 7]]}, "combined": []}', "7"),
         (b'{"structure": {"points": {"position": [[0, 1, 0]], "mass": [1]}}, "combined": [[0, 9]]}', "not there"),
     ],
@@ -254,6 +261,48 @@ def test_a_file_that_cannot_be_loaded_leaves_the_world_as_it_is(
     push(world, "load")
     assert world.system.state_hash() == before
     assert len(texts) == 1 and "playground.json" in texts[0] and words in texts[0], texts
+
+
+def test_every_damage_to_a_saved_file_is_told_in_one_line_that_names_it(world: iota.World, tmp_path: Path) -> None:
+    ball = playground.PLACE["ball"](world, iota.Vec3(2, 1.5, 0))
+    world.system.revolute(ball, at=(2, 1.5, 0), axis=(0, 0, 1), limits=(-1, 1))
+    push(world, "save")
+    file, random = tmp_path / "playground.json", Random(3)
+    good = file.read_text()
+    before, told_cases = world.system.state_hash(), 0
+    for _ in range(120):
+        file.write_text(damaged(good, random))
+        texts = told(world)
+        push(world, "load")
+        if not texts:  # what still is a playground
+            world.undo()
+            continue
+        told_cases += 1
+        assert len(texts) == 1 and texts[0].startswith(f"That cannot be done: {file}: "), texts
+        assert not re.search(r"\n|Error|object is not|NoneType|array|argument must", texts[0]), texts
+        assert world.system.state_hash() == before
+    assert told_cases > 60
+
+
+def damaged(text: str, random: Random) -> str:
+    """A saved file that was cut, or in which a value is gone or is another one."""
+    if random.random() < 0.2:
+        return text[: random.randrange(len(text))]
+    data = json.loads(text)
+    inner, holder = data, data
+    while inner and isinstance(inner, dict | list) and random.random() < 0.8:
+        holder, keys = inner, list(inner) if isinstance(inner, dict) else list(range(len(inner)))
+        key = random.choice(keys)
+        inner = holder[key]
+    if holder is inner:
+        return "[]"
+    if random.random() < 0.4:
+        del holder[key]
+    else:
+        holder[key] = random.choice(
+            [None, True, -1, 1e308, float("nan"), "x", "", [], [[]], {}, {"a": 1}, 10**30, [0] * 4]
+        )
+    return json.dumps(data)
 
 
 def test_files_stay_in_their_folder_and_failures_are_reported(world: iota.World, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from iota import looks, shapes
 from iota._core import Vec3
+from iota.arguments import of_type
 from iota.builder.checks import label
 from iota.builder.contents import Contents
 from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
@@ -22,6 +23,12 @@ PARTS: dict[str, type[Any]] = {
 }  # fmt: skip
 PAIRS = ("hinges", "lines")
 PLAIN = ("nails", "groups", "point_names")
+COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
+# What parts hold besides numbers, which the engine checks.
+FIELDS: dict[str, type] = {
+    "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "law": str, "parameters": dict,
+    "options": dict, "terms": list, "shape": dict,
+}  # fmt: skip
 
 Filled = TypeVar("Filled", bound=Contents)
 
@@ -41,27 +48,57 @@ def to_json(structure: Contents) -> dict[str, Any]:
 def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
     """Fills an empty structure."""
     known = {"points", "looks", *PARTS, *PAIRS, *PLAIN}
-    if unknown := sorted(data.keys() - known):
+    if unknown := sorted(of_type(data, dict, "a structure").keys() - known):
         raise ValueError(f"a structure has no {', '.join(unknown)}; it has {', '.join(sorted(known))}")
-    structure.points.add(
-        **{
-            name: np.reshape(rows, -1 if name in ("mass", "radius") else (-1, 3))
-            for name, rows in data["points"].items()
-        }
-    )
+    if "points" not in data:
+        raise ValueError("the structure has no points")
+    structure.points.add(**_rows(data["points"]))
     for name, kind in PARTS.items():
-        for number, entry in enumerate(data.get(name, ())):
+        for number, entry in enumerate(of_type(data.get(name, []), list, name)):
+            owner = label(kind.__name__, number, of_type(entry, dict, label(kind.__name__, number)).get("name", ""))
+            for key in entry.keys() & FIELDS.keys():
+                of_type(entry[key], FIELDS[key], f"{owner}: {key}")
             try:
                 shape = {"shape": shapes.from_json(entry["shape"])} if "shape" in entry else {}
                 getattr(structure, name).append(kind(**entry | shape))
             except (TypeError, ValueError) as error:
-                raise ValueError(f"{label(kind.__name__, number, entry.get('name', ''))}: {error}") from None
+                raise ValueError(f"{owner}: {error}") from None
     for name in PAIRS:
+        for number, pair in enumerate(of_type(data.get(name, []), list, name)):
+            if len(of_type(pair, list, f"{name} {number}")) != 2:
+                raise ValueError(f"{name} {number} must be two points, not {len(pair)}")
         setattr(structure, name, [(p, q) for p, q in data.get(name, ())])
     for name in PLAIN:
-        setattr(structure, name, data.get(name, getattr(structure, name)))
-    structure.looks = {name: looks.from_json(styles) for name, styles in data.get("looks", {}).items()}
+        usual = getattr(structure, name)
+        setattr(structure, name, of_type(data.get(name, usual), type(usual), name))
+    for name, members in structure.groups.items():
+        of_type(members, list, f"group {name!r}")
+    for name, styles in of_type(data.get("looks", {}), dict, "looks").items():
+        try:
+            structure.looks[name] = looks.from_json(styles)
+        except ValueError as error:
+            raise ValueError(f"look {name!r}: {error}") from None
     return structure
+
+
+def _rows(points: Any) -> dict[str, Any]:
+    """The columns of points as arrays. Raises ValueError that names one that is wrong."""
+    rows: dict[str, Any] = {}
+    for name, values in of_type(points, dict, "points").items():
+        wide = COLUMNS.get(name)
+        if wide is None:
+            raise ValueError(f"points have no {name}; they have {', '.join(COLUMNS)}")
+        try:
+            rows[name] = np.array(values, float).reshape(-1 if wide == 1 else (-1, wide))
+        except (TypeError, ValueError, OverflowError):
+            what = "numbers" if wide == 1 else f"rows of {wide} numbers"
+            raise ValueError(f"points: {name} must be {what}") from None
+    if "position" not in rows:
+        raise ValueError("points: position is missing")
+    for name, values in rows.items():
+        if len(values) not in (1, len(rows["position"])):
+            raise ValueError(f"points: {name} has {len(values)} rows for {len(rows['position'])} points")
+    return rows
 
 
 def _counted(structure: Contents, name: str) -> enumerate[Any]:

@@ -140,7 +140,7 @@ def _make_others(
                 body = _solid(part, system)
                 for number in part.points:
                     points[number] = body.attachment(rows.position[number])
-        except ValueError as error:
+        except (ValueError, TypeError) as error:
             raise ValueError(f"{label('body', len(made.bodies), part.name)}: {error}") from None
         made.bodies.append(body)
 
@@ -196,7 +196,8 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
     except AttributeError as error:  # a coordinate that a joint does not have
         raise ValueError(f"{what}: {error}") from None
     except (ValueError, TypeError) as error:
-        raise type(error)(f"{what}: {error}") from None
+        # Not its own type: that of a text which is no UTF-8 takes other arguments.
+        raise (TypeError if isinstance(error, TypeError) else ValueError)(f"{what}: {error}") from None
     _name(made, structure.joints, made.joints)
     _name(made, structure.ties, made.ties)
     _name(made, structure.couplings, made.couplings)

@@ -9,6 +9,7 @@ from typing import Any, Literal, cast
 
 import iota
 from iota import looks
+from iota.arguments import of_type
 from iota.builder import Structure
 
 SCRIPT = '''"""Made in the playground of Iota."""
@@ -82,14 +83,16 @@ class Scene:
     @classmethod
     def from_json(cls, data: Any) -> Scene:
         """Raises ValueError that says what is wrong."""
-        try:
-            structure = Structure.from_json(data["structure"])
-            combined = [(int(a), int(b)) for a, b in data["combined"]]
-        except (KeyError, TypeError, AttributeError, IndexError) as error:
-            raise ValueError(f"this is not a saved playground: {error!r}") from None
-        if not all(0 <= a < len(structure.bodies) and 0 <= b < len(structure.bodies) for a, b in combined):
-            raise ValueError("this is not a saved playground: it combines bodies that are not there")
-        return cls(structure, combined)
+        for name in ("structure", "combined"):
+            if name not in of_type(data, dict, "a saved playground"):
+                raise ValueError(f"this is not a saved playground: it has no {name!r}")
+        structure, pairs = Structure.from_json(data["structure"]), of_type(data["combined"], list, "'combined'")
+        for pair in pairs:
+            if len(of_type(pair, list, "each of 'combined'")) != 2:
+                raise ValueError(f"each of 'combined' must be two bodies, not {len(pair)}")
+            if not all(0 <= of_type(body, int, "a body in 'combined'") < len(structure.bodies) for body in pair):
+                raise ValueError("this is not a saved playground: it combines bodies that are not there")
+        return cls(structure, [(a, b) for a, b in pairs])
 
     def script(self, system: iota.System) -> str:
         """A script that makes it, of the same numbers as a file."""

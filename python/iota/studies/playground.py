@@ -260,5 +260,11 @@ def files(world: iota.World, folder: Path) -> None:
                     if body.alive:
                         body.destroy()
                 scene.realize(world)
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"{file}: {error}") from None
+        except json.JSONDecodeError as error:
+            raise ValueError(f"{file}: this is not JSON: {error}") from None
+        except UnicodeDecodeError:
+            raise ValueError(f"{file}: this is not a text in UTF-8") from None
+        except RecursionError:
+            raise ValueError(f"{file}: this is nested too deeply") from None
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{file}: {'; '.join(str(error).splitlines()).replace(':;', ':')}") from None
