@@ -27,6 +27,8 @@ export interface BrowserOptions {
   readonly density?: number;
   /** Accepts self-signed certificates. */
   readonly trustsAll?: boolean;
+  /** Draws shadows, for tests that look at pictures: software takes most of a frame for them. */
+  readonly shadows?: boolean;
 }
 
 /** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
@@ -35,10 +37,12 @@ export const small: BrowserOptions = { width: 640, height: 360 };
 export class Browser {
   readonly context: BrowserContext;
   private readonly profile_: string;
+  private readonly shadows_: boolean;
 
-  private constructor(context: BrowserContext, profile: string) {
+  private constructor(context: BrowserContext, profile: string, shadows: boolean) {
     this.context = context;
     this.profile_ = profile;
+    this.shadows_ = shadows;
   }
 
   static async start(options: BrowserOptions = small): Promise<Browser> {
@@ -53,7 +57,7 @@ export class Browser {
       colorScheme: options.dark === true ? "dark" : "light",
       ...(options.touch === true ? { hasTouch: true, isMobile: true } : {}),
     });
-    return new Browser(context, profile);
+    return new Browser(context, profile, options.shadows === true);
   }
 
   async stop(): Promise<void> {
@@ -62,10 +66,10 @@ export class Browser {
   }
 
   /** A tab with the world drawn in it; `begun`: and running. */
-  async open(url: string, begun = true): Promise<Tab> {
+  async open(url: string, { begun = true, shadows = this.shadows_ } = {}): Promise<Tab> {
     const blank = this.context.pages().find((page) => page.url() === "about:blank");
     const tab = new Tab(blank ?? (await this.context.newPage()));
-    await tab.page.goto(url);
+    await tab.page.goto(shadows ? url : `${url}&shadows=none`);
     await tab.until("the world is drawn", (step) => globalThis.iota?.connected && iota.bodies().length > 0 && iota.step >= step, begun ? 1 : 0);
     return tab;
   }

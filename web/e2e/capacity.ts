@@ -7,7 +7,7 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "n
 import { availableParallelism, cpus, loadavg, tmpdir } from "node:os";
 import path from "node:path";
 import { decodeServerMessage, encodeClientMessage, MessageType, messageTypeOf, PROTOCOL_MAGIC, PROTOCOL_VERSION, Role } from "../src/protocol/generated.ts";
-import { Browser, type Tab } from "./browser.ts";
+import { Browser, small, type Tab } from "./browser.ts";
 import { HeadsetTab } from "./headset.ts";
 import { freePort, WorldServer } from "./server.ts";
 
@@ -36,7 +36,7 @@ async function serving(what: readonly string[], environment: Readonly<Record<str
 }
 
 async function browsing(use: (browser: Browser) => Promise<void>): Promise<void> {
-  const browser = await Browser.start();
+  const browser = await Browser.start({ ...small, shadows: true });
   try {
     await use(browser);
   } finally {

@@ -9,7 +9,7 @@ import { freePort, studyNames, WorldServer } from "./server.ts";
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await Browser.start({ ...small, density: 1 });
+  browser = await Browser.start({ ...small, density: 1, shadows: true });
 });
 
 afterAll(async () => {
@@ -22,7 +22,7 @@ const take = (tab: Tab) => pictureOf(tab, 320, 180);
 async function withStart(study: string, look: (tab: Tab) => Promise<void>): Promise<void> {
   const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: study, IOTA_PAUSED: "1" });
   try {
-    const tab = await browser.open(server.url, false);
+    const tab = await browser.open(server.url, { begun: false });
     await tab.drawn();
     await tab.eyeAtRest();
     await look(tab);

@@ -20,8 +20,8 @@ afterAll(async () => {
   await browser?.stop();
 });
 
-async function open(url: string): Promise<Tab> {
-  const tab = await browser.open(url);
+async function open(url: string, shadows = false): Promise<Tab> {
+  const tab = await browser.open(url, { shadows });
   await tab.drawn();
   return tab;
 }
@@ -69,16 +69,19 @@ describe("the first picture", () => {
   });
 });
 
-it("shadows on a ground far below what falls are in the first picture", async () => {
+it("shadows on a ground far below what falls are in the first picture, and in none of a page that draws no shadows", async () => {
   const server = await WorldServer.start(["web/e2e/falling_probe.py"], await freePort());
   try {
-    const tab = await open(server.url);
+    const tab = await open(server.url, true);
     await tab.pause(true);
     await tab.backToStart();
     // The rod, which has shadows of itself, is in the upper half.
     await expect.poll(async () => (await drawn(tab, "shadows")).low).toBeLessThan(0.4);
     expect(await tab.page.evaluate(() => iota.bodyPosition(0)[1]), "it has not fallen").toBeGreaterThan(-1);
     expect(tab.complaints).toEqual([]);
+    await tab.pause(false);
+    await tab.page.goto("about:blank");
+    expect((await drawn(await open(server.url), "shadows")).share).toBe(0);
   } finally {
     await server.stop();
   }

@@ -22,8 +22,8 @@ export class HeadsetTab {
     this.tab = tab;
   }
 
-  static async open(browser: Browser, url: string): Promise<HeadsetTab> {
-    return new HeadsetTab(await browser.open(`${url}&emulate=quest3`));
+  static async open(browser: Browser, url: string, options: { readonly shadows?: boolean } = {}): Promise<HeadsetTab> {
+    return new HeadsetTab(await browser.open(`${url}&emulate=quest3`, options));
   }
 
   async enter(): Promise<void> {

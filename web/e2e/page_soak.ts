@@ -5,7 +5,7 @@
 // larger in the second half of the run than in the first, without its first tenth.
 
 import { readFileSync } from "node:fs";
-import { Browser } from "./browser.ts";
+import { Browser, small } from "./browser.ts";
 import { freePort, WorldServer } from "./server.ts";
 
 const minutes = Number(process.env["IOTA_PAGE_MINUTES"] ?? 30);
@@ -33,7 +33,7 @@ function residentKb(pid: number): number {
 }
 
 const server = await WorldServer.start(["web/e2e/moving_probe.py"], await freePort(), undefined, { IOTA_BODIES: "500" });
-const browser = await Browser.start();
+const browser = await Browser.start({ ...small, shadows: true });
 let failed = false;
 try {
   const tab = await browser.open(server.url);

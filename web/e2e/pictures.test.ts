@@ -13,7 +13,7 @@ let tab: Tab;
 
 beforeAll(async () => {
   server = await WorldServer.start([probe], await freePort());
-  browser = await Browser.start({ width: 1280, height: 720, density: 1 });
+  browser = await Browser.start({ width: 1280, height: 720, density: 1, shadows: true });
   tab = await browser.open(server.url);
 });
 

@@ -280,12 +280,10 @@ class Study {
         return all.share > 0.004 && Math.max(all.wide, all.high) > 0.4 && !bodies.cut && (window === small || bodies.covered < 0.05) ? "framed" : { window, all, bodies };
       }, { message: "the first picture", timeout: patience }).toBe("framed");
     }
-    // Drawing shadows anew is a third of a picture in software, and no later look depends on them.
-    await this.tab.page.evaluate(() => { iota.page.viewer.renderer.shadowMap.autoUpdate = false; });
     await this.tab.pause(false);
   }
 
-  /** Triangles of a picture with its shadows, in the detail of a window of 1280 x 720; only one picture is drawn, of this one. */
+  /** Triangles of a picture with its shadows, in the detail of a window of 1280 x 720; only this picture has shadows. */
   triangles(): Promise<number> {
     return this.tab.page.evaluate(() => {
       const { viewer: { renderer, scene, camera }, world: { entities: { body } } } = iota.page;
@@ -294,9 +292,9 @@ class Study {
         body.pixels = (720 / 2) * camera.projectionMatrix.elements[5];
         body.draw(0);
       }
-      renderer.shadowMap.autoUpdate = true;
+      renderer.shadowMap.enabled = true;
       renderer.render(scene, camera);
-      renderer.shadowMap.autoUpdate = false;
+      renderer.shadowMap.enabled = false;
       return renderer.info.render.triangles;
     });
   }
@@ -523,7 +521,7 @@ describe("the study", () => {
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
-      expect(await tab.page.evaluate(() => iota.page.viewer.renderer.info.render.triangles), "triangles of a picture, with shadows").toBeLessThan(200_000);
+      expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(200_000);
       await study.isFramed();
       await studies[name](study);
       await study.dragByFinger();

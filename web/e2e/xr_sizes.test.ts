@@ -105,7 +105,7 @@ describe("a headset", () => {
   });
 
   it("is asked for 90 pictures a second at most, and for coarser pixels at the edge", async () => {
-    const me = await HeadsetTab.open(browser, `${server.url}&world=1`);
+    const me = await HeadsetTab.open(browser, `${server.url}&world=1`, { shadows: true });
     const asked = await me.tab.page.evaluateHandle(() => {
       const rates: number[] = [];
       const own = XRSession.prototype.updateTargetFrameRate;

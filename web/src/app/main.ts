@@ -109,6 +109,8 @@ function main(): void {
   canvas.classList.add("waiting");
   const page = makePage(canvas, socketUrl(), requestOf(location.search));
   const { viewer, selection, events, navigation } = page;
+  // Before the first picture, since shadows are part of the shader programs.
+  if (new URLSearchParams(location.search).get("shadows") === "none") viewer.renderer.shadowMap.enabled = false;
   const overlay = new Overlay(page, canvas);
   let band: Promise<Band> | null = null;
   const input = new ScreenInput(canvas, viewer.camera, page.gestures, navigation, {

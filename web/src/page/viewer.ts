@@ -150,7 +150,7 @@ export class Viewer {
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
     if (this.redraw_.isDue(seconds)) {
-      if (this.presenting) this.stage.hideContacts();
+      if (this.presenting || !this.renderer.shadowMap.enabled) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);
       if (warming && ++this.warmed_ === warmFrames) this.ready_();
