@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import path from "node:path";
 import { chromium, type BrowserContext, type CDPSession, type Page } from "playwright-core";
 import type { IotaDebug } from "../src/app/debug.ts";
+import { ControlCommand } from "../src/protocol/generated.ts";
 import { artifacts } from "./server.ts";
 
 declare global {
@@ -176,21 +177,11 @@ export class Tab {
     return place;
   }
 
+  /** Asks for the state, as the key would toggle it: another tab may do so too, or one that is shown here may be older than a request. */
   async pause(paused: boolean): Promise<void> {
-    // The key toggles, and two tabs share the world: press again if the other tab's key came in between. At load a headset's two pictures
-    // may take seconds: the last trial waits as long as any.
-    let why: unknown;
-    for (let trial = 0; trial < 3; trial++) {
-      if ((await this.page.evaluate(() => iota.paused)) === paused) return;
-      await this.page.bringToFront();
-      await this.page.keyboard.press(" ");
-      try {
-        return await this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, trial < 2 ? 15_000 : undefined);
-      } catch (error) {
-        why = error;
-      }
-    }
-    throw new Error(`the world will not ${paused ? "pause" : "run"}: ${String(why)}`, { cause: why });
+    await this.page.bringToFront();
+    await this.page.evaluate((command) => iota.page.session.control(command), paused ? ControlCommand.pause : ControlCommand.play);
+    await this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused);
   }
 
   /** Pauses the world and waits until the drawn poses have come to rest too, so that bodies are at their drawn places.

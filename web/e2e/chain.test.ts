@@ -197,6 +197,13 @@ describe("the page of a chain", () => {
     }
   });
 
+  it("pauses and goes on with the space key", async () => {
+    for (const paused of [true, false]) {
+      await tab.page.keyboard.press(" ");
+      await tab.until(`paused: ${paused}`, (wanted) => iota.paused === wanted, paused);
+    }
+  });
+
   it("offers the same by buttons once something is selected, and in the help", async () => {
     await tab.click(12);
     await tab.press("#strip .action:has-text('break')");
