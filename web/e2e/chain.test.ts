@@ -204,6 +204,22 @@ describe("the page of a chain", () => {
     }
   });
 
+  it("has a button, a key and a line in the help for a command that is added to its list", async () => {
+    await tab.page.evaluate(() => {
+      const added = { name: "toll the bell", help: "rings once", keys: ["F8"], places: ["bar", "panel"] as const, title: () => "Bell" };
+      iota.page.commands.add({ ...added, run: () => void (document.body.dataset["rung"] = `${Number(document.body.dataset["rung"] ?? 0) + 1}`) });
+    });
+    const rung = () => tab.page.evaluate(() => document.body.dataset["rung"]);
+    await tab.press("#toll-the-bell");
+    expect(await rung()).toBe("1");
+    expect(await tab.page.getAttribute("#toll-the-bell", "title")).toBe("Bell (F8)");
+    await tab.page.keyboard.press("F8");
+    expect(await rung()).toBe("2");
+    await tab.page.keyboard.press("?");
+    await expect.poll(() => tab.page.textContent("#help[open]")).toMatch(/F8 *rings once/);
+    await tab.page.keyboard.press("Escape");
+  });
+
   it("offers the same by buttons once something is selected, and in the help", async () => {
     await tab.click(12);
     await tab.press("#strip .action:has-text('break')");
