@@ -122,7 +122,7 @@ describe("a headset", () => {
     await me.tab.page.close();
   });
 
-  it("has the controls of the script at the wrist", async () => {
+  it("has the controls and plots of the script at the wrist", async () => {
     const entities = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
     try {
       const me = await HeadsetTab.open(browser, entities.url);
@@ -133,6 +133,15 @@ describe("a headset", () => {
       await me.pointAtPanel("right", [0.12, 1.38, -0.2], "control wind");
       await me.click("right", "trigger");
       await expect.poll(() => entities.output).toContain('{"checkbox": false}');
+      // As much of the curve's color as a line across its plot has.
+      await expect.poll(() => me.tab.page.evaluate(() => {
+        const { board, layout: { plots: [{ plot, x, y, width, height }] } } = iotaXR!.headset.panel;
+        const { data } = (board.mesh.material.map!.image as HTMLCanvasElement).getContext("2d")!.getImageData(x, y, width, height);
+        const wanted = [16, 8, 0].map((shift) => (plot.colors[0] >> shift) & 255);
+        let count = 0;
+        for (let at = 0; at < data.length; at += 4) if (wanted.every((value, channel) => Math.abs(data[at + channel] - value) < 12)) count++;
+        return count / width;
+      }), { message: "pixels of the curve in a column" }).toBeGreaterThan(1);
       await me.picture("xr-controls");
       await me.tab.page.close();
     } finally {

@@ -3,7 +3,7 @@ import { Matrix4, Object3D, Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { Entry, ScriptCommand } from "../src/commands/command.ts";
 import { Commands } from "../src/commands/commands.ts";
-import { WidgetKind, type WidgetEntity } from "../src/protocol/generated.ts";
+import { WidgetKind, type PlotEntity, type WidgetEntity } from "../src/protocol/generated.ts";
 import { controlRows } from "../src/xr/controls.ts";
 import { ratioOf } from "../src/xr/headset_commands.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
@@ -193,9 +193,9 @@ describe("the wrist panel's layout", () => {
     let leaf = 0;
     const turn = (to: number) => { leaf = to; };
     const seen: string[] = [];
-    const first = layoutPanel(commandsOf(1, ...actions), [], 0, turn);
+    const first = layoutPanel(commandsOf(1, ...actions), {}, 0, turn);
     do {
-      const { buttons, height } = layoutPanel(commandsOf(1, ...actions), [], leaf, turn);
+      const { buttons, height } = layoutPanel(commandsOf(1, ...actions), {}, leaf, turn);
       expect(height).toBeLessThanOrEqual(first.height);
       seen.push(...buttons.map(({ command }) => command.name).filter((name) => name.startsWith("action")));
       const { command } = buttons.find((button) => button.command.name === "next leaf")!;
@@ -204,6 +204,38 @@ describe("the wrist panel's layout", () => {
     expect(seen).toEqual(actions.map(({ name }) => name));
     expect(first.readings.map(({ command }) => command.title())).toContain("1 of 3");
     expect(layoutPanel(commandsOf(1, ...actions.slice(0, 21))).buttons.map(({ command }) => command.name)).not.toContain("next leaf");
+  });
+
+  const plotOf = (label: string): PlotEntity => ({
+    id: { slot: 0, generation: 1 }, label, unit: "", seconds: 1, curves: [""], colors: new Uint32Array(1), times: new Float32Array(), values: new Float32Array(),
+  });
+
+  it("has the script's plots below its actions and controls, none over another or outside", () => {
+    const { plots, buttons, height } = layoutPanel(commandsOf(1, action("break", null)), { plots: ["speed", "height", "force"].map(plotOf) });
+    expect(plots.map(({ plot }) => plot.label)).toEqual(["speed", "height", "force"]);
+    const named = (name: string) => buttons.find(({ command }) => command.name === name)!;
+    for (const one of plots) {
+      expect(one.x).toBeGreaterThan(0);
+      expect(one.x + one.width).toBeLessThan(panelWidth);
+      expect(one.y).toBeGreaterThan(named("action break").y + named("action break").height);
+      expect(one.y + one.height).toBeLessThan(named("leave").y);
+      expect(named("leave").y).toBeLessThan(height);
+      for (const other of plots) {
+        const apart = other.x >= one.x + one.width || one.x >= other.x + other.width || other.y >= one.y + one.height || one.y >= other.y + other.height;
+        expect(other === one || apart).toBe(true);
+      }
+    }
+  });
+
+  it("turns over to the plots that do not fit, no leaf being taller than without them", () => {
+    const actions = Array.from({ length: 18 }, (_, index) => action(`act${index}`, null));
+    const labels = ["a", "b", "c", "d", "e", "f", "g"];
+    const tallest = layoutPanel(commandsOf(1, ...actions, action("last", null))).height;
+    const leaves = [0, 1].map((leaf) => layoutPanel(commandsOf(1, ...actions), { plots: labels.map(plotOf) }, leaf));
+    expect(leaves.map(({ plots }) => plots.length)).toEqual([0, 6]);
+    const more = layoutPanel(commandsOf(1, ...actions), { plots: labels.map(plotOf) }, 2);
+    expect([...leaves, more].flatMap(({ plots }) => plots.map(({ plot }) => plot.label))).toEqual(labels);
+    for (const { height } of [...leaves, more]) expect(height).toBeLessThanOrEqual(tallest);
   });
 
   it("has the script's controls, which do what their presses say", () => {
@@ -218,7 +250,7 @@ describe("the wrist panel's layout", () => {
       made(WidgetKind.choice, "material", { options: ["steel", "wood"], value: 1 }),
       made(WidgetKind.slider, "fixed", { maximum: 1, enabled: false }),
     ], ({ label }, value) => changes.push([label, value]));
-    const { buttons, readings } = layoutPanel(commandsOf(1), rows);
+    const { buttons, readings } = layoutPanel(commandsOf(1), { controls: rows });
     expect(readings.map(({ command }) => command.title())).toContain("gravity: 9.5 m/s²");
     const press = (name: string) => {
       const { command } = buttons.find((button) => button.command.name === name)!;

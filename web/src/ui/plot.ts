@@ -98,7 +98,7 @@ const ink = "#22262a";
 /** Draws plots over a picture of a size in px, one below the other at its right edge, a third of its width at most. */
 export function drawPlots(context: CanvasRenderingContext2D, plots: readonly PlotEntity[], width: number, height: number): void {
   if (plots.length === 0) return;
-  const tall = plots.length * (size.height + 2 * line + margin) + margin;
+  const tall = plots.length * (wholeSize.height + margin) + margin;
   const wide = size.width + 2 * margin;
   const scale = Math.min(width / 3 / wide, (height - 2 * margin) / tall, height / 480);
   context.save();
@@ -110,19 +110,31 @@ export function drawPlots(context: CanvasRenderingContext2D, plots: readonly Plo
   context.fill();
   context.translate(margin, margin);
   for (const plot of plots) {
-    context.fillStyle = ink;
-    context.font = "600 13px system-ui, sans-serif";
-    context.fillText(plot.unit === "" ? plot.label : `${plot.label}, ${plot.unit}`, 0, 12, size.width);
-    context.translate(0, line);
-    drawCurves(context, plot, ink);
-    context.translate(0, size.height);
-    writeLegend(context, plot);
-    context.translate(0, line + margin);
+    drawWhole(context, plot, ink);
+    context.translate(0, wholeSize.height + margin);
   }
   context.restore();
 }
 
-function writeLegend(context: CanvasRenderingContext2D, plot: PlotEntity): void {
+/** Size of a plot with its name and its legend, css px. */
+export const wholeSize = { width: size.width, height: size.height + 2 * line };
+
+/** Draws a plot with its name and its legend from the origin on. */
+export function drawWhole(context: CanvasRenderingContext2D, plot: PlotEntity, color: string): void {
+  context.save();
+  context.textAlign = "left";
+  context.textBaseline = "alphabetic";
+  context.fillStyle = color;
+  context.font = "600 13px system-ui, sans-serif";
+  context.fillText(plot.unit === "" ? plot.label : `${plot.label}, ${plot.unit}`, 0, 12, size.width);
+  context.translate(0, line);
+  drawCurves(context, plot, color);
+  context.translate(0, size.height);
+  writeLegend(context, plot, color);
+  context.restore();
+}
+
+function writeLegend(context: CanvasRenderingContext2D, plot: PlotEntity, color: string): void {
   let x = 0;
   context.font = "12px system-ui, sans-serif";
   plot.curves.forEach((name, curve) => {
@@ -130,7 +142,7 @@ function writeLegend(context: CanvasRenderingContext2D, plot: PlotEntity): void 
     const text = value === null ? name : `${name} ${briefly(value)}`;
     context.fillStyle = css(plot.colors[curve]);
     context.fillRect(x, 5, 9, 9);
-    context.fillStyle = ink;
+    context.fillStyle = color;
     context.fillText(text, x + 14, 14);
     x += 26 + context.measureText(text).width;
   });

@@ -5,6 +5,7 @@
 import { Matrix4, Vector3 } from "three";
 import { isChoice } from "../commands/command.ts";
 import type { Page } from "../page/page.ts";
+import { drawWhole, wholeSize } from "../ui/plot.ts";
 import { Board, fitText, font, roundedBox, type Colors } from "./board.ts";
 import { middleKnuckle, wrist } from "./hand_joints.ts";
 import type { Input } from "./input.ts";
@@ -44,7 +45,9 @@ export class WristPanel {
   private renamed_ = 0;
   private newton_ = -1;
   private sinceRead_ = 0;
+  private sincePlots_ = 0;
   private controlsSeen_ = 0;
+  private plotsSeen_ = 0;
   private leaf_ = 0;
   private placed_ = false;
   private readonly at_ = new Vector3();
@@ -75,10 +78,12 @@ export class WristPanel {
 
   /** Lays it out again for other commands or looks. */
   arrange(): Layout {
-    const { commands, world: { entities: { widget } }, session } = this.page_;
+    const { commands, world: { entities: { widget, plot } }, session } = this.page_;
     this.controlsSeen_ = widget.version;
+    this.plotsSeen_ = plot.version;
+    this.sincePlots_ = 0;
     const controls = controlRows(widget.of(session.clientId), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
-    this.layout_ = layoutPanel(commands, controls, this.leaf_, (leaf) => {
+    this.layout_ = layoutPanel(commands, { controls, plots: plot.all() }, this.leaf_, (leaf) => {
       this.leaf_ = leaf;
       this.arrange();
     });
@@ -134,7 +139,11 @@ export class WristPanel {
   /** Checks the shown values without allocating, the force a few times a second. */
   private read_(seconds: number): void {
     const { world, selection } = this.page_;
-    if (world.entities.widget.version !== this.controlsSeen_) this.arrange();
+    const { widget, plot } = world.entities;
+    this.sincePlots_ += seconds;
+    // A plot changes with each of its samples; it is drawn again a few times a second, while it is looked at.
+    const drawsPlots = plot.version !== this.plotsSeen_ && this.board.shown && this.sincePlots_ > readEverySeconds;
+    if (widget.version !== this.controlsSeen_ || drawsPlots) this.arrange();
     const body = selection.actionBody;
     let active = 0;
     for (const { command } of this.layout_.buttons) if (command.active?.() === true) active++;
@@ -162,7 +171,7 @@ export class WristPanel {
   }
 
   private paint_(context: CanvasRenderingContext2D, colors: Colors): void {
-    const { height, buttons, readings } = this.layout_;
+    const { height, buttons, readings, plots } = this.layout_;
     roundedBox(context, { x: 0, y: 0, width: panelWidth, height }, 44, colors.line);
     roundedBox(context, { x: 3, y: 3, width: panelWidth - 6, height: height - 6 }, 42, colors.paper);
     this.paintHead_(context, colors);
@@ -173,6 +182,13 @@ export class WristPanel {
     context.textBaseline = "middle";
     for (const { command, x, y, width: across, height: tall } of readings) {
       if (isChoice(command)) context.fillText(fitText(context, command.value() + command.unit, across), x + across / 2, y + tall / 2);
+    }
+    for (const { plot, x, y, width } of plots) {
+      context.save();
+      context.translate(x, y);
+      context.scale(width / wholeSize.width, width / wholeSize.width);
+      drawWhole(context, plot, colors.ink);
+      context.restore();
     }
   }
 
