@@ -230,6 +230,7 @@ class Study {
     await tab.page.keyboard.press("Escape");
     await tab.page.evaluate(() => iotaXR!.enter());
     await tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2);
+    await this.isFramedInHeadset();
     if (hands) await me.useHands(true);
     const close = (value: number) => (hands ? me.pinch("right", value) : me.button("right", "trigger", value));
     const [[right, down], wanted = () => true] = this.first_!;
@@ -242,6 +243,24 @@ class Study {
     await this.follows(() => me.point("right", rest, [at[0] + share * right, at[1] - share * down, at[2]]));
     await close(0);
     await this.knows("nothing is held", ({ held }) => held === null);
+  }
+
+  /** What a headset shows at first: nearly all that can be taken is ahead of the user and in the view, at a good size. An emulated view is
+   * narrower than that of a headset. */
+  private async isFramedInHeadset(): Promise<void> {
+    const { outside, across } = await this.tab.page.evaluate(() => {
+      const eyes = iota.page.viewer.renderer.xr.getCamera().cameras;
+      const places: { x: number; y: number; z: number }[][] = [];
+      const corners = { add: (...at: [number, number, number]) => places.push(eyes.map((eye) => eye.position.clone().set(...at).project(eye))) };
+      iota.page.world.entities.body.addPoints(corners as never, true);
+      for (const body of iota.bodies()) corners.add(...iota.bodyPosition(body));
+      // 1 is the edge of the view; what is behind the eyes has z > 1.
+      const seen = places.map((of) => of.find(({ x, y, z }) => Math.max(Math.abs(x), Math.abs(y)) < 0.98 && z < 1)).filter((place) => place !== undefined);
+      const extent = (along: "x" | "y") => Math.max(...seen.map((place) => place[along])) - Math.min(...seen.map((place) => place[along]));
+      return { outside: 1 - seen.length / places.length, across: Math.max(extent("x"), extent("y")) };
+    });
+    expect(outside, "share of what is not in the view").toBeLessThan(0.03);
+    expect(across, "2 is the whole view").toBeGreaterThan(0.4);
   }
 
   /** Points at a body that can be taken in a paused world. Returns it, and where it is for the user. */
@@ -399,6 +418,8 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     const before = await study.eye();
     await study.key("v");
     await study.tab.until("the view is another", (was) => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - was[axis])) > 0.2, before);
+    // Back to the first one, in which a headset begins.
+    for (let view = 0; view < 2; view++) await study.key("v");
   },
   ladder: async (study) => {
     await study.drag([some, 0]);

@@ -97,7 +97,7 @@ describe("a headset", () => {
       expect(Math.abs(after[1] - before[1] - floor)).toBeLessThan(1e-3 * scale);
       expect(me.tab.complaints).toEqual([]);
       const shown = await me.tab.page.evaluate(() => iotaXR!.headset.panel.layout.buttons.find(({ command }) => command.name === "size")!.command.title());
-      expect(shown).toBe({ cradle: "5 : 1", ladder: "2.2 : 1", "appendix-e2": "1 : 45" }[name] ?? "1 : 1");
+      expect(shown).toBe({ cradle: "4.4 : 1", ladder: "2.2 : 1", "appendix-e2": "1 : 45" }[name] ?? "1 : 1");
       await me.tab.page.close();
     } finally {
       await study.stop();
