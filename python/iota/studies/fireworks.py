@@ -100,7 +100,7 @@ def present(world: iota.World, places: np.ndarray) -> None:
     """Tubes on a board, and two bowls of fire beside it."""
     world.add_static(looks.box((3.8, 0.12, 0.4), "wood", 0.02), (0, 0.06, 0))
     for x in places:
-        world.add_strut((x, 0.1, 0), (x, TUBE - 0.04, 0), looks.cylinder(0.07, "brass"))
+        world.add_strut((x, 0.1, 0), (x, TUBE - 0.05, 0), looks.cylinder(0.07, "brass"))
     for x in (-2.6, 2.6):
         world.add_strut((x, 0, 0), (x, 0.5, 0), looks.cylinder(0.05, "steel"))
         world.add_static(looks.Look(iota.Ellipsoid((0.24, 0.1, 0.24)), "steel"), (x, 0.54, 0))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import iota
 from iota import looks
@@ -44,7 +45,7 @@ def present(world: iota.World) -> None:
 def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
     """A bearing block behind `at`, with its axle along z, on a post."""
     world.add_strut((at.x, BENCH, -depth), (at.x, at.y, -depth), looks.cylinder(0.016, "steel"))
-    world.add_strut((at.x, at.y, -depth - 0.02), (at.x, at.y, 0.03), looks.cylinder(0.01, "brass"))
+    world.add_strut((at.x, at.y, -depth - 0.02), (at.x, at.y, 0.02), looks.cylinder(0.01, "brass"))
 
 
 def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, density: float = STEEL) -> iota.Body:
@@ -75,8 +76,8 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))
     system.prismatic(piston, at=wrist, axis=(1, 0, 0))
     stand(world, axle)
-    for side in (-0.05, 0.05):
-        world.add_static(looks.box((0.34, 0.012, 0.09), "steel"), (wrist.x - crank, wrist.y + side, wrist.z))
+    for y, z in product((-0.05, 0.05), (-0.0325, 0.0325)):  # two rails above and two below, the rod swings between them
+        world.add_static(looks.box((0.34, 0.012, 0.025), "steel"), (wrist.x - crank, wrist.y + y, wrist.z + z))
     world.add_static(looks.box((0.04, axle.y - BENCH, 0.04), "steel"), (wrist.x, (axle.y + BENCH) / 2 - 0.03, -0.05))
 
     @world.action("reverse", key="x", help="turns the engine's motor the other way", on="world")

@@ -24,6 +24,8 @@ def build(repeat: bool = True) -> iota.World:
     ring = shapelib.molecule(FILE, "rigid", scale=SCALE)
     made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
     made.points[1].nail()
+    for atom in made.points:  # what falls comes to lie on the ground
+        system.outside(atom, iota.HalfSpace((0, 1, 0)), at=(0, atom.radius, 0))
     present(world)
 
     def snap(p: int, q: int) -> None:

@@ -100,7 +100,7 @@ def orbit(world: iota.World) -> None:
     planet.radius, planet.color = 0.045, (0.2, 0.5, 0.75)
     sun.radius, sun.color = 0.1, (0.95, 0.7, 0.15)
     system.bond(planet, sun, "gravity", strength=PULL, softening=0)
-    world.add_strut((SUN.x, 0, 0), tuple(SUN), looks.cylinder(0.01, "steel"))
+    stand(world, SUN)
     world.trace(planet, seconds=6, color="#3f7fd0")
     speed = world.slider("launch", 0.6, 1.25, LAUNCH, step=0.05, unit="of a circle", help="launches the planet anew")
     label = world.label("", at=SUN + (0, 0.58, 0), height=TEXT)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
@@ -32,10 +32,12 @@ def build(fish: int = FISH) -> iota.World:
     system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))
     system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.4, size=1.5, octaves=2, evolution=0.4)
     school.current.set(speed=0.3)
+    soft = system.group("soft")
+    system.pair_force("soft_repulsion", cutoff=0.09, group=soft, stiffness=6, length=0.09)
     kelps = [kelp(world, weed, x, z) for x, z in KELPS]
-    bush(world, weed, (-0.6, 0, -1.8))
+    bush(world, weed, (-0.1, 0, -1.8))
     bush(world, weed, (1.9, 0, 0.5))
-    for x, z in ((-2.0, 0.4), (0.9, -2.4), (-1.2, 1.4)):
+    for x, z in ((-0.2, 0.0), (0.6, -0.9), (-2.6, -0.5)):
         ribbon(world, weed, (x, 0, z))
     present(world)
     world.camera = iota.Camera(position=(0, 1.5, 9.0), target=(0, 2.5, 0))
@@ -188,7 +190,7 @@ def bush(world: iota.World, weed: iota.Group, foot: tuple[float, float, float]) 
         weed.add(stem)
         strand(world, weed, top, iota.Vec3(0.05 * math.cos(angle), 0.13, 0.05 * math.sin(angle)), 6, (0.75, 0.35, 0.3))
         tops.append(top)
-    for p, q in [*pairwise(tops), (tops[-1], tops[0])]:
+    for p, q in combinations(tops, 2):
         system.bond(p, q, "spring", stiffness=4, damping=0.05)
 
 
@@ -204,11 +206,12 @@ def strand(
     world: iota.World, weed: iota.Group, start: iota.Particle, way: iota.Vec3, nodes: int, color: tuple[float, ...]
 ) -> None:
     """Particles on springs, from a particle on; springs over two resist bending."""
-    points = [start]
+    points, soft = [start], next(group for group in world.system.groups if group.name == "soft")
     for number in range(1, nodes + 1):
         node = world.system.body().particle(start.position + way * number, mass=0.02)
         node.radius, node.color = 0.034 - 0.002 * number, color
-        weed.add(node)
+        for group in (weed, soft):
+            group.add(node)
         points.append(node)
     for p, q in pairwise(points):
         world.system.bond(p, q, "spring", stiffness=40, damping=0.1)

@@ -11,8 +11,9 @@ import iota
 from iota import looks
 
 COLUMNS, ROWS, SPACING = 13, 8, 0.065  # of the flag; m
-BEADS, BEAD = 80, 0.035  # radius, m
-BOWL = 0.26  # radius, m
+BEADS, BEAD = 80, 0.03  # radius, m
+NEAR, STACKED = 0.07, 0.066  # m: so near, beads push each other away; between neighbors at the start
+BOWL, WIRE = 0.26, 0.004  # radius, and that of its wire, m
 MIDDLE = iota.Vec3(0.95, 1.25, 0)  # of the bowl, m
 WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
 
@@ -88,19 +89,19 @@ def beads(world: iota.World, middle: iota.Vec3) -> None:
     """Beads that push each other away, in a bowl that they cannot leave: a pairwise law and an inequality each."""
     system = world.system
     group = system.group("beads")
-    golden = math.pi * (3 - math.sqrt(5))
-    for i in range(BEADS):
-        height, turn = (i + 0.5) / BEADS - 1, i * golden
-        around = math.sqrt(1 - height**2)
-        far = (BOWL - BEAD) * ((i * 0.618) % 1) ** (1 / 3)  # evenly in the lower half
-        place = middle + iota.Vec3(around * math.cos(turn), height, around * math.sin(turn)) * far
-        bead = point(system, place, mass=0.05, radius=BEAD)
-        system.inside(bead, iota.Sphere(BOWL - BEAD), at=middle)
+    room = BOWL - WIRE - BEAD
+    # As balls are stacked: the lowest places of a lattice.
+    i, j, k = np.indices((13, 13, 13)).reshape(3, -1) - 6
+    lattice = STACKED * np.stack([i + (j + k) % 2 / 2, (2 / 3) ** 0.5 * k, 3**0.5 / 2 * (j + k % 2 / 3)], axis=1)
+    inside = [place for place in lattice.tolist() if math.hypot(*place) < room]
+    for number, place in enumerate(sorted(inside, key=lambda at: (at[1], math.hypot(*at)))[:BEADS]):
+        bead = point(system, middle + place, mass=0.05, radius=BEAD)
+        system.inside(bead, iota.Sphere(room), at=middle)
         group.add(bead)
-        bead.color = (0.15, 0.45 + 0.4 * i / BEADS, 0.75)
-    system.pair_force("soft_repulsion", cutoff=2 * BEAD, group=group, stiffness=250, length=2 * BEAD)
-    system.field("wind", group=group, drag=0.1)
+        bead.color = (0.15, 0.45 + 0.4 * number / BEADS, 0.75)
+    system.pair_force("soft_repulsion", cutoff=NEAR, group=group, stiffness=400, length=NEAR)
+    system.field("wind", group=group, drag=0.2)
     for angle in (0.0, 0.4, 0.8, 1.2):
-        ring = looks.torus(BOWL * math.cos(angle), 0.004, "steel")
+        ring = looks.torus(BOWL * math.cos(angle), WIRE, "steel")
         world.add_static(ring, (middle.x, middle.y - BOWL * math.sin(angle), middle.z), (0.5**0.5, 0, 0, 0.5**0.5))
     world.add_strut((middle.x, 0, middle.z), (middle.x, middle.y - BOWL, middle.z), looks.cylinder(0.02, "steel"))

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing that is drawn passes through anything else in a study, for its first seconds or its story."""
+
+from __future__ import annotations
+
+import pytest
+from penetration import Drawn
+
+import iota
+from iota import looks, studies
+
+EACH = 0.25  # s, between two looks
+MOST = 0.03  # share of the smaller shape
+# A fish that feeds is between leaves, and fish do not know of weed. A thousand fish are looked at in test_study_cloth.
+KNOWN = {"undersea": 0.2}
+SECONDS = {"undersea": 16.0, "molecule": 13.0}
+STYLES = {"chain": ("rope", "chain")}
+OTHERS = {"shoal": "a thousand", "lab": "a room of 65 000 triangles"}
+
+
+@pytest.mark.parametrize("name", sorted(set(studies.names()) - OTHERS.keys()))
+def test_nothing_passes_through_anything(name: str) -> None:
+    world = studies.module(name).build()
+    styles = [Drawn(world, style) for style in STYLES.get(name, ("",))]
+    for step in range(round(SECONDS.get(name, 8.0) / world.dt)):
+        if step % round(EACH / world.dt) == 0:
+            for drawn in styles:
+                assert drawn.overlaps(KNOWN.get(name, MOST)) == []
+        world.step()
+
+
+def test_balls_that_overlap_are_found_and_those_that_touch_are_not() -> None:
+    world = iota.World(iota.System(gravity=(0, 0, 0)))
+    left, right = (world.system.body(shape=iota.Sphere(0.5), mass=1, position=(x, 2, 0)) for x in (0, 0.9))
+    world.add_static(looks.box((1, 1, 1)), (0, 1.05, 0))
+    drawn = Drawn(world)
+    found = {(each.a, each.b): each for each in drawn.overlaps(0.01)}
+    assert found[left, right].depth == pytest.approx(0.1, abs=0.01)
+    assert sorted(each.depth for each in found.values())[0] == pytest.approx(0.05, abs=0.01)  # in the box
+    left.set_pose((-0.2, 2.1, 0))
+    assert [each for each in drawn.overlaps(0.01) if each.a == left] == []
