@@ -84,6 +84,8 @@ export class Tab {
   readonly complaints: string[] = [];
   private touch_: CDPSession | null = null;
   private fingers_ = 0;
+  /** When the world was back at its start, ms. */
+  private begunAnew_ = -Infinity;
 
   constructor(page: Page) {
     this.page = page;
@@ -126,10 +128,12 @@ export class Tab {
     await this.until("it has been drawn", () => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
   }
 
-  /** Returns a paused world to its start. */
+  /** Returns a paused world to its start. A page can do so once a second. */
   async backToStart(): Promise<void> {
+    await new Promise((resolve) => setTimeout(resolve, Math.max(0, this.begunAnew_ + 1000 - performance.now())));
     await this.page.evaluate(() => iota.page.commands.run("reset"));
     await this.until("it has begun anew", () => iota.time === 0);
+    this.begunAnew_ = performance.now();
   }
 
   /** Waits until the camera of the flat page stands still, and returns its place. */
