@@ -98,8 +98,9 @@ def main() -> int:
     run("configuring", "cmake", "--preset", "release", "-DCMAKE_BUILD_TYPE=Debug")  # compiles in less time
     run("building", "cmake", "--build", "build", "--parallel", jobs, "--target", "everyday", "iota_tests")
     run("tests of ingredients and shapes", "build/iota_tests", "--gtest_brief=1", f"--gtest_filter={tests}")
-    run("distances of shapes, by the engine", ".venv/bin/python", "tests/shapes/make_samples.py")
-    npx = ("../.venv/bin/npx", "--no-install")
+    python, npx = ".venv/bin/python", ("../.venv/bin/npx", "--no-install")
+    run("distances of shapes, by the engine", python, "tests/shapes/make_samples.py")
+    run("messages of the page", python, "tools/generate_protocol.py", "--ts", "web/src/protocol/generated.ts")
     run("types of the page", *npx, "tsc", "--noEmit", folder="web")
     run("shapes of the page", *npx, "vitest", "run", "test/shapes.test.ts", folder="web")
     print("one more ingredient and one more shape work by their own files and lines")
