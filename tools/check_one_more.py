@@ -97,6 +97,10 @@ def main() -> int:
     tests = "Balloons.*:IngredientList.*:*EveryShape*:Shape.*:FollowingIsland.*:Archive.*"
     run("configuring", "cmake", "--preset", "release", "-DCMAKE_BUILD_TYPE=Debug")  # compiles in less time
     run("building", "cmake", "--build", "build", "--parallel", jobs, "--target", "everyday", "iota_tests")
+    for module in (COPY / "build" / "python" / "iota").glob("_*.*"):
+        link = COPY / "python" / "iota" / module.name
+        link.unlink(missing_ok=True)
+        link.symlink_to(module)
     run("tests of ingredients and shapes", "build/iota_tests", "--gtest_brief=1", f"--gtest_filter={tests}")
     python, npx = ".venv/bin/python", ("../.venv/bin/npx", "--no-install")
     run("distances of shapes, by the engine", python, "tests/shapes/make_samples.py")
