@@ -11,7 +11,7 @@ import numpy as np
 
 import iota
 from iota import looks
-from iota.world.frames import turn_from_x
+from iota.world.frames import axes_of, turn_from_x
 from iota.world.scene import Static, listed
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -75,7 +75,7 @@ class Drawn:
         self.world, self.style = world, style
         self._known: dict[Any, Array] = {}
         self._fixed = [
-            Piece(fixed, fixed.look.shape, np.array(tuple(fixed.position)), matrix(fixed.rotation))
+            Piece(fixed, fixed.look.shape, np.array(tuple(fixed.position)), axes_of(fixed.rotation))
             for fixed in world._state.statics if fixed.look.shape is not None
         ]  # fmt: skip
 
@@ -135,19 +135,19 @@ class Drawn:
             if body.is_spark:
                 continue
             solids = [
-                Piece(body, solid.shape, np.array(tuple(solid.position)), matrix(solid.orientation))
+                Piece(body, solid.shape, np.array(tuple(solid.position)), axes_of(solid.orientation))
                 for solid in body.solids
             ]
             known = self._styled(self.world.look_of(body))
             if not known:
                 yield from solids
-            place, turn = np.array(tuple(body.position)), matrix(body.orientation)
+            place, turn = np.array(tuple(body.position)), axes_of(body.orientation)
             for look in known:
                 if look.shape is None:
                     yield from solids
                 else:
                     at = place + turn @ np.array(look.offset)
-                    yield Piece(body, self._fitted(look, body).shape, at, turn @ matrix(look.rotation))
+                    yield Piece(body, self._fitted(look, body).shape, at, turn @ axes_of(look.rotation))
             for particle in body.particles:
                 if 2 * particle.radius > SMALL:
                     yield Piece(body, iota.Sphere(particle.radius), np.array(tuple(particle.position)), np.eye(3))
@@ -163,17 +163,7 @@ class Drawn:
                     p, q = (end.position for end in bond.ends)
                     shape = look.of_length(abs(q - p)).shape
                     if shape is not None:
-                        yield Piece(bond, shape, np.array(tuple((p + q) * 0.5)), matrix(turn_from_x((q - p).unit())))
-
-
-def matrix(rotation: Any) -> Array:
-    """Of a unit quaternion x y z w."""
-    x, y, z, w = rotation
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+                        yield Piece(bond, shape, np.array(tuple((p + q) * 0.5)), axes_of(turn_from_x((q - p).unit())))
 
 
 def joined(world: iota.World) -> dict[Any, set[Any]]:
