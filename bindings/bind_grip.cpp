@@ -40,6 +40,10 @@ void bind_grip(nb::module_& module) {
   type.def_prop_ro(
           "alive", [](const GripHandle& self) { return self.is_alive(); },
           "False once it was released or its body was destroyed.")
+      .def_prop_ro(
+          "body", [](const GripHandle& self) { return sibling(self, self.use().grips().body(self.id)); },
+          "The body that is held: after an edit what that became part of, or the part at the held point that was taken "
+          "from it.")
       .def(
           "move",
           [](const GripHandle& self, VectorArgument target) {

@@ -25,6 +25,8 @@ class Grips : public View {
   void move(GripId, const Vec3& target);
   void destroy(GripId);
   bool contains(GripId) const;
+  /// The body that it holds now: an edit may have made that another one than at the start.
+  BodyId body(GripId) const;
 };
 
 }  // namespace iota

@@ -13,4 +13,9 @@ void Grips::move(GripId grip, const Vec3& target) { core_.execute(edit::MoveGrip
 
 bool Grips::contains(GripId id) const { return core_.model.grips.contains(id); }
 
+BodyId Grips::body(GripId id) const {
+  const model::Model& m = core_.model;
+  return m.bodies.id(m.grips[core_.slot(id)].body);
+}
+
 }  // namespace iota

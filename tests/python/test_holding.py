@@ -130,3 +130,43 @@ def test_a_hand_that_is_nowhere_is_its_own_users_error_alone(run_world: Runner, 
         step = ada.last["poses"]["step"]
         ada.wait_for(lambda: ada.last["poses"]["step"] > step + 10)
         assert ada.notices == [] and all(map(math.isfinite, ada.places[0]))
+
+
+def test_a_hand_is_on_what_the_body_became_part_of_and_then_on_the_part_at_its_point(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    left, right = system.body(), system.body()
+    for body, x in ((left, -1), (left, 0), (right, 0), (right, 1)):
+        body.particle((x, 1, 0), mass=0.1)
+    world = iota.World(system, ground=None)
+    slots = left.slot, right.slot
+    told: list[tuple[str, iota.Body | None]] = []
+
+    @world.on_drag(right)
+    def drag(event: iota.Event) -> None:
+        told.append((event.phase, event.body))
+
+    @world.on_release(right)
+    def let_go(event: iota.Event) -> None:
+        told.append(("release", event.body))
+
+    with PageClient(run_world(world)) as page:
+
+        def held() -> iota.Body | None:
+            return world.call(world.held)
+
+        def slot_held() -> int:
+            return page.last["poses"]["holds"][0]["body"]
+
+        page.send("grab_start", hold=1, body=page.body(slots[1]), local_point=(0.3, 0, 0), target=(0.8, 1, 0))
+        page.wait_for(lambda: held() == right and page.last["poses"]["holds"])
+        world.call(lambda: left.combine(right))
+        page.wait_for(lambda: slot_held() == slots[0])
+        assert held() == left
+        (taken,) = world.call(lambda: left.parts[1].separate().created_bodies)
+        page.wait_for(lambda: slot_held() == taken.slot)
+        assert held() == taken and world.call(lambda: left.alive), "not on the rest of the body, which goes on to exist"
+        page.send("grab_move", hold=1, target=(0.8, 1.1, 0))
+        page.wait_for(lambda: told[-1] == ("update", taken))
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: held() is None)
+        assert told[0] == ("start", right) and told[-2:] == [("end", taken), ("release", taken)]

@@ -19,10 +19,17 @@ LONGEST_PULSE = 5.0  # s
 
 @dataclass
 class Hold:
-    """One grab of a client while it lasts, and the grip that it makes."""
+    """One grab of a client while it lasts, and the grip that it makes. taken: the body at its start."""
 
-    body: Body
+    taken: Body
     grip: Grip | SimulatedGrip
+
+    @property
+    def body(self) -> Body | None:
+        """The held body, which an edit may have made another one than the taken one; None if the grab has ended."""
+        if not self.grip.alive:
+            return None
+        return self.grip.body if isinstance(self.grip, Grip) else alive(self.taken)
 
 
 @dataclass
@@ -120,8 +127,14 @@ class Clients:
     def held(self, client: int | None = None) -> Body | None:
         """The body held last by a client, or by anyone."""
         clients = self.by_id.values() if client is None else [c for c in self.by_id.values() if c.id == client]
-        bodies = [alive(hold.body) for c in clients for hold in c.holds.values() if hold.grip.alive]
+        bodies = [hold.body for c in clients for hold in c.holds.values()]
         return next((body for body in reversed(bodies) if body is not None), None)
+
+    def held_by(self, hand: tuple[int, int]) -> Body | None:
+        """The body at the grip of a hand (client and hold); None without one."""
+        client = self.by_id.get(hand[0])
+        hold = None if client is None else client.holds.get(hand[1])
+        return None if hold is None else hold.body
 
     def selected(self, client: int) -> Body | None:
         """The body selected by a client."""

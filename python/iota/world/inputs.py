@@ -128,8 +128,9 @@ class Inputs:
     def _take_hands(self, event: InputEvent, body: Any) -> None:
         """Hands of users, joins and leaves. The script's listeners are called; they may replace the grip of a hand."""
         listeners, kind = self._state.listeners, event.kind
+        self._follow_grips()
         if kind == "grab_start" and body is not None and body.kind != "inactive":
-            drag = Drag(body, list(listeners.of("drag", body)))
+            drag = Drag(body, body, list(listeners.of("drag", body)))
             is_taken = any(listener.takes_over for listener in drag.listeners)
             listeners.drags[event.client, event.hold] = drag
             if not is_taken:
@@ -155,10 +156,17 @@ class Inputs:
     def _end_gone(self) -> None:
         """Ends the drags whose body was destroyed, and tells of all that did not end by their user."""
         listeners = self._state.listeners
+        self._follow_grips()
         listeners.take_away("destroyed", [hand for hand, drag in listeners.drags.items() if alive(drag.body) is None])
         taken, listeners.taken_away = listeners.taken_away, []
         for hand, drag, reason in taken:
             self._end(hand, drag, reason)
+
+    def _follow_grips(self) -> None:
+        """After an edit a grip may be on another body, which exists beside the one that was taken. Drags without a grip
+        stay with theirs."""
+        for hand, drag in self._state.listeners.drags.items():
+            drag.body = self._state.clients.held_by(hand) or drag.body
 
     def _end(self, hand: tuple[int, int], drag: Drag, reason: str) -> None:
         self._tell_drag("end", hand, drag, None, reason)
@@ -167,8 +175,8 @@ class Inputs:
     def _tell_of_hand(self, kind: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:
         client, hold = hand
         body = alive(drag.body)
-        # A destroyed body is still that for which a function was registered.
-        for listener in self._state.listeners.of(kind, drag.body if body is None else body):
+        # A destroyed body is still that for which a function was registered, and so is the one that was pressed.
+        for listener in self._state.listeners.of_any(kind, {drag.taken, drag.body if body is None else body}):
             self._tell(listener, client, body, point=point, hold=hold, reason=reason)
 
     def _tell_drag(self, phase: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:

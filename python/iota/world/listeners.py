@@ -97,8 +97,10 @@ def bodies_of(target: Any) -> Bodies:
 
 @dataclass
 class Drag:
-    """A hand whose drag the script handles."""
+    """A hand whose drag the script handles. taken: the body at its start. body: the one that it holds now or held last,
+    which an edit may have made another one."""
 
+    taken: Any
     body: Any
     listeners: list[Listener] = field(default_factory=list)
 

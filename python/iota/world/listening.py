@@ -68,7 +68,9 @@ class Listening:
 
     def on_drag(self, on: Any = "anything", grab: bool = True) -> Any:
         """Decorator: a hand grabs a body (event.phase "start"), moves ("update") and releases it ("end"), or it is
-        taken out of the hand (see event.reason); event.point is the place of the hand, world, m. grab: the hand also pulls with its spring; False: only the function acts."""
+        taken out of the hand (see event.reason); event.point is the place of the hand, world, m; event.body is what the
+        hand holds, which an edit may have made another body than at the start. grab: the hand also pulls with its spring;
+        False: only the function acts."""
         return self._listen("drag", on, takes_over=not grab)
 
     def on_hover(self, on: Any = "anything") -> Any:
