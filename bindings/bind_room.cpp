@@ -50,10 +50,11 @@ protocol::Part make_part(const std::string& kind, const std::vector<float>& size
 
 void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& looks,
                   const std::string& look, const std::optional<std::pair<Vec3, Vec3>>& camera,
-                  std::optional<double> ground, const std::vector<std::string>& modules) {
+                  std::optional<double> ground, const std::vector<std::string>& modules, std::uint32_t client) {
   const auto& [position, target] = camera.value_or(std::pair<Vec3, Vec3>{});
   self.use().set(protocol::WorldSettings{title, looks, look, camera.has_value(), narrow(position), narrow(target),
-                                         ground.has_value(), static_cast<float>(ground.value_or(0)), modules});
+                                         ground.has_value(), static_cast<float>(ground.value_or(0)), modules},
+                 client);
 }
 
 /// Two digits, so that small fluctuations are not sent to pages.
@@ -270,7 +271,8 @@ void bind_room(nb::module_& module) {
           },
           "system"_a, "Tells its pages that the world has ended, and stops logging changes of its system.")
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
-           "ground"_a.none(), "modules"_a)
+           "ground"_a.none(), "modules"_a, "client"_a = 0,
+           "client: for this one alone, until the next settings for all (client 0).")
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")

@@ -82,8 +82,12 @@ bool Hub::post(Edit edit) {
   return !std::exchange(is_delivery_due_, true);
 }
 
-bool Hub::set_latest(std::string key, Frame frame) {
-  return post([this, key = std::move(key), frame = std::move(frame)] {
+bool Hub::set_latest(std::string key, Frame frame, std::uint32_t client) {
+  return post([this, key = std::move(key), frame = std::move(frame), client] {
+    if (client != 0) {
+      if (const auto found = clients_.find(client); found != clients_.end()) found->second.link->send(frame, key);
+      return;
+    }
     const auto known = std::ranges::find(latest_, key, [](const auto& part) { return part.first; });
     if (known == latest_.end())
       latest_.emplace_back(key, frame);

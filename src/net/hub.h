@@ -58,9 +58,10 @@ class Hub {
   // --- from any thread. True: nothing was queued, so deliver() has to be called on the server's thread. Changes of
   // entities are collected, of poses only the newest counts; both reach clients together.
   [[nodiscard]] bool publish(const PoseSnapshot& snapshot, EntityChanges changes);
-  /// A complete message: the latest of each type counts, and is sent to late joiners.
+  /// A complete message: the latest of each type counts, and is sent to late joiners. client: to this one alone, until
+  /// the next message of the type to all.
   template <class Message>
-  [[nodiscard]] bool set(const Message& message);
+  [[nodiscard]] bool set(const Message& message, std::uint32_t client = 0);
   /// Kept: also sent to clients that join later, until it is removed or replaced by another one with the same title.
   [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
                             std::string_view hint, bool is_kept);
@@ -118,7 +119,7 @@ class Hub {
   /// The same for the places of users.
   void tell_people();
   protocol::People all_people() const;
-  [[nodiscard]] bool set_latest(std::string key, Frame frame);
+  [[nodiscard]] bool set_latest(std::string key, Frame frame, std::uint32_t client);
   void push_input(InputEvent event);
   void tell(std::uint32_t client, const protocol::Notice& notice);
   /// Tells a viewer that it can only watch.
@@ -175,9 +176,9 @@ class Hub {
 };
 
 template <class Message>
-bool Hub::set(const Message& message) {
+bool Hub::set(const Message& message, std::uint32_t client) {
   return set_latest(std::to_string(static_cast<int>(Message::message_type)),
-                    std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)));
+                    std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)), client);
 }
 
 }  // namespace iota::net

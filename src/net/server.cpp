@@ -301,7 +301,9 @@ void Room::publish(const PoseSnapshot& snapshot, EntityChanges changes) {
   deliver_if(hub_->publish(snapshot, std::move(changes)));
 }
 
-void Room::set(const protocol::WorldSettings& settings) { deliver_if(hub_->set(settings)); }
+void Room::set(const protocol::WorldSettings& settings, std::uint32_t client) {
+  deliver_if(hub_->set(settings, client));
+}
 void Room::set(const protocol::WorldState& state) { deliver_if(hub_->set(state)); }
 void Room::set(const protocol::Actions& actions) { deliver_if(hub_->set(actions)); }
 void Room::set(const protocol::Listens& listens) { deliver_if(hub_->set(listens)); }

@@ -126,8 +126,8 @@ class Room {
   /// socket has room, so slow ones skip some. A body at a place that is not finite keeps its last pose on the page.
   void publish(const PoseSnapshot& snapshot, EntityChanges changes = {});
   /// For present and later clients. Throw std::length_error above the protocol's limits and std::invalid_argument for
-  /// text that is not UTF-8.
-  void set(const protocol::WorldSettings& settings);
+  /// text that is not UTF-8. client: for this one alone, until the next settings for all (client 0).
+  void set(const protocol::WorldSettings& settings, std::uint32_t client = 0);
   void set(const protocol::WorldState& state);
   void set(const protocol::Actions& actions);
   void set(const protocol::Listens& listens);

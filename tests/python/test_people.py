@@ -46,6 +46,32 @@ def test_a_pulse_is_for_one_client_and_its_hand(run_world: Runner) -> None:
             mine.pulse(strength=2)
 
 
+def test_a_camera_is_of_one_client_until_it_is_given_back(run_world: Runner) -> None:
+    world = iota.World(iota.System(), camera=iota.Camera((0, 1, 4), (0, 1, 0)))
+    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+        mine = page.wait_for(lambda: [client for client in world.clients if client.id == page.id])[0]
+
+        def is_at(who: PageClient, position: tuple[float, float, float]) -> bool:
+            return who.last["world_settings"]["camera_position"] == position
+
+        world.call(lambda: setattr(mine, "camera", iota.Camera((0, 8, 1), (0, 0, 0))))
+        page.wait_for(lambda: is_at(page, (0, 8, 1)))
+        assert is_at(other, (0, 1, 4))
+        world.call(lambda: setattr(world, "camera", iota.Camera((3, 1, 0), (0, 1, 0))))
+        other.wait_for(lambda: is_at(other, (3, 1, 0)))
+        page.wait_for(lambda: is_at(page, (0, 8, 1)))
+        world.call(world.reset)
+        other.wait_for(lambda: is_at(other, (0, 1, 4)))
+        page.wait_for(lambda: is_at(page, (0, 8, 1)))
+        with PageClient(world.url or "") as late:
+            late.wait_for(lambda: "world_settings" in late.last)
+            assert is_at(late, (0, 1, 4))
+        world.call(lambda: setattr(mine, "camera", None))
+        page.wait_for(lambda: is_at(page, (0, 1, 4)))
+        with pytest.raises(TypeError, match="camera must be a Camera"):
+            mine.camera = (1, 2, 3)  # type: ignore[assignment]
+
+
 def test_users_see_where_the_others_are(run_world: Runner) -> None:
     world = iota.World(iota.System())
     stance = {"head": (0.5, 1.5, 2.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": 1.0, "hands": (1.0, 2.0, 3.0)}

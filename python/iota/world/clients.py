@@ -11,9 +11,11 @@ from typing import Any, Literal
 from iota._core import Body, Grip, InputEvent, System
 from iota.saving import replacing
 from iota.simulator import SimulatedGrip
+from iota.world.scene import Camera, camera_or_none
 
 TakePicture = Callable[[int, float], bytes]  # client, time limit in s
 SendPulse = Callable[[int, str, float, float], None]  # client, hand, strength, s
+SendCamera = Callable[[int, Camera | None], None]
 LONGEST_PULSE = 5.0  # s
 
 
@@ -44,6 +46,20 @@ class Client:
     holds: dict[int, Hold] = field(default_factory=dict)
     take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
     send_pulse: SendPulse | None = field(default=None, repr=False, compare=False)
+    send_camera: SendCamera | None = field(default=None, repr=False, compare=False)
+    _camera: Camera | None = field(default=None, init=False, repr=False, compare=False)
+
+    @property
+    def camera(self) -> Camera | None:
+        """The view of this page alone, which moves there when another one is assigned; None: that of the world, see
+        `World.camera`. A reset of the world does not change it."""
+        return self._camera
+
+    @camera.setter
+    def camera(self, camera: Camera | None) -> None:
+        self._camera = camera_or_none(camera)
+        if self.send_camera is not None:
+            self.send_camera(self.id, camera)
 
     def pulse(
         self, hand: Literal["left", "right", "both"] = "both", strength: float = 0.5, seconds: float = 0.05
@@ -92,12 +108,17 @@ class Clients:
         self.by_id: dict[int, Client] = {}
         self.take_picture: TakePicture | None = None
         self.send_pulse: SendPulse | None = None
+        self.send_camera: SendCamera | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
         """Handles an event of kind join, leave, select, profile or grab_*. body: of the event, if any."""
         if event.kind == "join":
             self.by_id[event.client] = Client(
-                event.client, event.name, take_picture=self.take_picture, send_pulse=self.send_pulse
+                event.client,
+                event.name,
+                take_picture=self.take_picture,
+                send_pulse=self.send_pulse,
+                send_camera=self.send_camera,
             )
             return
         client = self.by_id.get(event.client)

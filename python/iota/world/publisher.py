@@ -12,6 +12,7 @@ from typing import Any
 from iota._core import InputEvent, Room, Vec3
 from iota.world.client_modules import page_with
 from iota.world.lan import Lan, announcement
+from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
@@ -30,7 +31,7 @@ class Publisher:
         self.url = server.url if is_alone else server.url_of(room.world)
         self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
-        state.clients.send_pulse = room.pulse
+        state.clients.send_pulse, state.clients.send_camera = room.pulse, self._tell_camera
         state.things.effect = room.effect
         state.scene.tell_anew()
         state.things.tell_anew()
@@ -65,7 +66,7 @@ class Publisher:
 
     def close(self) -> None:
         self._state.notices.show = self._state.notices.forget = None
-        self._state.clients.send_pulse = None
+        self._state.clients.send_pulse = self._state.clients.send_camera = None
         self._state.things.effect = None
         self.room.close(self._state.system)
         if self._is_alone:
@@ -99,15 +100,18 @@ class Publisher:
     def _tell_settings(self) -> None:
         state = self._state
         looks = state.styles
-        self._tell_if_new(
+        is_new = self._tell_if_new(
             "set_settings",
             title=state.title,
             looks=looks,
             look=state.style or (looks[0] if looks else ""),
-            camera=None if state.camera is None else (Vec3(*state.camera.position), Vec3(*state.camera.target)),
+            camera=places_of(state.camera),
             ground=state.ground,
             modules=self._modules,
         )
+        for client in state.clients.by_id.values() if is_new else ():
+            if client.camera is not None:
+                self._tell_camera(client.id, client.camera)
         listeners = state.listeners
         clicks, hovers, moves = (listeners.has(kind) for kind in ("click", "hover", "pointer"))
         self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, moves=moves, keys=list(listeners.keys))
@@ -116,9 +120,23 @@ class Publisher:
         for texture in state.scene.textures():
             state.things.images.use(texture.name, texture)
 
-    def _tell_if_new(self, setter: str, **values: Any) -> None:
-        """Pages make their buttons anew at each message: a script that changes how things are drawn would take them away
-        under the mouse."""
-        if self._told.get(setter) != values:
-            self._told[setter] = values
-            getattr(self.room, setter)(**values)
+    def _tell_camera(self, client: int, camera: Camera | None) -> None:
+        """The settings of all with a client's own camera; None: with that of all."""
+        told = self._told.get("set_settings")
+        if told is not None:
+            own = told if camera is None else told | {"camera": places_of(camera)}
+            self.room.set_settings(**own, client=client)
+
+    def _tell_if_new(self, setter: str, **values: Any) -> bool:
+        """Whether they are new. Pages make their buttons anew at each message: a script that changes how things are drawn
+        would take them away under the mouse."""
+        if self._told.get(setter) == values:
+            return False
+        self._told[setter] = values
+        getattr(self.room, setter)(**values)
+        return True
+
+
+def places_of(camera: Camera | None) -> tuple[Vec3, Vec3] | None:
+    """Of the camera and of its target."""
+    return None if camera is None else (Vec3(*camera.position), Vec3(*camera.target))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus, Vec3
+from iota.arguments import SHORT
 from iota.looks import Look, Looks, color_number
 from iota.simulator import SimulatedBody
 from iota.textures import Texture
@@ -29,6 +30,13 @@ class Camera:
                 raise type(error)(f"{name}: {error}") from None
         if self.position == self.target:
             raise ValueError(f"a camera needs a target elsewhere than its position, not {self.position} twice")
+
+
+def camera_or_none(given: Any) -> Camera | None:
+    """Raises TypeError for anything else."""
+    if not (given is None or isinstance(given, Camera)):
+        raise TypeError(f"camera must be a Camera, as in iota.Camera((3, 2, 3), (0, 1, 0)), not {SHORT.repr(given)}")
+    return given
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,7 @@ from iota.world.interacting import Interacting
 from iota.world.lan import Lan
 from iota.world.publisher import Publisher
 from iota.world.recording import LiveRecording
-from iota.world.scene import Camera, Static
+from iota.world.scene import Camera, Static, camera_or_none
 from iota.world.server import Server
 from iota.world.skins import Skin
 from iota.world.state import TIES, State
@@ -164,11 +164,7 @@ class World(Interacting, Asking):
 
     @camera.setter
     def camera(self, camera: Camera | None) -> None:
-        if not (camera is None or isinstance(camera, Camera)):
-            raise TypeError(
-                f"camera must be a Camera, as in iota.Camera((3, 2, 3), (0, 1, 0)), not {SHORT.repr(camera)}"
-            )
-        self._state.camera = camera
+        self._state.camera = camera_or_none(camera)
         self._state.is_changed = True
 
     @property

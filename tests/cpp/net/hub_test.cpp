@@ -133,6 +133,22 @@ TEST_F(HubTest, sends_a_pulse_to_one_client) {
   EXPECT_TRUE(two.all<protocol::Pulse>().empty());
 }
 
+TEST_F(HubTest, sends_settings_to_one_client_and_late_joiners_get_those_of_all) {
+  Link first, second, late;
+  const std::uint32_t other = join(first), client = join(second);
+  (void)hub.set(protocol::WorldSettings{.title = "of all"});
+  (void)hub.set(protocol::WorldSettings{.title = "of one"}, client);
+  (void)hub.set(protocol::WorldSettings{.title = "of nobody"}, 77U);
+  hub.deliver();
+  hub.leave(other);  // there is room for two
+  join(late);
+  EXPECT_EQ(second.all<protocol::WorldSettings>().back().title, "of one");
+  for (const Link* link : {&first, &late}) {
+    ASSERT_EQ(link->all<protocol::WorldSettings>().size(), 1U);
+    EXPECT_EQ(link->all<protocol::WorldSettings>()[0].title, "of all");
+  }
+}
+
 TEST_F(HubTest, tells_all_where_users_are_once_a_frame) {
   Link one, two;
   const std::uint32_t first = join(one);
