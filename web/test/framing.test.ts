@@ -4,7 +4,8 @@ import { afterEach, describe, expect, it, vi } from "vitest";
 import { Navigation } from "../src/navigate/navigation.ts";
 import { Framing } from "../src/page/framing.ts";
 import type { Viewer } from "../src/page/viewer.ts";
-import { addOutermost, fitView, shareOutside, standBack, viewAxes, type Frame } from "../src/navigate/framing.ts";
+import type { LinkState } from "../src/net/connection.ts";
+import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
 import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
 
@@ -143,37 +144,50 @@ describe("another scene on the same page", () => {
     test.poses([body(0, first), body(1, second)]);
   }
 
-  it.each([["of another title", "other", "connected"], ["of another server, with the same title", "one", "lost"]] as const)("%s is framed as it would be alone, though the user has moved the camera before", (_, title, link) => {
+  type Scene = readonly [title: string, radius: number, places: readonly [number, number]];
+  const camera = new PerspectiveCamera(42, 16 / 9);
+
+  /** The last one's view on a page to which scenes come one after the other, and the view in which the user left the one before. */
+  function show(link: LinkState, ...scenes: readonly Scene[]): { view: FittedView; left: FittedView } {
     vi.stubGlobal("innerWidth", 1280);
     vi.stubGlobal("innerHeight", 720);
-    const camera = new PerspectiveCamera(42, 16 / 9);
-    const seen = (...scenes: readonly (readonly [string, number, readonly [number, number]])[]) => {
-      const test = new TestWorld();
-      const navigation = new Navigation(camera);
-      let size = 1;
-      const viewer = {
-        camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
-        renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
-      };
-      const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
-      for (const scene of scenes) {
-        join(test, framing, ...scene);
-        for (let frame = 0; frame < 100; frame++) {
-          framing.update(1 / 30);
-          navigation.update(1 / 30);
-        }
-        if (scene === scenes.at(-1)) break;
-        navigation.orbit(200, 30);
-        framing.link(link);
-      }
-      camera.updateMatrixWorld();
-      return [5, 0, 0, ...navigation.goal.pivot, navigation.goal.distance];
+    const test = new TestWorld();
+    const navigation = new Navigation(camera);
+    let size = 1;
+    const viewer = {
+      camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
+      renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
     };
+    const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+    let left = navigation.goal;
+    for (const scene of scenes) {
+      join(test, framing, ...scene);
+      for (let frame = 0; frame < 100; frame++) {
+        framing.update(1 / 30);
+        navigation.update(1 / 30);
+      }
+      if (scene === scenes.at(-1)) break;
+      navigation.orbit(200, 30);
+      left = navigation.goal;
+      framing.link(link);
+    }
+    camera.updateMatrixWorld();
+    return { view: navigation.goal, left };
+  }
+
+  it.each([["of another title", "other", "connected"], ["of another server, with the same title", "one", "lost"]] as const)("%s is framed as it would be alone, though the user has moved the camera before", (_, title, link) => {
     const [small, large] = [["one", 0.02, [4.9, 5.1]], [title, 0.5, [0, 10]]] as const;
-    const alone = seen(large);
-    expect(seen(small, large)).toEqual(alone);
+    const { pivot, distance } = show(link, large).view;
+    const { view } = show(link, small, large);
+    expect(view.pivot).toEqual(pivot);
+    expect(view.distance).toBe(distance);
     const corner = new Vector3(10.5, 0, 0).project(camera);
     expect(Math.abs(corner.x), "of the half width of the window").toBeGreaterThan(0.6);
     expect(Math.abs(corner.x)).toBeLessThan(1);
+  });
+
+  it("of a script that was changed a little and began again is seen as the user left it", () => {
+    const { view, left } = show("lost", ["one", 0.5, [0, 10]], ["one", 0.6, [1, 9]]);
+    expect(view).toEqual(left);
   });
 });
