@@ -196,6 +196,15 @@ describe("the script hears", () => {
     await told('{"key": "k"}');
   });
 
+  it("of a key that was the page's, and the help says so", async () => {
+    await tab.page.keyboard.press("?");
+    const help = tab.page.locator("#help[open]");
+    await expect.poll(() => help.textContent()).toContain("i is this world's key here");
+    expect(await help.locator("kbd").allTextContents()).not.toContain("i");
+    await tab.page.keyboard.press("Escape");
+    await help.waitFor({ state: "detached" });
+  });
+
   it("of its keys while a slider, a check box or a button has the focus, but not of what is written into a text", async () => {
     const count = () => server.output.split('{"key": "k"}').length - 1;
     const panel = tab.page.locator("#panel");

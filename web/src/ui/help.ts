@@ -69,8 +69,8 @@ function displaced(commands: Commands, taken: (key: string) => boolean): (readon
     ] as const);
 }
 
-/** Fills and opens the dialog. */
-export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands): void {
+/** Fills and opens the dialog. heard: keys to which the script listens without an action. */
+export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands, heard: readonly string[]): void {
   dialog.replaceChildren();
   const header = make("header");
   header.append(make("h1", "", title));
@@ -86,7 +86,7 @@ export function openHelp(dialog: HTMLDialogElement, title: string, commands: Com
   ]));
   if (matchMedia("(pointer: coarse)").matches) addSection(columns, "Touch", touch);
   if (matchMedia("(any-hover: hover)").matches) addSection(columns, "Mouse", mouse);
-  const taken = (key: string) => commands.scriptOfKey(key) !== undefined;
+  const taken = (key: string) => heard.includes(key) || commands.scriptOfKey(key) !== undefined;
   const keyboard = matchMedia("(any-hover: hover)").matches;
   if (keyboard) addSection(columns, "Keys", [
     ...rowsOf(commands.own.filter((entry) => entry.offered?.() !== false), taken),

@@ -94,7 +94,8 @@ export class Overlay implements PageListener, FramePart {
 
   openHelp(): void {
     void import("./help.ts").then(({ openHelp }) => {
-      if (!this.help_.open) openHelp(this.help_, this.page_.world.settings.title || "Iota", this.page_.commands);
+      const { world, commands } = this.page_;
+      if (!this.help_.open) openHelp(this.help_, world.settings.title || "Iota", commands, world.listens.keys);
     });
   }
 
