@@ -5,8 +5,7 @@
 #include <optional>
 #include <string>
 
-/// The promises of motion, on random scenes: trees of rigid bodies on hinges, with springs, in all modes, with lengths and
-/// masses over decades. All is measured from outside, from places and velocities of particles and the masses that were given.
+/// The promises of motion, on random scenes (`MeasuredScene`), in all modes. All is measured from outside.
 namespace iota::scenes {
 
 enum class Promise : std::uint8_t {

@@ -31,7 +31,8 @@ six decades. A scene fails if it crashes, ends with a non-finite number or an in
 gap as solved, or violates the energy balance. A failing scene is reduced to the shortest script that still fails, and
 printed with its seed and as calls; scenes that once failed are kept in `tests/cpp/soak/scenes`.
 10 000 more scenes of each promise (energy, velocities, momenta, forces, conflicts, order of arguments; `scenes/promises.h`)
-are measured from outside, from places and velocities alone, with lengths and masses over six decades; 400 are tests.
+are measured from outside, from places and velocities alone, on trees and closed rings of bodies, nets and hinged boxes, with
+lengths and masses over six decades; 400 are tests.
 `make hostile` restores and replays damaged snapshots and recordings, whose checksums are right, under the address sanitizer: each
 is refused and changes nothing, or makes a valid world. 1000 and 20 000 of them are tests.
 """
