@@ -168,6 +168,46 @@ TEST(Scale, of_masses_over_twelve_decades_leaves_joints_closed) {
 }
 
 // Positions are doubles: at 1e7 m they are 2e-9 m apart.
+// A link that is a hundred thousandth of its neighbors moves like a ball of its mass in their joint.
+TEST(Scale, of_lengths_over_five_decades_lets_a_tiny_link_move_like_a_ball) {
+  constexpr int links = 20, tiny_at = 10;
+  constexpr double length = 0.1, mass = 0.01, tiny = 1e-6;
+  for (const IntegrationMode mode : modes) {
+    std::vector<Vec3> ends;
+    for (const bool is_ball : {false, true}) {
+      System system({.mode = mode});
+      double at = 0;
+      ParticleId before, tiny_ends[2];
+      for (int i = 0; i < links; ++i) {
+        const BodyId body = system.bodies().create();
+        if (is_ball && i == tiny_at) {
+          (void)system.edits().combine(before, system.particles().create(body, {at, 0, 0}, mass));
+          continue;
+        }
+        const ParticleId upper = system.particles().create(body, {at, 0, 0}, mass / 2);
+        at += i == tiny_at ? tiny : length;
+        const ParticleId lower = system.particles().create(body, {at, 0, 0}, mass / 2);
+        if (i > 0)
+          (void)system.edits().combine(before, upper);
+        else
+          system.particles().nail(upper);
+        if (i == tiny_at) tiny_ends[0] = upper, tiny_ends[1] = lower;
+        before = lower;
+      }
+      for (int step = 0; step < 30; ++step) {
+        const StepReport report = system.step(1.0 / 60);
+        EXPECT_EQ(report.energy.made, 0) << step;
+        EXPECT_EQ(report.unconverged, 0) << step;
+      }
+      ends.push_back(system.particles().position(before));
+      if (is_ball) continue;
+      EXPECT_NEAR(norm(system.particles().position(tiny_ends[1]) - system.particles().position(tiny_ends[0])) / tiny, 1,
+                  1e-3);
+    }
+    EXPECT_LT(norm(ends[1] - ends[0]), 1e-3);  // energy-keeping steps of so small a link fall back to robust ones
+  }
+}
+
 TEST(Scale, of_places_to_ten_million_meters_lets_a_chain_swing_as_at_home) {
   for (const IntegrationMode mode : modes) {
     std::vector<Vec3> ends;
