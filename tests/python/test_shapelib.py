@@ -280,11 +280,13 @@ def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("a.xyz", b"\0\1\2"), "not a text file")
     fails(write("b.pdb", "HEADER\nEND\n"), "no ATOM")
     fails(write("c.pdb", ETHANOL_PDB.replace("0.463", "xxxxx")), "line 3", "x must be a number")
+    fails(write("v.pdb", ETHANOL_PDB.replace("ATOM      2", "ATOM      é")), "RDKit cannot read it")
     fails(write("d.pdb", ETHANOL_PDB[:150]), "line 3", "ends before its coordinates")
     fails(write("e.pdb", ETHANOL_PDB.replace("           O\nHET", "          Qq\nHET")), "line 4", "not an element")
     fails(write("f.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\n"), "line 4", "2 of 3 atoms")
     fails(write("g.xyz", WATER_XYZ.replace("H 0.96", "Zz 0.96")), "line 4", "'Zz' is not an element")
     fails(write("h.xyz", WATER_XYZ.replace("0.96", "nan")), "line 4", "finite")
+    fails(write("w.xyz", WATER_XYZ.replace("0.96", "9" * 5000)), "line 4", f"finite, not {'9' * 40}")
     fails(write("i.xyz", WATER_XYZ.replace("0.96", "0.01")), "O1 and H2 are 0.01 angstrom apart")
     fails(write("j.xyz", "1000000\n\n"), "more than 100000 atoms")
     fails(write("k.mol", CARBON_MONOXIDE_MOL.replace("  1  2  3", "  1  7  3")), "line 7", "atom 7")
@@ -580,6 +582,7 @@ def test_a_ply_file_with_a_damaged_header_is_refused_with_its_line(write: Write)
     fails(write("a.ply", PLY.replace("vertex 4\nproperty", "vertex 4property")), "line 3", "a name and a number")
     fails(write("b.ply", PLY.replace("float z\nelement", "float z\nproperty\nelement")), "line 7", "a type and a name")
     fails(write("c.ply", PLY.replace("3 1 2 3", "\xb2 1 2").encode("latin-1")), "c.ply")
+    fails(write("d.ply", PLY.replace("face 4", "face -1")), "line 7", "the number of face is -1")
 
 
 @pytest.mark.parametrize("order", ["little", "big"])
@@ -857,6 +860,13 @@ def test_damaged_mechanisms_are_refused_with_file_and_line(write: Write) -> None
     fails(write("h.urdf", PENDULUM_URDF.replace("<axis xyz=", "<axis xyz='0 0'")), "not XML")
     fails(write("i.urdf", PENDULUM_URDF.replace('xyz="1 0 0"', 'xyz="0 0 0"')), "line 9", "axis")
     fails(write("j.xml", "<html/>"), "neither <robot>")
+    wide = PENDULUM_URDF.replace('ixx="0.3" iyy="0.2" izz="0.1"', 'ixx="1e30" iyy="1e30" izz="1e30"')
+    fails(write("q.urdf", wide), "line 4", "the inertia of the link arm fits no body")
+    wide = MJCF.replace(
+        '<body name="lower" pos="0.6 0 0">',
+        '<body name="lower"><inertial mass="1" pos="0 0 0" diaginertia="1e30 1e30 1e30"/>',
+    )
+    fails(write("r.mjcf", wide), "no body can have")
     fails(write("k.urdf", "<robot>" * 300 + "</robot>" * 300), "deep")
     fails(write("l.mjcf", "<mujoco>\n<oops/></mujoco>"), "line 2", "MuJoCo cannot read it")
     fails(write("m.urdf", PENDULUM_URDF.replace('radius="0.05"', 'radius="-1"')), "line 5", "radius")

@@ -72,7 +72,7 @@ def number(text: str, path: PathLike, line: int, what: str) -> float:
     except ValueError:
         raise FileError(path, f"{what} must be a number, not {text.strip()[:40]!r}", line) from None
     if not abs(value) < 1e300:
-        raise FileError(path, f"{what} must be finite, not {text.strip()}", line)
+        raise FileError(path, f"{what} must be finite, not {text.strip()[:40]}", line)
     return value
 
 

@@ -50,7 +50,12 @@ def read_mjcf(path: PathLike) -> Mechanism:
     finally:
         mujoco.set_mju_user_warning(None)
     reader = _Reader(model, state, root.text("model", "") or Path(path).name.split(".")[0])
-    reader.read()
+    try:
+        reader.read()
+    except FileError:
+        raise
+    except ValueError as error:
+        raise FileError(path, f"has a size or an inertia that no body can have: {error}") from None
     reader.mechanism.notes += [f"MuJoCo warns: {text}" for text in warnings]
     return reader.mechanism
 

@@ -138,7 +138,10 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
     if not names:
         raise FileError(path, "has no ATOM or HETATM lines: it is not a PDB file, or is truncated")
     with complaints() as said:
-        found = rdkit().MolFromPDBBlock("\n".join(kept), sanitize=False, removeHs=False, flavor=0)
+        try:
+            found = rdkit().MolFromPDBBlock("\n".join(kept), sanitize=False, removeHs=False, flavor=0)
+        except SystemError:  # its message cuts a letter that is not ASCII in two
+            raise FileError(path, "RDKit cannot read it: there are letters where numbers should be") from None
     if found is None:
         raise FileError(path, f"RDKit cannot read it{_reason(said)}")
     if found.GetNumAtoms() != len(names):

@@ -252,6 +252,8 @@ def _read_ply(path: PathLike) -> Surface:
             if len(words) != 3:
                 raise FileError(path, "an element has a name and a number", at)
             counts[words[1]] = whole(words[2], path, at, f"the number of {words[1]}")
+            if counts[words[1]] < 0:
+                raise FileError(path, f"the number of {words[1]} is {counts[words[1]]}", at)
             _check_count(counts[words[1]], words[1], path, at)
     if not counts.get("face"):
         raise FileError(path, "has points without faces")

@@ -148,7 +148,10 @@ def _link(
         if element.first("inertial") is not None:
             notes.append(f"the link {name} has no mass; it is given {LIGHTEST} kg")
         mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
-    solid = solid_of(mass, inertia, at)
+    try:
+        solid = solid_of(mass, inertia, at)
+    except ValueError as error:
+        raise (inertial or element).wrong(f"the inertia of the link {name} fits no body: {error}") from None
     if solid.is_changed:
         notes.append(f"the inertia of the link {name} is impossible for a rigid body; the nearest possible one is used")
     link = Link(name, frame, solid)
