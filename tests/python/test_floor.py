@@ -109,6 +109,48 @@ def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -
     assert heights.max() < 0.1
 
 
+FEET = [(0.3 * math.cos(turn), 0, 0.3 * math.sin(turn)) for turn in (0, 2.1, 4.2)]
+UNEQUAL = {
+    "a dumbbell with a light end up": ([(0, 0, 0), (0.05, 0.5, 0)], [1, 1e-3]),
+    "a dumbbell with a heavy end up": ([(0, 0, 0), (0.05, 0.5, 0)], [1, 1e3]),
+    "a heavy ball on three feet": ([(0, 0.5, 0), *FEET], [1, 1e-3, 1e-3, 1e-3]),
+    "a very heavy ball on three feet": ([(0, 0.5, 0), *FEET], [1e3, 1, 1, 1]),
+}
+
+
+@pytest.mark.parametrize("per_second", [60, 240, 960])
+@pytest.mark.parametrize("name", UNEQUAL)
+def test_a_rigid_body_of_unequal_masses_falls_and_rests_on_its_points(name: str, per_second: int) -> None:
+    """Its ends or feet touch the ground and nothing is below; each is pushed as hard as the whole body presses there."""
+    places, masses = UNEQUAL[name]
+    system, dt = iota.System(), 1 / per_second
+    body = system.body()
+    for (x, y, z), mass in zip(places, masses, strict=True):
+        body.particle((x, y + 0.1, z), mass)
+    floor, start = Floor(system, 0.0), system.energy.kinetic + system.energy.potential
+    for _ in range(round(3 / dt)):
+        floor.push(dt)
+        report = system.step(dt)
+        energy = report.energy.kinetic + report.energy.potential
+        assert energy < 1.001 * start  # a turn in a step is calculated as if it were small
+    heights = np.sort(system.positions[:, 1])
+    assert np.abs(heights[: min(len(places), 3)]).max() < 0.005
+    assert len(places) < 4 or heights[3] == pytest.approx(0.5, abs=0.005)
+
+
+def test_a_body_of_many_particles_lies_on_the_outermost_ones() -> None:
+    """A plate of 100 particles, one of them as heavy as the rest together."""
+    system = iota.System()
+    plate = system.body()
+    for n in range(100):
+        plate.particle((0.1 * (n % 10), 0.3, 0.1 * (n // 10)), 99 if n == 34 else 1)
+    floor = Floor(system, 0.0)
+    for _ in range(360):
+        floor.push(1 / 120)
+        system.step(1 / 120)
+    assert np.abs(system.positions[:, 1]).max() < 0.002
+
+
 def test_the_ground_is_under_all_bodies_and_what_hangs_from_them() -> None:
     def ground_of(make: Callable[[iota.System], None]) -> float | None:
         system = iota.System()
@@ -203,7 +245,7 @@ def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
         fresh._take_structure(system.positions)
         kept, new = floor._touches, fresh._touches
         assert kept is not None and new is not None and kept.ranges == new.ranges
-        for name in ("rows", "masses", "radius", "is_solid", "is_joined", "carriers"):
+        for name in ("rows", "mass_rows", "masses", "mass_bodies", "radius", "is_solid", "is_joined", "bodies"):
             np.testing.assert_array_equal(getattr(kept, name), getattr(new, name), err_msg=name)
         np.testing.assert_allclose(kept.weights, new.weights, atol=1e-6)
         assert floor._reach == pytest.approx(fresh._reach, rel=1e-6)

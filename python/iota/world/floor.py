@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A level floor that supports particles and bodies by forces that are calculated once a step.
 
-A body touches the floor at a list of spheres fixed on it: its particles, or the corners, rims and ends of its shape.
+A body touches the floor at a list of spheres fixed on it: its particles, or the corners, rims and ends of its shape; of
+more than 26 particles those that are farthest in as many directions. A body that is a thousand times heavier than the
+particles it stands on comes to rest within 1 % of its size.
 Each step calculates the impulses that stop those points at the floor, with dry friction, as if only gravity acted on
 their body (sequential impulses: E. Catto, Iterative Dynamics with Temporal Coherence, GDC 2005). Other loads of the
 body appear as a speed of a resting point; `load` estimates them step by step. A floor that is a row of the solver would
@@ -29,24 +31,25 @@ LOAD_GAIN = 0.3  # share of the missing force added in a step
 MOST_LOAD = 100.0  # times the weight of the body
 MOST_FORCE = 0.99e9  # N, on a particle: the engine's limit
 ROUNDS = 4  # over the points of a body
+SINKING = 0.02  # share of the speed of a step of free fall that may remain
 ROUND_POINTS = 8  # on a rim
 DIRECTIONS = 26  # for the support points of a rounded body or a mesh
 SAME = 1e-6  # relative error up to which four particles have kept their places on a body
 CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])  # of a box
 UNITS = (Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1))
+ALONE = np.array([[1.0, 0, 0, 0]])  # weights of a particle
 NO_POINTS = (np.empty((0, 4)), np.empty(0))  # weights and radii
 
 
 @dataclass
 class Carrier:
-    """A solid with its points, or a particle: what moves as one. Up to four particles carry it: where each of its points is, and
-    what it is pushed with, is their weighted sum."""
+    """Points of a body: of its shapes, or a particle. Up to four particles carry them: where each point is, and what it is
+    pushed with, is their weighted sum."""
 
     body: Body
     number: int  # among those of the body; a particle's slot
     slots: list[int]  # of its particles; four
     weights: Array  # (n, 4), of each point
-    masses: list[float]  # kg; four
     radii: Array  # (n,), m
     is_solid: bool  # four particles span space, so that a push on the surface turns the body
 
@@ -57,6 +60,8 @@ class Known:
 
     particles: list[Particle]
     traits: list[float]  # masses, radii and the like
+    slots: list[int]  # of the particles that its mass is in
+    masses: list[float]  # of those, kg
     edges: Array  # squares of distances of the particles that carry its shapes, m2
     carriers: list[Carrier]
     reach: float  # largest distance of a point from its particles, m
@@ -73,7 +78,9 @@ class Impact:
 class Touches:
     """All points, as arrays with a row for each, and what is remembered of each."""
 
-    def __init__(self, carriers: list[Carrier], is_joined: list[bool], before: Touches | None) -> None:
+    def __init__(self, known: list[Known], is_joined: list[bool], before: Touches | None) -> None:
+        carriers = [carrier for body in known for carrier in body.carriers]
+        bodies = np.repeat(np.arange(len(known)), [len(body.carriers) for body in known])
         counts = [len(each.radii) for each in carriers]
         of = np.repeat(np.arange(len(carriers)), counts)
         starts = np.cumsum([0, *counts]).tolist()
@@ -81,14 +88,18 @@ class Touches:
             (each.body, each.number): (start, count)
             for each, start, count in zip(carriers, starts[:-1], counts, strict=True)
         }
-        self.carriers = of
+        self.bodies = bodies[of]
         self.slots = np.array([each.slots for each in carriers], np.intp).reshape(-1, 4)[of]
         self.rows = self.slots  # of `System.positions`
         self.weights = np.concatenate([np.empty((0, 4)), *(each.weights for each in carriers)])
-        self.masses = np.array([each.masses for each in carriers], float).reshape(-1, 4)[of]
         self.radius = np.concatenate([np.empty(0), *(each.radii for each in carriers)])
         self.is_solid = np.array([each.is_solid for each in carriers], bool)[of]
-        self.is_joined = np.array(is_joined, bool)[of]  # other bodies are hinged to its body
+        self.is_joined = np.array(is_joined, bool)[self.bodies]  # other bodies are hinged to its body
+        # Particles with a mass, body by body.
+        self.mass_slots = np.array([slot for body in known for slot in body.slots], np.intp)
+        self.mass_rows = self.mass_slots
+        self.masses = np.array([mass for body in known for mass in body.masses], float)
+        self.mass_bodies = np.repeat(np.arange(len(known)), [len(body.slots) for body in known])
         self.load = np.zeros(len(of))  # down, besides the weight of the body, N
         self.was_above = np.zeros(len(of), bool)
         self.is_touching = np.ones(len(of), bool)  # nothing that begins on the floor has fallen on it
@@ -168,7 +179,7 @@ class Floor:
         assert self._touches is not None
         if is_clear:
             self._touches.leave()
-        elif len(self._touches.carriers):
+        elif len(self._touches.bodies):
             self._push(self._touches, positions, velocities, gravity, dt)
 
     # --- forces ---------------------------------------------------------------------------------------------------
@@ -190,14 +201,13 @@ class Floor:
         if not near.size:
             return
         rows, heights = touches.rows[near], heights[near]
-        x, v, m = positions[rows], velocities[rows], touches.masses[near]
-        w = touches.weights[near]
+        x, v, w = positions[rows], velocities[rows], touches.weights[near]
+        is_solid = touches.is_solid[near]
         place = np.einsum("nij,ni->nj", x, w)
-        place[:, 1] -= touches.radius[near]
-        w = weights_at(x, w, place, touches.is_solid[near] & (touches.radius[near] > 0))
+        place[:, 1] -= np.where(is_solid, touches.radius[near], 0)  # a particle is pushed at its middle
+        w = weights_at(x, w, place, is_solid & (touches.radius[near] > 0))
 
-        _, first, of = np.unique(touches.carriers[near], return_index=True, return_inverse=True)
-        bodies = _Bodies(x[first], v[first], m[first])
+        bodies, of = _moving(touches, near, positions, velocities)
         ways = bodies.ways_to(place, of)
         speed = np.einsum("ni,ni->n", v[:, :, 1], w)
         resting = touches.is_joined[near] & (np.abs(speed) < 4 * gravity * dt)
@@ -216,24 +226,54 @@ class Floor:
         wanted[:, 1] = np.where(
             heights < 0, np.minimum(GIVEN_BACK * depth / dt, np.sqrt(0.2 * gravity * depth)), -heights / dt
         )
-        push = np.zeros((len(near), 3))  # N s
-        turns = list(_turns(of))
-        for _ in range(ROUNDS if len(turns) > 1 else 1):
-            for which in turns:
-                body = of[which]
-                lacking = wanted[which] - np.einsum("nij,nj->ni", ways.speed[which], motion[body])
-                before = push[which]
-                after = before + ways.felt[which] * lacking
-                after[:, 1] = np.maximum(after[:, 1], 0)
-                _into_cone(after, self._friction)
-                push[which] = after
-                motion[body] += np.einsum("nij,nj->ni", ways.gain[which], after - before)
+        push = self._push_of(bodies, ways, of, wanted, is_solid, SINKING * gravity * dt)
 
         pushes = np.zeros_like(positions)
         np.add.at(pushes, rows, w[:, :, None] * (push / dt)[:, None, :])
         pushes = np.clip(pushes, -MOST_FORCE, MOST_FORCE)
         for row in np.unique(rows):
             self._particles[row].apply_force(Vec3(*pushes[row]))
+
+    def _push_of(
+        self, bodies: _Bodies, ways: _Ways, of: Indices, wanted: Array, is_solid: Flags, small: float
+    ) -> Array:
+        """Impulses at places `of` bodies, N s, by which they get the `wanted` speeds up to a small one, m/s. Adds them to the
+        motion."""
+        motion, push = bodies.motion, np.zeros((len(of), 3))
+        turns = list(_turns(of))
+
+        def improve() -> None:
+            for _ in range(ROUNDS if len(turns) > 1 else 1):
+                change = 0.0
+                for which in turns:
+                    body = of[which]
+                    lacking = wanted[which] - np.einsum("nij,nj->ni", ways.speed[which], motion[body])
+                    before = push[which]
+                    after = before + ways.felt[which] * lacking
+                    after[:, 1] = np.maximum(after[:, 1], 0)
+                    _into_cone(after, self._friction)
+                    push[which] = after
+                    motion[body] += np.einsum("nij,nj->ni", ways.gain[which], after - before)
+                    change = max(change, float(np.abs((after - before) / ways.felt[which]).max()))
+                if change < 0.05 * small:
+                    return
+
+        improve()
+        if len(turns) > 1:
+            # A heavy body on light feet: a push on one foot turns the body more than it lifts it, and hundreds of rounds would
+            # be needed. The pushes that stop it are calculated at once. The particles of a shape are never so unequal.
+            lacking = wanted - np.einsum("nij,nj->ni", ways.speed, motion[of])
+            slow = np.zeros(len(motion), bool)
+            slow[of[(lacking[:, 1] > small) & ~is_solid]] = True
+            if slow.any():
+                which = np.flatnonzero(slow[of])
+                np.add.at(motion, of[which], -np.einsum("nij,nj->ni", ways.gain[which], push[which]))
+                unmet = wanted[which] - np.einsum("nij,nj->ni", ways.speed[which], motion[of[which]])
+                push[which] = _balanced(ways.speed[which] @ bodies.root[of[which]], of[which], unmet)
+                _into_cone(push, self._friction)
+                np.add.at(motion, of[which], np.einsum("nij,nj->ni", ways.gain[which], push[which]))
+                improve()
+        return push
 
     def _find_impact(self, touches: Touches, positions: Array, speeds: Array, gravity: float, dt: float) -> None:
         """speeds: downwards, of points that come to the floor in this step, others 0, m/s."""
@@ -257,6 +297,7 @@ class Floor:
             self._list(positions, rows)
         assert self._touches is not None
         self._touches.rows = rows[self._touches.slots]
+        self._touches.mass_rows = rows[self._touches.mass_slots]
 
     def _list(self, positions: Array, row_of: Indices) -> None:
         """Of bodies that are as they were, what is known is used again."""
@@ -265,16 +306,14 @@ class Floor:
         particles = [body.particles for body in bodies]
         traits = [self._traits(body, its) for body, its in zip(bodies, particles, strict=True)]
         kept = self._kept(bodies, particles, traits, positions, row_of)
-        carriers: list[Carrier] = []
         is_joined: list[bool] = []
         self._known, self._reach = {}, 0.0
         for body, its, numbers in zip(bodies, particles, traits, strict=True):
             known = kept.get(body) or self._describe(body, its, numbers, positions, row_of)
             self._known[body] = known
-            carriers += known.carriers
-            is_joined += [body.articulate.number in joined] * len(known.carriers)
+            is_joined.append(body.articulate.number in joined)
             self._reach = max(self._reach, known.reach)
-        self._touches = Touches(carriers, is_joined, self._touches)
+        self._touches = Touches(list(self._known.values()), is_joined, self._touches)
 
     def _kept(
         self,
@@ -292,7 +331,7 @@ class Floor:
         }
         solid = [body for body, known in same.items() if len(known.edges)]
         if solid:  # of those the script may have moved a particle
-            slots = np.array([same[body].carriers[0].slots for body in solid])
+            slots = np.array([same[body].slots[:4] for body in solid])
             before = np.array([same[body].edges for body in solid])
             off = np.abs(edges_of(positions[row_of[slots]]) - before).max(axis=1) > SAME * before.max(axis=1)
             for number in np.flatnonzero(off):
@@ -317,19 +356,29 @@ class Floor:
         weights, radii = _of_shapes(body, corners) if body.solids and len(slots) >= 4 else NO_POINTS
         if len(radii):
             reaches = radii + np.linalg.norm(weights @ corners - corners[0], axis=1)
-            carrier = Carrier(body, -1, slots[:4], weights, masses[:4], radii, True)
-            return Known(particles, traits, edges_of(corners[None])[0], [carrier], float(reaches.max()))
-        carriers: list[Carrier] = []
+            carrier = Carrier(body, -1, slots[:4], weights, radii, True)
+            edges = edges_of(corners[None])[0]
+            return Known(particles, traits, slots[:4], masses[:4], edges, [carrier], float(reaches.max()))
         thickness = self._thickness_of(body)
-        for particle, slot, mass in zip(particles, slots, masses, strict=True):
-            if mass <= 0:
-                continue
-            radius = particle.radius if particle.has_attributes and particle.radius > 0 else thickness
-            alone, its_mass = np.array([[1.0, 0, 0, 0]]), [mass, 0.0, 0.0, 0.0]
-            carriers.append(Carrier(body, slot, [slot] * 4, alone, its_mass, np.array([radius]), False))
-        reach = max((float(each.radii[0]) for each in carriers), default=0.0)
+        heavy = [n for n, mass in enumerate(masses) if mass > 0]
+        held, their_masses = [slots[n] for n in heavy], [masses[n] for n in heavy]
+        thick = np.array(
+            [p.radius if p.has_attributes and p.radius > 0 else thickness for p in (particles[n] for n in heavy)]
+        )
+        carriers = [
+            Carrier(body, held[n], [held[n]] * 4, ALONE, thick[n : n + 1], False)
+            for n in _outermost(positions[row_of[held]], thick)
+        ]
+        reach = float(thick.max(initial=0.0))
         is_flat = bool(body.solids) and len(slots) >= 4  # its traits do not have thickness and radii
-        return Known(particles, [] if is_flat else traits, np.empty(0), carriers, reach)
+        return Known(particles, [] if is_flat else traits, held, their_masses, np.empty(0), carriers, reach)
+
+
+def _outermost(places: Array, radii: Array) -> list[int]:
+    """Of a body of many particles, those that are farthest in some directions; otherwise all."""
+    if len(places) <= DIRECTIONS:
+        return list(range(len(places)))
+    return sorted(set(np.argmax(places @ _directions().T + radii[:, None], axis=0).tolist()))
 
 
 def edges_of(corners: Array) -> Array:
@@ -347,23 +396,43 @@ class _Ways:
     felt: Array  # (n, 3): effective mass along x, y or z, kg
 
 
-class _Bodies:
-    """Rigid bodies of up to four point masses each, x, v: (n, 4, 3), m: (n, 4), without other forces."""
+def _moving(touches: Touches, near: Indices, positions: Array, velocities: Array) -> tuple[_Bodies, Indices]:
+    """The bodies of the near points, and for each point which of them."""
+    numbers, of = np.unique(touches.bodies[near], return_inverse=True)
+    place = np.full(touches.bodies.max() + 1, -1)
+    place[numbers] = np.arange(len(numbers))
+    mass_of = place[touches.mass_bodies]
+    which = np.flatnonzero(mass_of >= 0)
+    rows = touches.mass_rows[which]
+    return _Bodies(positions[rows], velocities[rows], touches.masses[which], mass_of[which], len(numbers)), of
 
-    def __init__(self, x: Array, v: Array, m: Array) -> None:
-        self.mass = m.sum(axis=1)
-        self.center = np.einsum("nij,ni->nj", x, m) / self.mass[:, None]
-        velocity = np.einsum("nij,ni->nj", v, m) / self.mass[:, None]
-        arms = x - self.center[:, None, :]
-        inertia = np.einsum("ni,ni,jk->njk", m, (arms**2).sum(axis=2), np.eye(3))
-        inertia -= np.einsum("ni,nij,nik->njk", m, arms, arms)
+
+class _Bodies:
+    """Rigid bodies of point masses, x, v: (n, 3), m, of: (n,), without other forces."""
+
+    def __init__(self, x: Array, v: Array, m: Array, of: Indices, count: int) -> None:
+        self.mass = np.bincount(of, m, count)
+        self.center = _sums(x * m[:, None], of, count) / self.mass[:, None]
+        velocity = _sums(v * m[:, None], of, count) / self.mass[:, None]
+        arms = x - self.center[of]
+        inertia = _sums(m[:, None, None] * ((arms**2).sum(axis=1)[:, None, None] * np.eye(3)), of, count)
+        inertia -= _sums(m[:, None, None] * arms[:, :, None] * arms[:, None, :], of, count)
         size = np.trace(inertia, axis1=1, axis2=2)
         self._inverse = np.zeros_like(inertia)
         spread = size > 0
         # A rod has no inertia about its own axis, but no force has an arm about it either.
         self._inverse[spread] = np.linalg.inv(inertia[spread] + 1e-9 * size[spread, None, None] * np.eye(3))
-        momentum = np.einsum("nijk,nik,ni->nj", _crosses(arms), v - velocity[:, None, :], m)
+        momentum = _sums(np.cross(arms, v - velocity[of]) * m[:, None], of, count)
         self.motion = np.hstack([velocity, np.einsum("njk,nk->nj", self._inverse, momentum)])
+        self._spread = spread
+
+    @property
+    def root(self) -> Array:
+        """Of the inverse of mass and inertia: (n, 6, 6)."""
+        root = np.zeros((len(self.mass), 6, 6))
+        root[:, :3, :3] = np.eye(3) / np.sqrt(self.mass)[:, None, None]
+        root[self._spread, 3:, 3:] = np.linalg.cholesky(self._inverse[self._spread])
+        return root
 
     def ways_to(self, place: Array, of: Indices) -> _Ways:
         """place: (n, 3), m. of: the body of each."""
@@ -372,6 +441,31 @@ class _Bodies:
         speed = np.concatenate([unit, -cross], axis=2)
         gain = np.concatenate([unit / self.mass[of, None, None], self._inverse[of] @ cross], axis=1)
         return _Ways(speed, gain, 1 / np.einsum("nij,nji->ni", speed, gain))
+
+
+def _balanced(ways: Array, of: Indices, lacking: Array) -> Array:
+    """The smallest impulses at places, N s, that change their speeds by what is lacking, or as nearly so as rigid bodies can,
+    and pull at none. ways: (n, 3, 6), of a motion of bodies in which each number is scaled to the same energy."""
+    count = int(of.max()) + 1
+    pushed = np.ones(len(of), bool)
+    push = np.zeros((len(of), 3))
+    for _ in range(ROUNDS):  # a place that would be pulled at is left out
+        used = np.where(pushed[:, None, None], ways, 0)
+        pinv = np.linalg.pinv(_sums(np.einsum("nij,nik->njk", used, used), of, count), 1e-10, True)
+        change = _sums(np.einsum("nij,ni->nj", used, lacking), of, count)
+        push = np.einsum("nij,nj->ni", used, np.einsum("nij,njk,nk->ni", pinv, pinv, change)[of])
+        if (push[:, 1] >= 0).all():
+            break
+        pushed &= push[:, 1] > 0
+    push[push[:, 1] < 0] = 0
+    return push
+
+
+def _sums(values: Array, of: Indices, count: int) -> Array:
+    """Of each body: (n, ...) -> (count, ...)."""
+    out = np.zeros((count, *values.shape[1:]))
+    np.add.at(out, of, values)
+    return out
 
 
 def _crosses(arms: Array) -> Array:
