@@ -22,6 +22,7 @@ BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
 MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
 WAY = np.array([2.2, 0.5, 1.8])  # how far it goes from there, m
+ROOM = np.array([0.12, 0.14, 0.45])  # across, up and along: between two fish at the start, m
 # Of a fish: places along it, half its height and half its width there, m.
 BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
 
@@ -59,9 +60,7 @@ class School:
         random = np.random.default_rng(5)
         self._phase = random.uniform(0, 2 * math.pi, fish)
         shoal = iota.builder.Structure()
-        shoal.points.add(
-            leader(0) + random.normal(size=(fish, 3)) * [spread, 0.5 * spread, spread], MASS, (0, 0, CRUISE)
-        )
+        shoal.points.add(leader(0) + apart(random, fish, spread), MASS, (0, 0, CRUISE))
         shoal.group("shoal", range(fish))
         made = shoal.realize(world.system)
         self.fish, self.group = made.points, made.groups["shoal"]
@@ -77,6 +76,7 @@ class School:
         world.draw([fish.body for fish in self.fish], fish_looks())
         self._between = 2 * world.dt  # s, between two looks at the way
         self._forget()
+        self._bodies.orientations = self.headings()
         world.on_step(self._steer)
         world.on_reset(self._forget)
 
@@ -113,6 +113,18 @@ class School:
         x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
         z, w = cr * sp * cy - sr * cp * sy, cr * cp * cy - sr * sp * sy
         return np.stack([x, y, z, w], axis=1)
+
+
+def apart(random: np.random.Generator, fish: int, spread: float) -> Any:
+    """Places of fish that swim along z, dense in the middle, none in another one: (fish, 3)."""
+    places = np.empty((0, 3))
+    while len(places) < fish:
+        place = random.normal(size=3) * [spread, 0.5 * spread, spread]
+        if (np.linalg.norm((places - place) / ROOM, axis=1) > 1).all():
+            places = np.vstack([places, place])
+        else:
+            spread *= 1.0005  # a crowd needs more room
+    return places
 
 
 def fish_looks() -> list[looks.Look]:
