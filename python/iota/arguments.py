@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import ast
 import difflib
+import dis
 import functools
 import inspect
-import linecache
 import re
 import reprlib
 import sys
@@ -25,6 +25,7 @@ SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
 VECTOR = ("Sequence", "NDArray")  # types accepted as a Vec3
 LARGEST = 2**31
+RAISE = dis.opmap["RAISE_VARARGS"]  # the statement
 
 
 def of_type(value: Any, kind: type, name: str) -> Any:
@@ -279,8 +280,7 @@ def is_said(trace: TracebackType) -> bool:
     """Whether an error comes from a statement `raise`: then it is a sentence already, or the script's own."""
     while trace.tb_next is not None:
         trace = trace.tb_next
-    line = linecache.getline(trace.tb_frame.f_code.co_filename, trace.tb_lineno)
-    return line.lstrip().startswith("raise")
+    return trace.tb_frame.f_code.co_code[trace.tb_lasti] == RAISE
 
 
 def misfit(function: Callable[..., Any], name: str, given: Sequence[Any], named: Mapping[str, Any]) -> str | None:

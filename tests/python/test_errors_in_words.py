@@ -16,7 +16,7 @@ import pytest
 import sweep
 
 import iota
-from iota import _core, builder, looks
+from iota import _core, arguments, builder, looks
 from iota.world.callbacks import one_line
 from iota.world.world import ELSEWHERE
 
@@ -337,6 +337,16 @@ def test_an_error_of_the_scripts_own_function_is_left_as_it_is() -> None:
         world.call(lambda: mine(1))
     with pytest.raises(TypeError, match="missing 1 required"):
         world.call(lambda: mine())  # type: ignore[call-arg]
+
+
+def test_a_raised_error_is_told_from_one_of_python_where_there_is_no_source() -> None:
+    """As at a prompt."""
+    scope: dict[str, Callable[[], None]] = {}
+    exec("def said():\n    raise TypeError('mine')\ndef stumbles():\n    len(5)", scope)
+    for name in ("said", "stumbles"):
+        with pytest.raises(TypeError) as failed:
+            scope[name]()
+        assert arguments.is_said(failed.tb) == (name == "said")
 
 
 def test_a_class_derived_from_a_world_may_have_attributes_of_its_own() -> None:
