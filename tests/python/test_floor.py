@@ -128,7 +128,7 @@ def test_a_rigid_body_of_unequal_masses_falls_and_rests_on_its_points(name: str,
     for (x, y, z), mass in zip(places, masses, strict=True):
         body.particle((x, y + 0.1, z), mass)
     floor, start = Floor(system, 0.0), system.energy.kinetic + system.energy.potential
-    for _ in range(round(3 / dt)):
+    for _ in range(round(1.5 / dt)):
         floor.push(dt)
         report = system.step(dt)
         energy = report.energy.kinetic + report.energy.potential
