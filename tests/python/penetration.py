@@ -112,7 +112,13 @@ class Drawn:
         return found
 
     def _depth(self, a: Piece, b: Piece) -> float:
-        """Convex shapes overlap by the largest sum of a place's depths in both."""
+        """Convex shapes overlap by the largest sum of a place's depths in both; negative if they do not."""
+        small, large = sorted((a, b), key=lambda piece: piece.size)
+        low, high = small.bounds
+        reach = float(np.linalg.norm(high - low)) / 2
+        outside = -large.depth((small.place + small.turn @ ((low + high) / 2))[None])[0]
+        if outside > reach:  # by one distance instead of dozens, which are slow to a room
+            return reach - float(outside)
         places = np.concatenate([self._places(a), self._places(b)])
         return float((a.depth(places) + b.depth(places)).max())
 

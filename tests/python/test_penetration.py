@@ -12,7 +12,7 @@ from iota import looks, studies
 from iota.studies import shoal
 
 USUAL = 0.25  # s, between two looks
-EACH = {"lab": 2.0}  # a room of 65 000 triangles: a look takes seconds
+EACH = {"lab": 1.0}  # a room of 65 000 triangles
 MOST = 0.03  # share of the smaller shape
 # A fish that feeds is between leaves, and fish do not know of weed.
 KNOWN = {"undersea": 0.2}
