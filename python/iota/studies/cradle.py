@@ -27,7 +27,7 @@ def build(left: int = 1, right: int = 0, balls: int = BALLS) -> iota.World:
     world = iota.World(iota.System(), title="cradle: the balls are 24 mm thick", dt=1 / 240, ground=0.0)
     cradle = Cradle(world, balls=balls)
     add_actions(world, cradle, left, right)
-    world.camera = iota.Camera(position=(0.15, 0.21, 0.35), target=(0, 0.0, 0))
+    world.camera = iota.Camera(position=(0.11, 0.2, 0.42), target=(0, 0.08, 0))
     return world
 
 
