@@ -103,7 +103,7 @@ describe("what a script draws", () => {
     ["a surface, from behind as from before", "surface", [-0.2, 1.5, 0], [63, 127, 208]],
     ["the first of a set of shapes", "shapeSet", [0.2, 1.65, 0.05], [138, 79, 176]],
     ["the second, after the set was moved", "shapeSet", [0.35, 1.65, 0.06], [242, 163, 36]],
-    ["what is on a frame, after that was moved", "marker", [0.6, 1.45, 0.05], [47, 157, 146]],
+    ["a thing on a frame, after that was moved", "marker", [0.6, 1.45, 0.05], [47, 157, 146]],
     ["the upper left of an image on a box", "marker", [1.03, 1.57, 0.15], [76, 153, 82]],
     ["its lower right", "marker", [1.17, 1.43, 0.15], [204, 178, 0]],
     ["the lower left of an image that is four times on a surface", "surface", [1.4375, 1.3875, 0], [0, 0, 204]],

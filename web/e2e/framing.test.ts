@@ -87,7 +87,7 @@ it("shadows on a ground far below what falls are in the first picture, and in no
   }
 });
 
-it("what comes off is pointed at from the edge of the picture, and a press of the marker shows everything", async () => {
+it("a part that comes off has a marker at the edge of the picture, and a press of the marker shows everything", async () => {
   const server = await WorldServer.start(["web/e2e/leaving_probe.py"], await freePort());
   try {
     const tab = await open(server.url);

@@ -23,7 +23,7 @@ afterAll(async () => {
 });
 
 describe("iota run chain --lan", () => {
-  it("shows a moving world to who comes by the address of the network", async () => {
+  it("shows a moving world at the address of the network", async () => {
     await tab.until("the world moves", () => iota.connected && iota.step > 20);
     expect(new URL(tab.page.url()).protocol).toBe("https:");
   });

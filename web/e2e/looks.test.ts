@@ -106,7 +106,7 @@ it("looks as it did", async () => {
   }).toEqual([]);
 });
 
-it("notices what is missing", async () => {
+it("notices a missing part", async () => {
   const kept = `data:image/png;base64,${readFileSync(golden).toString("base64")}`;
   const without = async (kinds: readonly string[], visible: boolean) => tab.page.evaluate(([names, shown]) => {
     for (const name of names) (iota.page.world.entities as unknown as Record<string, { root: { visible: boolean } }>)[name].root.visible = shown;

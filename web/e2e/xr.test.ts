@@ -122,7 +122,7 @@ describe("an emulated headset", () => {
     expect(await me.tab.page.evaluate(() => iota.selected)).toBe(link);
   });
 
-  it("breaks with B and rejoins with A what the ray is on", async () => {
+  it("breaks with B and rejoins with A the body on the ray", async () => {
     await pointAtLink(link);
     await me.tab.pause(false);
     await me.click("right", "b-button");

@@ -31,7 +31,7 @@ describe("the arc of a teleport", () => {
     expect(arc.valid).toBe(false);
   });
 
-  it("refuses what is too far away", () => {
+  it("refuses places that are too far away", () => {
     const arc = new Arc();
     throwArc([0, 30, 0], level, 0, arc);
     expect(Math.abs(arc.landing[2])).toBeGreaterThan(farthestLanding);

@@ -74,7 +74,7 @@ describe("an object of the script's own class", () => {
     expect(hitByPoint([5, 0.5, 0.25], 0.1).body).toBe(-1);
   });
 
-  it("is met where its class says, also against what is drawn", () => {
+  it("is met where its class says, even where its drawing is not", () => {
     defineClass(name, { ...bar, bounds: () => [[-1, -1, -1], [1, 1, 1]], distance: (_, [x, y, z]) => Math.hypot(x, y, z) - 0.7 });
     view.create(object());
     view.draw(0);
@@ -83,7 +83,7 @@ describe("an object of the script's own class", () => {
     expect(hitByPoint([5, 0, 1], 1).distance).toBeCloseTo(0.3, 3);
   });
 
-  it("gives way to what is nearer, and to bodies that cannot be held", () => {
+  it("gives way to nearer things, and to bodies that cannot be held", () => {
     defineClass(name, bar);
     view.create(object());
     view.draw(0);
@@ -122,7 +122,7 @@ describe("an object of the script's own class", () => {
     expect(told).toEqual(["hovered", "held", "selected", ""]);
   });
 
-  it("whose class fails is told of once, and the others go on", () => {
+  it("whose class fails causes one notice, and the others go on", () => {
     let calls = 0;
     defineClass(name, { ...bar, draw: () => { calls++; throw new Error("no petals"); } });
     view.create(object());
@@ -136,7 +136,7 @@ describe("an object of the script's own class", () => {
     expect(tested.warnings[1]).toContain("it returns no Object3D");
   });
 
-  it("of a class that no module defines is told of", () => {
+  it("of a class that no module defines causes a notice", () => {
     vi.useFakeTimers();
     view.create(object());
     vi.advanceTimersByTime(6000);

@@ -75,7 +75,7 @@ describe("a strut", () => {
   });
 });
 
-describe("what is on a frame", () => {
+describe("a thing on a frame", () => {
   it("goes with it, and with the body and the frames that it is on", () => {
     const test = new TestWorld();
     test.set("style", style(0, "ball", part("sphere", [0.1])));

@@ -5,7 +5,7 @@ import { Events } from "../src/page/events.ts";
 beforeEach(() => { vi.useFakeTimers({ toFake: ["performance"] }); });
 afterEach(() => { vi.useRealTimers(); });
 
-it("breaks and joins are told of while they are few, and not where they are the way a thing works", () => {
+it("breaks and joins cause cards while they are few, and none where a mechanism makes them all the time", () => {
   const events = new Events();
   const told: string[] = [];
   events.add({ effect: (kind) => told.push(kind) });

@@ -59,7 +59,7 @@ describe("a fitted view", () => {
     expect(tiny.distance / one.distance).toBeCloseTo(1e-9, 15);
   });
 
-  it("is none without points, and leaves out what is not finite", () => {
+  it("is none without points, and leaves out points that are not finite", () => {
     const points = new Points();
     points.add(Number.NaN, 0, 0);
     points.add(Infinity, 0, 0);

@@ -84,7 +84,7 @@ describe("the gesture pipeline", () => {
     expect(log.take().at(-1)).toBe("1 to 1.90 0.00 0.00");
   });
 
-  it("prefers what is within reach of the hand to what the ray meets", () => {
+  it("prefers a body within reach of the hand to one on the ray", () => {
     pointer.tip.set([0.85, 0, -2]);
     pointer.nearReach = 0.1;
     gestures.updateAll();
@@ -127,7 +127,7 @@ describe("the gesture pipeline", () => {
     expect(gestures.grabs).toHaveLength(1);
   });
 
-  it("says when a press met nothing, and does not grab what comes by later", () => {
+  it("says when a press met nothing, and does not grab a body that comes by later", () => {
     aim(0, 1);
     pointer.pressed = true;
     gestures.update(pointer);
@@ -136,7 +136,7 @@ describe("the gesture pipeline", () => {
     expect(log.take()).toEqual(["mouse presses nothing"]);
   });
 
-  it("lets go of all at once when the world is gone", () => {
+  it("ends all grabs when the world is gone", () => {
     pointer.pressed = true;
     gestures.update(pointer);
     gestures.releaseAll();

@@ -81,7 +81,7 @@ describe("the height of the eyes at first", () => {
     for (const scale of [1, 0.2]) expect(eyes(scale, 0, 0.5).above).toBeCloseTo(0.6 * scale);
   });
 
-  it("is that of who stands for who sits", () => {
+  it("is that of a standing user for a seated one", () => {
     const sitting = new Matrix4().setPosition(0, 1.2, 0);
     for (const [height, away] of [[1.1, 4], [0.6, 2.4]]) {
       expect(eyes(1, height, away, 0.4, sitting).above).toBeCloseTo(eyes(1, height, away).above);
@@ -94,7 +94,7 @@ describe("the height of the eyes at first", () => {
   });
 });
 
-it("the ratio of sizes is told as on a map", () => {
+it("the ratio of sizes is written as on a map", () => {
   expect([1, 0.24, 45.5, 2e-9, 1.25].map(ratioOf)).toEqual(["1 : 1", "4.2 : 1", "1 : 46", "5e8 : 1", "1 : 1.3"]);
 });
 
@@ -182,7 +182,7 @@ describe("the wrist panel's layout", () => {
     }
   });
 
-  it("keeps the place of what is not offered now", () => {
+  it("keeps the places of commands that are not offered now", () => {
     const play = (looks: number) => layoutPanel(commandsOf(looks)).buttons[0];
     expect(layoutPanel(commandsOf(1)).buttons.map((button) => button.command.name)).not.toContain("look");
     expect(play(1).x).toBe(play(2).x);

@@ -18,7 +18,7 @@ function make() {
 }
 
 describe("zooming", () => {
-  it.each([0.5, 0.8, 1.5])("by %s keeps what is under the pointer under it", (factor) => {
+  it.each([0.5, 0.8, 1.5])("by %s keeps the point under the pointer there", (factor) => {
     const { camera, navigation, screen, rest } = make();
     const depth = navigation.goal.distance;
     const pointer = [0.6, -0.4] as const;

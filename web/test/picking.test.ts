@@ -91,7 +91,7 @@ describe("picking with a hand", () => {
   });
 });
 
-describe("what covers bodies", () => {
+describe("a surface over bodies", () => {
   /** Balls of 5 cm at x = 2, 4, 6, 8 and z = 0; the last one is static. */
   const made = () => {
     const told = new TestWorld();

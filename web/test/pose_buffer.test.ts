@@ -49,7 +49,7 @@ describe("the pose buffer", () => {
     }
   });
 
-  it("keeps what a frame does not list", () => {
+  it("keeps poses that a frame does not list", () => {
     const buffer = new PoseBuffer();
     buffer.push(frame(0, [body(0, 1), body(3, 4)]), 0);
     for (let step = 1; step < 12; step++) buffer.push(frame(step, [body(0, 1 + step / 10)]), step * 16);

@@ -28,7 +28,7 @@ function play(): { playback: Playback; told: number[] } {
 }
 
 describe("a recording", () => {
-  it("reads what was written, and refuses truncated and other bytes", () => {
+  it("reads a written recording, and refuses truncated and other bytes", () => {
     const bytes = new Uint8Array(14 + 2 * 12 + 3);
     bytes.set(new TextEncoder().encode("iota stream 1\n"));
     const view = new DataView(bytes.buffer);

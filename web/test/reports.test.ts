@@ -58,7 +58,7 @@ function button(down: boolean, x: number, lateMs = 0): void {
 }
 
 describe.each([["a body", 1], ["nothing", 5]])("a click on %s", (_, x) => {
-  it("is told without waiting for a picture", () => {
+  it("is sent without waiting for a picture", () => {
     button(true, x);
     vi.advanceTimersByTime(100);
     button(false, x);

@@ -74,7 +74,7 @@ describe("the selection", () => {
     expect(bench.sent.at(-1)).toEqual({ type: "select", body: id(0, 0) });
   });
 
-  it("lets go of a body that is gone, and holds nothing of the one after it", () => {
+  it("ends the hold of a body that is gone, and does not hold the next one in its slot", () => {
     const bench = new Bench();
     bench.aim(3);
     bench.press(true);
@@ -87,7 +87,7 @@ describe("the selection", () => {
     expect(bench.sent.filter((message) => message.type === "grabMove")).toEqual([]);
   });
 
-  it("goes on holding what the held body became part of, as the server does", () => {
+  it("goes on holding the body that absorbed the held one, as the server does", () => {
     const bench = new Bench();
     bench.aim(3);
     bench.press(true);

@@ -19,7 +19,7 @@ const shapes = [
 ];
 
 describe("a shape of the scene description", () => {
-  it("takes defaults for what is left out", () => {
+  it("takes defaults for sizes that are left out", () => {
     const shape = parseShape({ kind: "capsule", sizes: [0.01, 0.1] });
     expect(shape).toMatchObject({ material: "paint", color: null, turn: 0, offset: [0, 0, 0], rotation: [0, 0, 0, 1] });
   });

@@ -58,7 +58,7 @@ describe("an image of the script", () => {
     expect(changes).toBe(0);
   });
 
-  it("that the browser cannot decode is told", async () => {
+  it("that the browser cannot decode causes a notice", async () => {
     const view = made();
     view.create(entity(0, "four"));
     asked[0].fail();

@@ -92,7 +92,7 @@ describe("stairs", () => {
     expect(at.toArray()).toEqual([expect.closeTo(1.4, 5), expect.closeTo(1.6, 5), expect.closeTo(0, 5)]);
   });
 
-  it("are no matter to who flies up and down in the open", () => {
+  it("do not stop a user who flies up and down in the open", () => {
     const at = new Vector3(0, 1.6, 0);
     const way = new Vector3(0, 0.1, 0);
     stairs(0.2).slide(at, way, 0.12);
@@ -134,7 +134,7 @@ describe("an edge", () => {
     expect(0.02 * (ended - began)).toBeCloseTo(Math.sqrt((2 * 2) / 9.81), 0);
   });
 
-  it("is not for who looks from high above, flies, or goes up", () => {
+  it("does not happen to a user who looks from high above, flies, or goes up", () => {
     expect(walkOff(2, 5).at(-1)).toBeCloseTo(7, 5);
     expect(walkOff(2, 1.6, (navigation) => { navigation.flying = true; }).at(-1)).toBeCloseTo(3.6, 5);
     expect(walkOff(2, 1.6, (navigation) => { navigation.walk.y = 0.01; }).at(-1)).toBeGreaterThan(3.6);

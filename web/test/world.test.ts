@@ -54,7 +54,7 @@ describe("the world", () => {
     expect(test.world.entities.body.nameOf(4)).toBe("body 4");
   });
 
-  it("keeps what its own user chose when the script's look changes", () => {
+  it("keeps the look that its own user chose when the script's look changes", () => {
     const { world } = told();
     world.take(settings("chain"));
     expect(world.look).toBe("chain");
@@ -63,7 +63,7 @@ describe("the world", () => {
     expect(world.look).toBe("rope");
   });
 
-  it("says once what kind of entity it does not know, and shows all else", () => {
+  it("names an unknown kind of entity in one notice, and shows all others", () => {
     const test = told();
     for (let time = 0; time < 3; time++) test.world.take({ type: "entitiesSet", kind: "hologram", records: new Uint8Array(5) });
     test.world.take({ type: "entitiesDestroyed", kind: "hologram", ids: [id(1)] });
@@ -102,7 +102,7 @@ describe("the world", () => {
     expect(joint.size).toBe(0);
   });
 
-  it("after a lost connection draws on what is there, and drops what is told no more", () => {
+  it("after a lost connection draws on the same entities, and drops those that are not sent again", () => {
     const test = told();
     const meshes = test.meshes();
     test.join();
@@ -131,7 +131,7 @@ describe("the world", () => {
     expect(test.world.described).toBe(true);
   });
 
-  it("takes actions as they are told", () => {
+  it("takes the actions that the server sends", () => {
     const { world, changes } = told();
     const action = { name: "break", key: "b", label: "break", help: "", on: ActionTarget.body, button: ControllerButton.a };
     world.take({ type: "actions", actions: [action] });

@@ -22,7 +22,7 @@ function made(scale: number) {
 }
 
 describe("both hands on nothing", () => {
-  it("keep what is under them under them, at any scale", () => {
+  it("keep the points under them there, at any scale", () => {
     for (const scale of [1e-9, 1, 1e3]) {
       const { rig, room, move, update } = made(scale);
       move([-0.2, 1.2, -0.4], [0.3, 1.1, -0.5]);
