@@ -2,7 +2,7 @@
 // The palette of all worlds, and the shader patches for tinted instances and outlines.
 
 import {
-  BackSide, Color, FrontSide, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Side, type Texture,
+  BackSide, Color, FrontSide, MeshBasicMaterial, MeshStandardMaterial, ShaderChunk, type Material, type MeshStandardMaterialParameters, type Side, type Texture,
 } from "three";
 import { makeBrushedRoughness, makePlain, makeRopeColor, makeRopeNormals, makeWoodColor } from "./textures.ts";
 
@@ -75,9 +75,20 @@ function makeBase(name: string): MeshStandardMaterial {
 /** Mean brightness of the color texture of a material; 1 for plain ones. */
 const meanLight: Record<string, number> = { wood: 0.19, rope: 0.24 };
 
+/**
+ * The normal of the seen part of a pixel, in place of its middle: beside a narrow triangle, as on a rounded edge, that would
+ * be far beyond the normals of its corners, and edges would be dotted.
+ */
+function seenNormal(stage: "vertex" | "fragment"): [string, string] {
+  const chunk = `normal_pars_${stage}` as const;
+  return [`#include <${chunk}>`, ShaderChunk[chunk].replace("varying vec3 vNormal", "centroid varying vec3 vNormal")];
+}
+
 function tint(material: MeshStandardMaterial, light: number): void {
   material.onBeforeCompile = (shader) => {
     shader.uniforms["meanLight"] = { value: light };
+    shader.vertexShader = shader.vertexShader.replace(...seenNormal("vertex"));
+    shader.fragmentShader = shader.fragmentShader.replace(...seenNormal("fragment"));
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nattribute vec3 hue;\nvarying vec4 vTint;\nvarying vec3 vHue;")
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;\nvHue = hue;");
