@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The molecule of the study `molecule`, with springs for bonds: it hangs longer than it is. 1 m is 0.77 nm."""
+"""The same molecule with springs for bonds: it hangs longer than it is. 1 m is 0.77 nm."""
 
 from __future__ import annotations
 
