@@ -322,7 +322,7 @@ bool Island::project(Model& model, bool positions) {
   const bool met = project_all(model, positions);
   MovedRings moved{.is_asked_for = false};
   store_projection(model, positions && !idle_, moved);
-  return met;
+  return met && (!positions || meets_pinned(model));
 }
 
 // Of what has been loaded.
@@ -348,7 +348,7 @@ bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool po
   const bool met = is_local || project_all(model, positions);
   store_projection(model, positions && !idle_, moved,
                    is_local ? integrator_->moved_locally() : std::span<const std::uint32_t>{});
-  return met;
+  return met && (!positions || meets_pinned(model));
 }
 
 // None if there are many: searching each would take longer than the whole projection.

@@ -24,11 +24,13 @@ struct StepEnergy {
   double made() const { return -missing(); }
   /// Without what is dissipated, whose round-off is large in stiff dashpots: made for sure.
   double gained() const { return total - total_before - external_work; }
-  /// Of targets that pull against rows that do not yield, by forces that only the compliance of the rows limits: what is
-  /// missing beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in one step, all of it lost.
+  /// Of targets that pull against rows that do not yield, or give way to them, by forces that only the compliance of the
+  /// rows limits: what is missing, or made, beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in
+  /// one step, all of it lost; a nail that stood in a conflict returned 2e9 J.
   double idle_work() const {
     const double motion = std::max(kinetic_before, kinetic) + std::max(0.0, impact);
-    return std::clamp(missing() - motion, 0.0, std::max(0.0, external_work));
+    return external_work > 0 ? std::clamp(missing() - motion, 0.0, external_work)
+                             : std::clamp(missing() + motion, external_work, 0.0);
   }
   double size() const { return std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated); }
 };

@@ -141,6 +141,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
   if (drives_rows_) energy.external_work -= energy.idle_work();
+  if (holds_offsets_) energy.overdrawn = 0;  // what rows store in the gaps of a conflict is in no book
   commit(problem, stage, energy, report);
   if (free) {
     keep_momenta(problem, *free, part.h);

@@ -416,6 +416,23 @@ TEST(Combine, in_one_body_keeps_the_nail_of_the_particle_that_is_removed) {
   EXPECT_WHOLE(system);
 }
 
+// Nails do not yield, so no row of the bar is left that could report it.
+TEST(Combine, of_a_nailed_bar_with_a_nail_out_of_its_reach_says_what_remains) {
+  for (const double over : {0.0, 0.1}) {
+    System system;
+    const BodyId bar = system.bodies().create(), stone = system.bodies().create();
+    const ParticleId held = system.particles().create(bar, {0, 0, 0}), end = system.particles().create(bar, {1, 0, 0});
+    const ParticleId far = system.particles().create(stone, {1.5, 0, 0});
+    system.particles().nail(held), system.particles().nail(far);
+    const RestructureReport report = system.edits().combine(end, far, over);
+    if (over == 0) {
+      EXPECT_NEAR(report.remaining_gap, 0.5, 1e-6);
+      EXPECT_FALSE(report.notes.empty());
+    }
+    for (int i = 0; i < 30; ++i) EXPECT_EQ(system.step(1.0 / 120).unconverged, 1) << over << ' ' << i;
+  }
+}
+
 TEST(Combine, reports_the_impulse_of_a_nail) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId nailed = system.particles().create(system.bodies().create(), {0, 0, 0}),
