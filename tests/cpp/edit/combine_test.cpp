@@ -429,7 +429,7 @@ TEST(Combine, of_a_nailed_bar_with_a_nail_out_of_its_reach_says_what_remains) {
       EXPECT_NEAR(report.remaining_gap, 0.5, 1e-6);
       EXPECT_FALSE(report.notes.empty());
     }
-    for (int i = 0; i < 30; ++i) EXPECT_EQ(system.step(1.0 / 120).unconverged, 1) << over << ' ' << i;
+    for (int i = 0; i < 30; ++i) EXPECT_GT(system.step(1.0 / 120).unconverged, 0) << over << ' ' << i;
   }
 }
 
