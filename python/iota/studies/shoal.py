@@ -46,9 +46,9 @@ def build(fish: int = FISH) -> iota.World:
 
 
 def leader_at(time: float) -> Any:
-    """Where the fish want to be, m: a loop in half a minute."""
+    """Where the fish want to be, m: a loop in half a minute, at first across the view."""
     turn = 2 * math.pi * time / 30
-    return MIDDLE + WAY * np.array([math.cos(turn), math.sin(2 * turn), math.sin(turn)])
+    return MIDDLE + WAY * np.array([math.sin(turn), math.sin(2 * turn), math.cos(turn)])
 
 
 class School:
@@ -60,7 +60,10 @@ class School:
         random = np.random.default_rng(5)
         self._phase = random.uniform(0, 2 * math.pi, fish)
         shoal = iota.builder.Structure()
-        shoal.points.add(leader(0) + apart(random, fish, spread), MASS, (0, 0, CRUISE))
+        ahead = (leader(0.1) - leader(0)) * (1, 0, 1)
+        along = ahead / np.linalg.norm(ahead)
+        frame = np.stack([np.cross([0, 1, 0], along), [0, 1, 0], along])
+        shoal.points.add(leader(0) + apart(random, fish, spread) @ frame, MASS, CRUISE * along)
         shoal.group("shoal", range(fish))
         made = shoal.realize(world.system)
         self.fish, self.group = made.points, made.groups["shoal"]
