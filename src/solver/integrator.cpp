@@ -140,8 +140,9 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
-  if (drives_rows_) energy.external_work -= energy.idle_work();
-  if (holds_offsets_) energy.overdrawn = 0;  // what rows store in the gaps of a conflict is in no book
+  // In a conflict also what targets take that give way to rows: what these store in their gaps is in no book.
+  if (drives_rows_) energy.external_work -= holds_offsets_ ? energy.idle_work() : std::max(0.0, energy.idle_work());
+  if (holds_offsets_) energy.overdrawn = 0;
   commit(problem, stage, energy, report);
   if (free) {
     keep_momenta(problem, *free, part.h);
