@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from iota.shapelib.frames import from_quaternion
 from iota.verify.reference import GRAVITY, integrate
 
 Array = NDArray[Any]
@@ -18,13 +19,6 @@ Point = tuple[int, Array]  # a body, and a place in its frame, m
 
 def cross_matrix(v: Array) -> Array:
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def matrix_of(q: Array) -> Array:
-    """Of a quaternion (x, y, z, w) that need not have the length 1."""
-    x, y, z, w = q / np.linalg.norm(q)
-    s = cross_matrix(np.array([x, y, z]))
-    return np.asarray(np.eye(3) + 2 * w * s + 2 * s @ s)
 
 
 @dataclass
@@ -79,7 +73,7 @@ class RigidReference:
 
     def equations(self, rows: Array) -> tuple[Array, Array, Array, Array]:
         """Mass matrix, forces and torques; gradients of the rows, and their accelerations without any of the bodies."""
-        turns = [matrix_of(row[3:7]) for row in rows]
+        turns = [from_quaternion(*row[3:7]) for row in rows]
         count = 6 * len(rows)
         mass, force = np.zeros((count, count)), np.zeros(count)
         for i, (solid, row) in enumerate(zip(self.solids, rows, strict=True)):
@@ -121,4 +115,4 @@ def solve_held(mass: Array, gradient: Array, force: Array, rate: Array) -> Array
 
 def place_of(state: Array, point: Point) -> Array:
     row = state[point[0]]
-    return np.asarray(row[:3] + matrix_of(row[3:7]) @ point[1])
+    return np.asarray(row[:3] + from_quaternion(*row[3:7]) @ point[1])

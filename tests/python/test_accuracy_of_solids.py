@@ -5,25 +5,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rigid_reference import Array, Point, RigidReference, Solid, matrix_of, place_of
+from rigid_reference import Array, Point, RigidReference, Solid, place_of
 
 import iota
+from iota.shapelib.frames import from_quaternion, to_quaternion
 
 SECONDS, HZ = 1.0, 60
 
 
-def box_of(rng: np.random.Generator) -> tuple[Array, float]:
-    """Edges, m, and mass, kg."""
-    return rng.uniform(0.3, 1.0, 3), rng.uniform(0.5, 2.0)
-
-
 def random_solid(rng: np.random.Generator, hinge: Array, at: Array) -> tuple[Solid, Array]:
     """A box with the place `hinge` of its unit cube at `at`; its edges, too."""
-    size, mass = box_of(rng)
+    size, mass = rng.uniform(0.3, 1.0, 3), rng.uniform(0.5, 2.0)
     q = rng.normal(size=4)
     q /= np.linalg.norm(q)
     inertia = mass / 12 * (np.sum(size**2) - size**2)
-    position = at - matrix_of(q) @ (hinge * size)
+    position = at - from_quaternion(*q) @ (hinge * size)
     return Solid(mass, inertia, position, q, rng.normal(size=3), rng.normal(size=3)), size
 
 
@@ -38,7 +34,7 @@ def tree_of_boxes(seed: int) -> tuple[RigidReference, list[Array]]:
         at = np.zeros(3)
         if i:
             other = scene.solids[near]
-            at = other.position + matrix_of(other.orientation) @ (place * sizes[near])
+            at = other.position + from_quaternion(*other.orientation) @ (place * sizes[near])
         solid, size = random_solid(rng, corner, at)
         scene.solids.append(solid)
         sizes.append(size)
@@ -64,7 +60,7 @@ def ring_of_boxes(seed: int) -> tuple[RigidReference, list[Array]]:
         size = np.array([np.linalg.norm(end - start), *rng.uniform(0.2, 0.5, 2)])
         x = (end - start) / size[0]
         y = np.cross([0, 0, 1], x) / np.linalg.norm(np.cross([0, 0, 1], x))
-        orientation = quaternion_of(np.stack([x, y, np.cross(x, y)], axis=1))
+        orientation = np.array(to_quaternion(np.stack([x, y, np.cross(x, y)], axis=1)))
         mass = rng.uniform(0.5, 2.0)
         inertia = mass / 12 * (np.sum(size**2) - size**2)
         scene.solids.append(
@@ -76,20 +72,6 @@ def ring_of_boxes(seed: int) -> tuple[RigidReference, list[Array]]:
         scene.hinges.append(((i, ahead[i]), ((i + 1) % 4, -ahead[(i + 1) % 4])))
     scene.meet_hinges()
     return scene, sizes
-
-
-def quaternion_of(turn: Array) -> Array:
-    """x, y, z, w of a rotation matrix: the eigenvector of Bar-Itzhack's matrix."""
-    m = turn
-    k = np.array(
-        [
-            [m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[2, 0] + m[0, 2], m[2, 1] - m[1, 2]],
-            [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2], m[0, 2] - m[2, 0]],
-            [m[2, 0] + m[0, 2], m[2, 1] + m[1, 2], m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
-            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m[0, 0] + m[1, 1] + m[2, 2]],
-        ]
-    )
-    return np.asarray(np.linalg.eigh(k)[1][:, -1])
 
 
 def points_of(scene: RigidReference) -> list[Point]:
