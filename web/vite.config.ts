@@ -4,6 +4,7 @@ import path from "node:path";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { build } from "vite";
 import { defineConfig } from "vitest/config";
+import { withoutUnusedShaders } from "./unused_shaders.ts";
 
 /** Puts compressed copies beside the files, which the server sends to browsers that take them. */
 function compressed() {
@@ -27,20 +28,11 @@ function compressed() {
   };
 }
 
-/**
- * Shader text of three.js for features that the page does not use: a twentieth of the page's size. If a material needs
- * one of these, the first browser test shows it; then remove its line.
- */
-const unusedShaders = new RegExp(`^(var|const) (${[
-  "alphahash_\\w+", "batching_\\w+", "bumpmap_\\w+", "clearcoat_\\w+", "displacementmap_\\w+", "gradientmap_\\w+", "iridescence_\\w+",
-  "lights_toon_\\w+", "lights_phong_\\w+", "lightprobes_\\w+", "logdepthbuf_\\w+", "morph\\w+", "skin\\w+", "transmission_\\w+",
-].join("|")}) = "(?:[^"\\\\]|\\\\.)*";`, "gm");
-
-function withoutUnusedShaders() {
+function withoutShaders() {
   return {
     name: "without-unused-shaders",
     apply: "build" as const,
-    transform: (code: string, id: string) => (id.includes("three.module") ? code.replaceAll(unusedShaders, '$1 $2 = "";') : undefined),
+    transform: (code: string, id: string) => (id.includes("three.module") ? withoutUnusedShaders(code) : undefined),
   };
 }
 
@@ -57,7 +49,7 @@ function player() {
       await build({
         configFile: false,
         logLevel: "warn",
-        plugins: [withoutUnusedShaders()],
+        plugins: [withoutShaders()],
         build: {
           outDir: folder,
           target: "es2022",
@@ -74,7 +66,7 @@ function player() {
 // No inlined assets: the server sends a content security policy without data: or inline sources.
 export default defineConfig({
   base: "./",
-  plugins: [withoutUnusedShaders(), player(), compressed()],
+  plugins: [withoutShaders(), player(), compressed()],
   build: {
     outDir: "dist",
     emptyOutDir: true,
