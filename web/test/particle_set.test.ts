@@ -19,7 +19,7 @@ function columns(sparks: readonly { at: [number, number, number]; radius: number
 describe("sparks", () => {
   it("are drawn where the newest frame has them, in their size and color", () => {
     const view = new ParticleSetView();
-    view.takeSparks(columns([{ at: [1, 2, 3], radius: 0.5, color: 0xff8000 }, { at: [4, 5, 6], radius: 0, color: 0xffffff }]));
+    view.takeSparks(columns([{ at: [1, 2, 3], radius: 0.5, color: 0xff8000 }, { at: [4, 5, 6], radius: 0, color: 0x204060 }]));
     const mesh = view.root.children[0] as InstancedMesh;
     expect(mesh.count).toBe(2);
     expect(mesh.visible).toBe(true);
@@ -32,6 +32,8 @@ describe("sparks", () => {
     const color = new Color();
     mesh.getColorAt(0, color);
     expect(color.getHex()).toBe(0xff8000);
+    mesh.getColorAt(1, color);
+    expect(color.getHex()).toBe(0x204060);
   });
 
   it("come in thousands and go without a trace", () => {

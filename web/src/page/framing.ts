@@ -253,9 +253,12 @@ export class Framing implements FramePart, PageListener {
     setting.clear();
     this.addDrawn_(setting);
     // One by one: a single thing far away leaves the others counted.
+    const [middleX, middleY, middleZ] = moving.center;
     for (let at = 0; at < 3 * setting.count; at += 3) {
-      const [x, y, z] = setting.xyz.subarray(at, at + 3);
-      if (Math.hypot(x - moving.center[0], y - moving.center[1], z - moving.center[2]) < most) points.add(x, y, z);
+      const x = setting.xyz[at];
+      const y = setting.xyz[at + 1];
+      const z = setting.xyz[at + 2];
+      if (Math.hypot(x - middleX, y - middleY, z - middleZ) < most) points.add(x, y, z);
     }
     entities.staticShape.forEachCorners(setting, take);
     bounds = points.bounds()!;

@@ -23,7 +23,10 @@ export class Points {
       larger.set(this.xyz);
       this.xyz = larger;
     }
-    this.xyz.set([x, y, z], 3 * this.count++);
+    const at = 3 * this.count++;
+    this.xyz[at] = x;
+    this.xyz[at + 1] = y;
+    this.xyz[at + 2] = z;
   }
 
   addAll({ xyz, count }: Points): void {
@@ -46,10 +49,11 @@ export class Points {
     if (this.count === 0) return null;
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
-    for (let index = 0; index < 3 * this.count; index++) {
-      const axis = index % 3;
-      low[axis] = Math.min(low[axis], this.xyz[index]);
-      high[axis] = Math.max(high[axis], this.xyz[index]);
+    for (let axis = 0; axis < 3; axis++) {
+      for (let at = axis; at < 3 * this.count; at += 3) {
+        low[axis] = Math.min(low[axis], this.xyz[at]);
+        high[axis] = Math.max(high[axis], this.xyz[at]);
+      }
     }
     return {
       center: [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2],

@@ -3,7 +3,7 @@
 // in the newest frame: glowing points, two triangles each, without shadows or picking.
 
 import {
-  Color, CustomBlending, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, OneFactor, OneMinusSrcAlphaFactor,
+  Color, CustomBlending, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, OneFactor, OneMinusSrcAlphaFactor,
   PlaneGeometry, ShaderMaterial,
 } from "three";
 import type { ParticleSetEntity, PoseSparkColumns } from "../../protocol/generated.ts";
@@ -14,6 +14,8 @@ import { EntityRecords } from "./entity.ts";
 const usualRadius = 0.01;
 /** Largest number of instances reserved for a set in advance: a world may have many sets and few sparks. */
 const mostReserved = 4096;
+/** Linear values of the 256 values of a channel. */
+const linear = Float32Array.from({ length: 256 }, (_, value) => new Color().setHex(value).b);
 
 /** A bright ball with a halo: the ball covers the background, the halo only adds light. */
 function makeGlow(): ShaderMaterial {
@@ -51,8 +53,7 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
   readonly root = new Group();
 
   private readonly mesh_ = new InstancedMesh(new PlaneGeometry(2, 2), makeGlow(), 0);
-  private readonly matrix_ = new Matrix4();
-  private readonly color_ = new Color();
+  private colors_ = new InstancedBufferAttribute(new Float32Array(0), 3);
 
   constructor() {
     super();
@@ -90,19 +91,26 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
   takeSparks(sparks: PoseSparkColumns): void {
     if (sparks.count === 0 && this.count === 0) return;
     this.reserve_(sparks.count);
-    const { mesh_: mesh, matrix_: matrix, color_: color } = this;
-    const { position } = sparks;
-    for (let index = 0; index < sparks.count; index++) {
-      const radius = sparks.radius[index] > 0 ? sparks.radius[index] : usualRadius;
-      matrix.makeScale(radius, radius, radius);
-      matrix.setPosition(position[3 * index], position[3 * index + 1], position[3 * index + 2]);
-      mesh.setMatrixAt(index, matrix);
-      mesh.setColorAt(index, color.setHex(sparks.color[index]));
+    const { mesh_: mesh } = this;
+    const { position, radius, color } = sparks;
+    const matrices = mesh.instanceMatrix.array;
+    const colors = this.colors_.array;
+    // Written here, not by the functions of three.js: there are thousands, in each frame.
+    for (let index = 0, at = 0; index < sparks.count; index++, at += 16) {
+      matrices[at] = matrices[at + 5] = matrices[at + 10] = radius[index] > 0 ? radius[index] : usualRadius;
+      matrices[at + 12] = position[3 * index];
+      matrices[at + 13] = position[3 * index + 1];
+      matrices[at + 14] = position[3 * index + 2];
+      matrices[at + 15] = 1;
+      const hex = color[index];
+      colors[3 * index] = linear[(hex >> 16) & 255];
+      colors[3 * index + 1] = linear[(hex >> 8) & 255];
+      colors[3 * index + 2] = linear[hex & 255];
     }
     mesh.count = sparks.count;
     mesh.visible = sparks.count > 0;
     mesh.instanceMatrix.needsUpdate = true;
-    if (mesh.instanceColor !== null) mesh.instanceColor.needsUpdate = true;
+    this.colors_.needsUpdate = true;
   }
 
   /** Grows in place, with the same mesh. */
@@ -113,8 +121,9 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     matrices.setUsage(DynamicDrawUsage);
     matrices.array.set(this.mesh_.instanceMatrix.array);
     const colors = new InstancedBufferAttribute(new Float32Array(3 * capacity), 3);
-    if (this.mesh_.instanceColor !== null) colors.array.set(this.mesh_.instanceColor.array);
+    colors.setUsage(DynamicDrawUsage);
+    colors.array.set(this.colors_.array);
     this.mesh_.instanceMatrix = matrices;
-    this.mesh_.instanceColor = colors;
+    this.mesh_.instanceColor = this.colors_ = colors;
   }
 }
