@@ -98,3 +98,119 @@ it("sparks glow: around a ball, which covers what is behind it, is light that on
   expect(rings.far.mean).toBeLessThan(0.7 * rings.near.mean);
   expect([rings.beyond.least, rings.beyond.most]).toEqual([0, 0]);
 });
+
+/** Runs `look` on the stage alone, without the drawings; `pixelsOf` draws it for a camera and reads the picture. */
+const readerCode = `
+  const { viewer: { renderer, scene, camera, stage }, world: { entities } } = iota.page;
+  const gl = renderer.getContext();
+  const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  const hidden = Object.values(entities).map((view) => view.root).filter((root) => root?.visible);
+  for (const root of hidden) root.visible = false;
+  const key = stage.root.children.find((light) => light.isDirectionalLight);
+  const pixelsOf = (eye) => {
+    renderer.render(scene, eye);
+    const pixels = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return pixels;
+  };
+  try { return look(); } finally { for (const root of hidden) root.visible = true; }
+`;
+const look = async <Result>(code: string): Promise<Result> => tab.page.evaluate(`(() => { const look = () => { ${code} }; ${readerCode} })()`);
+
+it("the sky is dithered: neighbors differ by one step where its color changes, in place of bands", async () => {
+  const { most, share } = await look<{ most: number; share: number }>(`
+    const eye = camera.clone();
+    eye.position.set(0, 30, 0);
+    eye.rotation.set(0.35, 0, 0);
+    eye.fov = 4;
+    eye.updateProjectionMatrix();
+    const pixels = pixelsOf(eye);
+    let [most, differing] = [0, 0];
+    for (let row = 0; row < height; row++) {
+      for (let column = 1; column < width; column++) {
+        const at = 4 * (row * width + column);
+        const change = Math.abs(pixels[at] - pixels[at - 4]);
+        most = Math.max(most, change);
+        if (change > 0) differing++;
+      }
+    }
+    return { most, share: differing / (width * height) };
+  `);
+  expect(most).toBe(1);
+  expect(share).toBeGreaterThan(0.15);
+});
+
+it("the edge of a shadow is soft, over some texels of its map", async () => {
+  const texels = await look<number>(`
+    const { Mesh, BoxGeometry, MeshStandardMaterial, Vector3 } = iota.three;
+    const light = key.position.clone().sub(key.target.position).normalize();
+    const texel = (key.shadow.camera.right - key.shadow.camera.left) / key.shadow.mapSize.x;
+    // A plate near the middle of the lit ball; its edge at +x is parallel to the picture's columns.
+    const above = 20 * texel;
+    const plate = new Mesh(new BoxGeometry(200 * texel, 2 * texel, 200 * texel), new MeshStandardMaterial());
+    plate.castShadow = true;
+    const ground = stage.ground.position.y;
+    plate.position.set(key.target.position.x, ground + above, key.target.position.z);
+    scene.add(plate);
+    const side = light.x > 0 ? -1 : 1;  // away from the light: not below the plate
+    const edge = new Vector3(plate.position.x + 100 * side * texel, ground, plate.position.z).addScaledVector(new Vector3(light.x, 0, light.z), -above / light.y);
+    const eye = camera.clone();
+    eye.position.copy(edge);
+    eye.position.y = ground + 15 * texel;
+    eye.up.set(0, 0, -1);
+    eye.lookAt(edge.x, ground, edge.z);
+    eye.near = texel;
+    eye.updateProjectionMatrix();
+    const shown = pixelsOf(eye);
+    plate.castShadow = false;
+    const lit = pixelsOf(eye);
+    scene.remove(plate);
+    plate.geometry.dispose();
+    plate.material.dispose();
+    const shares = Array.from({ length: width }, (_, column) => {
+      let [sum, all] = [0, 0];
+      for (let row = 0; row < height; row++) {
+        sum += shown[4 * (row * width + column)];
+        all += lit[4 * (row * width + column)];
+      }
+      return sum / all;
+    });
+    const [dark, bright] = [Math.min(...shares), Math.max(...shares)];
+    const within = shares.filter((share) => share > dark + 0.1 * (bright - dark) && share < dark + 0.9 * (bright - dark)).length;
+    const texelPixels = (width / camera.aspect / 2 / Math.tan((camera.fov * Math.PI) / 360)) / 15;
+    return bright - dark > 0.1 ? within / texelPixels : -(bright - dark) - 1;
+  `);
+  expect(texels).toBeGreaterThan(3);
+  expect(texels).toBeLessThan(30);
+});
+
+it("metal reflects the soft boxes of a studio, without any lamp", async () => {
+  const { brightest, middle } = await look<{ brightest: number; middle: number }>(`
+    const { Mesh, SphereGeometry, MeshStandardMaterial } = iota.three;
+    const lamps = stage.root.children.filter((light) => light.isLight);
+    for (const lamp of lamps) lamp.visible = false;
+    const ball = new Mesh(new SphereGeometry(0.1, 48, 32), new MeshStandardMaterial({ color: "#b9bec3", metalness: 1, roughness: 0.3 }));
+    ball.position.set(0, 30, 0);
+    scene.add(ball);
+    const eye = camera.clone();
+    eye.position.set(0, 30, 0.16);
+    eye.rotation.set(0, 0, 0);
+    eye.near = 0.01;
+    eye.updateProjectionMatrix();
+    const pixels = pixelsOf(eye);
+    scene.remove(ball);
+    ball.geometry.dispose();
+    ball.material.dispose();
+    for (const lamp of lamps) lamp.visible = true;
+    const values = [];
+    for (let row = 0; row < height; row++) {
+      for (let column = 0; column < width; column++) {
+        if (Math.hypot(column - width / 2, row - height / 2) < 0.45 * height) values.push(pixels[4 * (row * width + column) + 1]);
+      }
+    }
+    values.sort((a, b) => a - b);
+    return { brightest: values[Math.floor(0.99 * values.length)], middle: values[Math.floor(0.5 * values.length)] };
+  `);
+  expect(brightest).toBeGreaterThan(150);
+  expect(brightest).toBeGreaterThan(1.5 * middle);
+});
