@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <random>
 #include <vector>
@@ -74,6 +75,28 @@ BENCHMARK_CAPTURE(fall, energy_keeping, IntegrationMode::energy_keeping)
     ->Iterations(120)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+
+/// Rods that each swing on their own nail: what an island costs that has hardly anything in it.
+void swing(benchmark::State& state, IntegrationMode mode) {
+  System system({.mode = mode, .threads = 1});
+  const auto count = static_cast<int>(state.range(0));
+  for (int i = 0; i < count; ++i) {
+    const double angle = 0.4 + 0.6 * std::fmod(0.618 * i, 1.0);
+    const Vec3 top{0.4 * (i % 32), 3, 0.4 * (i / 32)};
+    const Vec3 along{0.3 * std::sin(angle), -0.3 * std::cos(angle), 0.1 * std::sin(3 * angle)};
+    const BodyId rod = system.bodies().create();
+    system.particles().nail(system.particles().create(rod, top, 0.05));
+    system.particles().create(rod, top + along, 0.05);
+  }
+  for (auto _ : state) (void)system.step(1.0 / 60);
+  state.counters["us_per_body_step"] =
+      benchmark::Counter(1e-6 * count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(swing, robust, IntegrationMode::robust)->Name("pendulums/robust")->Arg(1000)->Iterations(60);
+BENCHMARK_CAPTURE(swing, energy_keeping, IntegrationMode::energy_keeping)
+    ->Name("pendulums/energy_keeping")
+    ->Arg(1000)
+    ->Iterations(60);
 
 /// One separate and one combine of a random hinge among 500 figures (10 000 bodies).
 void separate_combine(benchmark::State& state) {
