@@ -97,6 +97,9 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
     assert run("run", "chain", "--headless", "--json").stdout.startswith('{"steps": 1200')
 
 
+LONG = "n" * 300  # no file system takes such a name
+
+
 @pytest.mark.parametrize(
     ("arguments", "text", "code"),
     [
@@ -107,6 +110,11 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
             1,
         ),
         (["run", "missing.py"], "iota: there is no file missing.py", 1),
+        (["run", LONG], f"iota: there is no study '{LONG}'", 1),
+        (["run", f"{LONG}.py"], f"iota: there is no file {LONG}.py", 1),
+        (["run", f"{LONG}.py", "--watch"], f"--watch needs a file, and there is no {LONG}.py", 1),
+        (["import", LONG], "there is no polyhedron named", 1),
+        (["record", "chain", "-o", f"{LONG}.mp4"], f"{LONG}.mp4 cannot be written: File name too long", 1),
         (["run", "chain", "--links", "0"], "argument --links: must be 1 or more, not 0. Try: iota run --help", 2),
         (["run", "chain", "--links", "1000000000"], "--links: must be at most 1000000, not 1000000000", 2),
         (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0, not -1", 2),

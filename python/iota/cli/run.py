@@ -109,9 +109,9 @@ def find(what: str) -> Callable[[int | None], None]:
     names = studies.names()
     if what in names:
         return lambda links: run_study(what, links)
-    path = Path(what)
-    if what.endswith(".py") or path.is_file():
-        if not path.is_file():
+    path, is_file = Path(what), os.path.isfile(what)  # Path.is_file raises OSError for a name that is too long
+    if what.endswith(".py") or is_file:
+        if not is_file:
             raise Failure(f"there is no file {what}")
         return lambda links: run_file(path, links)
     near = difflib.get_close_matches(what, names, n=1)

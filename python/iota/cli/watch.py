@@ -9,6 +9,7 @@ previous world continues; if it fails, the next save is waited for.
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import socket
 import subprocess
@@ -29,7 +30,7 @@ OTHERS = {"__pycache__", "node_modules", "site-packages"}
 def watch(arguments: argparse.Namespace) -> None:
     """Runs until Ctrl-C, or until the script ends without an error."""
     path = Path(arguments.what)
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise Failure(f"--watch needs a file, and there is no {arguments.what}")
     if arguments.record is not None:
         raise Failure("--record keeps one run, and --watch begins others: use one of them")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -35,9 +36,9 @@ def check_name(path: Path, endings: Sequence[str]) -> None:
     """Raises Failed for a file that cannot be made, before any work is done for it."""
     if path.suffix.lower() not in endings:
         raise Failed(f"{path} must end in {' or '.join(endings)}")
-    if path.is_dir() or not path.parent.is_dir():
+    if os.path.isdir(path) or not os.path.isdir(path.parent):
         raise Failed(
-            f"{path} cannot be written: " + ("it is a folder" if path.is_dir() else f"no folder {path.parent}")
+            f"{path} cannot be written: " + ("it is a folder" if os.path.isdir(path) else f"no folder {path.parent}")
         )
 
 

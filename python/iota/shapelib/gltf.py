@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import os
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -264,7 +265,7 @@ def _read_uri(uri: str, path: PathLike) -> bytes:
     file = (folder / unquote(uri)).resolve()
     if not file.is_relative_to(folder):
         raise ValueError("it is outside the folder of the file")
-    if file.exists() and not file.is_file():
+    if os.path.exists(file) and not os.path.isfile(file):
         raise ValueError("it is not a file")
     try:
         return read_bytes(file)

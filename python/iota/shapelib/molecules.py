@@ -119,7 +119,7 @@ def is_file(source: PathLike) -> bool:
     """Whether it names a file rather than a SMILES: it exists, or has the ending of one, or contains a folder."""
     if not isinstance(source, str):
         return True
-    return Path(source).suffix.lower() in READERS or (0 < len(source.strip()) < 256 and Path(source).exists())
+    return Path(source).suffix.lower() in READERS or (source.strip() != "" and os.path.exists(source))
 
 
 def ball_of(symbol: str, scale: float) -> tuple[float, tuple[float, float, float]]:

@@ -33,7 +33,7 @@ def load(source: PathLike, **options: Any) -> Imported:
         return molecule(source, **options)
     if ending in ENDINGS:
         return mechanism(source, **options)
-    if ending in SURFACES or (isinstance(source, str) and not ending and not Path(source).exists()):
+    if ending in SURFACES or (isinstance(source, str) and not ending and not os.path.exists(source)):
         return polyhedron(source, **options)
     known = ", ".join([*MOLECULES, *SURFACES, *ENDINGS])
     raise FileError(source, f"files that end in {ending or 'nothing'!r} are not read; these are: {known}")

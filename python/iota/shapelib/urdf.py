@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 
 import numpy as np
@@ -207,7 +208,7 @@ def _find(name: str, path: Path) -> Path | None:
         folders += list(path.resolve().parent.parents)[:4]
     for folder in folders:
         for part in (plain, plain.partition("/")[2]) if name.startswith("package://") else (plain,):
-            if part and not Path(part).is_absolute() and ".." not in Path(part).parts and (folder / part).is_file():
+            if part and not Path(part).is_absolute() and ".." not in Path(part).parts and os.path.isfile(folder / part):
                 return folder / part
     return None
 
