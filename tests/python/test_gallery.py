@@ -99,6 +99,8 @@ def test_a_click_leads_to_a_world_and_a_button_back(gallery: Gallery) -> None:
         complaints: list[str] = []
         page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
         page.goto(gallery.url)
+        page.locator("a", has_text="chain").first.wait_for()
+        assert page.evaluate(r"!/\d \p{L}/u.test(document.querySelector('main').innerText)"), "units stay with numbers"
         page.locator("a", has_text="chain").first.click()
         page.wait_for_function(
             "() => globalThis.iota?.connected && iota.bodies().length === 24 && iota.step > 0", timeout=60_000

@@ -24,7 +24,8 @@ function makeCard({ name, text }: Study): HTMLAnchorElement {
   picture.width = 480;
   picture.height = 270;
   picture.addEventListener("error", () => picture.classList.add("missing"));
-  card.append(picture, element("h2", name), element("p", text));
+  // A number and its unit stay in one line.
+  card.append(picture, element("h2", name), element("p", text.replaceAll(/(\d) (?=\p{L})/gu, "$1\u00A0")));
   return card;
 }
 
