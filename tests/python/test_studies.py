@@ -44,7 +44,7 @@ def test_something_moves_within_two_seconds(name: str) -> None:
     assert farthest >= 0.02 * size, f"{farthest / size:.3f} of its size"
 
 
-@pytest.mark.parametrize("name", sorted(set(studies.names()) - {"chain"}))  # kept pictures show its title
+@pytest.mark.parametrize("name", studies.names())
 def test_its_title_says_how_large_it_is(name: str) -> None:
     assert re.search(r": .*\b\d+(\.\d+)? (nm|mm|cm|m)\b", studies.module(name).build().title)
 
