@@ -205,7 +205,7 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     done = run("run", "chain", "--no-open", "--port", "0", "--seconds", "1", "--json")
     assert done.returncode == 0 and all("slow motion" in line for line in done.stderr.splitlines())
     lines = done.stdout.splitlines()
-    assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
+    assert re.fullmatch(r"chain: 1\.8 m long: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
     assert [line.split()[0] for line in lines[1:4]] == ["b", "c", "t"]
     assert 1 <= json.loads(lines[4])["steps"] <= 125 and len(lines) == 5
 

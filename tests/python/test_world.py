@@ -34,7 +34,7 @@ def test_a_page_gets_the_scene_and_its_motion(world: iota.World, run_world: Runn
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: {"world_settings", "world_state", "actions"} <= page.last.keys())
         assert page.last["world_state"]["dt"] == 1 / 120
-        assert page.last["world_settings"]["title"] == "chain"
+        assert page.last["world_settings"]["title"] == "chain: 1.8 m long"
         assert page.last["world_settings"]["looks"] == ["rope", "chain"]
         page.wait_for(lambda: len(page.entities["body"]) == 24)
         assert len({body["style"] for body in page.entities["body"].values()}) == 1
