@@ -182,7 +182,7 @@ async function pages(): Promise<void> {
     await me.tab.page.evaluate(() => {
       iota.page.viewer.renderer.render = () => undefined;
     });
-    add(`the same without drawing, which takes ${frameMs.toFixed(0)} ms: script a frame`, await scriptMs(me.tab, 120), "ms", 3);
+    add(`the same without drawing, with which frames are ${frameMs.toFixed(0)} ms apart: script a frame`, await scriptMs(me.tab, 120), "ms", 3);
   }));
 }
 

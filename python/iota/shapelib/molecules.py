@@ -116,10 +116,10 @@ def _draw(structure: Imported, symbols: list[str], look: AtomLook) -> None:
 
 
 def is_file(source: PathLike) -> bool:
-    """Whether it names a file rather than a SMILES: it exists, or has the ending of one, or contains a folder."""
+    """Whether it names a file rather than a SMILES: it exists, or has the ending of one."""
     if not isinstance(source, str):
         return True
-    return Path(source).suffix.lower() in READERS or (source.strip() != "" and os.path.exists(source))
+    return Path(source).suffix.lower() in READERS or os.path.exists(source)
 
 
 def ball_of(symbol: str, scale: float) -> tuple[float, tuple[float, float, float]]:
