@@ -53,11 +53,18 @@ class FilmPage:
             meanwhile()
             time.sleep(0.002)
 
-    def picture(self, seconds: float, plots: bool = False) -> bytes:
-        """Advances the clock of the page and draws it: a JPEG file."""
+    def next_picture(self, seconds: float, plots: bool = False) -> bytes:
+        """Advances the clock of the page and begins to draw it. The picture before: a JPEG file, empty if there is none."""
         self.pass_time(seconds)
-        address: str = self._page.evaluate(f"iota.filmFrame({str(plots).lower()})")
-        return base64.b64decode(address.split(",", 1)[1])
+        return self._decoded(f"iota.nextFilmFrame({str(plots).lower()})")
+
+    def last_picture(self) -> bytes:
+        """The picture that was begun last."""
+        return self._decoded("iota.lastFilmFrame()")
+
+    def _decoded(self, call: str) -> bytes:
+        address: str = self._page.evaluate(call)
+        return base64.b64decode(address.partition(",")[2])
 
 
 @contextmanager

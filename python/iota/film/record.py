@@ -76,16 +76,29 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
         page = stack.enter_context(film_page(world.serve(port=0), film.width, film.height))
         shown, wanted = [], film.on_sheet()
         told: list[tuple[float, bytes]] = []
-        for number in range(film.frames):
-            picture = next_frame(world, page, film, number, is_drawn=film.is_drawn or number in wanted)
-            frames = page.take_frames()
+
+        def keep(number: int, picture: bytes) -> None:
             if movie is not None:
                 movie.add(picture)
-            elif file is not None:
-                told += [(number / film.rate, data) for data in frames]
             if number in wanted:
                 shown.append(picture)
+
+        begun: int | None = None  # the frame that the page draws while the one before is kept and the next is stepped
+        for number in range(film.frames):
+            advance(world, page, film, number)
+            if film.is_drawn or number in wanted:
+                picture = page.next_picture(1 / film.rate, film.plots)
+                if begun is not None:
+                    keep(begun, picture)
+                begun = number
+            else:
+                page.pass_time(1 / film.rate)
+            frames = page.take_frames()
+            if file is not None and movie is None:
+                told += [(number / film.rate, data) for data in frames]
             progress(number + 1, film.frames)
+        if begun is not None:
+            keep(begun, page.last_picture())
         if sheet is not None:
             write_sheet(sheet, shown, min(film.columns, len(shown)), film.width)
         if file is not None and movie is None:
@@ -101,17 +114,14 @@ def plain_errors() -> Iterator[None]:
         raise Failed(str(error)) from None
 
 
-def next_frame(world: World, page: FilmPage, film: Film, number: int, is_drawn: bool) -> bytes:
-    """The picture of a frame, empty if it is not drawn; the first frame shows the start."""
+def advance(world: World, page: FilmPage, film: Film, number: int) -> None:
+    """Steps the world to a frame, which the page then has; the first frame shows the start."""
     if number == 0:
         page.wait_for(world.system.step_count, meanwhile=lambda: world.advance(0))
         for _ in range(WARM_UP):
-            page.picture(1 / film.rate, film.plots)
+            page.next_picture(1 / film.rate, film.plots)
+        page.last_picture()
     else:
         steps = 1 / film.rate / world.dt
         world.advance(round(number * steps) - round((number - 1) * steps))
         page.wait_for(world.system.step_count)
-    if is_drawn:
-        return page.picture(1 / film.rate, film.plots)
-    page.pass_time(1 / film.rate)
-    return b""

@@ -6,6 +6,7 @@ import {
   MeshBasicMaterial, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
 import type { Page } from "../page/page.ts";
+import type { Film } from "./film.ts";
 import type { CustomClass } from "../scene/entities/custom.ts";
 import { takeFilmFrame } from "../page/picture.ts";
 
@@ -48,9 +49,13 @@ export interface IotaDebug {
   screenPosition(body: number): [number, number] | null;
   setLook(look: string): void;
   select(body: number): void;
-  /** The next frame of a film, as the address of a JPEG; afterwards the page draws only on this call. For
-   * `iota record`. `plots`: with those of the script. */
-  filmFrame(plots?: boolean): Promise<string> | string;
+  /** Draws one frame and returns it as the address of a JPEG; afterwards the page draws only on this call. */
+  filmFrame(): string;
+  /** For `iota record`: begins to draw the next frame of a film and returns the frame before, empty at first.
+   * `plots`: with those of the script. The page itself is not shown any more. */
+  nextFilmFrame(plots: boolean): Promise<string>;
+  /** The frame that was begun last, empty without one. */
+  lastFilmFrame(): string;
   /** The parts of the page, for the console and for modules of the script. */
   readonly page: Page;
   /** Defines a class of objects that the script makes with `World.custom`; see README.md. */
@@ -67,6 +72,7 @@ declare global {
 
 export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
   const point = new Vector3();
+  let film: Film | null = null;
   const { body: bodies, membership } = page.world.entities;
   const positionOf = (body: number): [number, number, number] => {
     if (!bodies.has(body)) throw new Error(`body ${body} is not drawn`);
@@ -113,23 +119,11 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     setLook: (look) => page.world.setLook(look),
     select: (body) => page.selection.select(body),
     define: (name, made) => void import("../scene/entities/custom.ts").then(({ defineClass }) => defineClass(name, made)),
-    filmFrame: (plots = false) => (plots ? takeFrameWithPlots(page) : takeFilmFrame(page)),
+    filmFrame: () => takeFilmFrame(page),
+    nextFilmFrame: async (plots) => {
+      film ??= new (await import("./film.ts")).Film(page);
+      return film.next(plots ? page.world.entities.plot.all() : []);
+    },
+    lastFilmFrame: () => film?.last() ?? "",
   };
-}
-
-/** The picture has to be taken in the task that draws it, so what is needed for it is fetched before. */
-async function takeFrameWithPlots(page: Page): Promise<string> {
-  const { drawPlots } = await import("../ui/plot.ts");
-  const { viewer, world } = page;
-  const { domElement: { width, height } } = viewer.renderer;
-  const canvas = document.createElement("canvas");
-  canvas.width = width;
-  canvas.height = height;
-  const context = canvas.getContext("2d");
-  if (context === null) return takeFilmFrame(page);
-  world.poses.exact = true;
-  viewer.drawFilmFrame();
-  context.drawImage(viewer.renderer.domElement, 0, 0);
-  drawPlots(context, world.entities.plot.all(), width, height);
-  return canvas.toDataURL("image/jpeg", 0.95);
 }
