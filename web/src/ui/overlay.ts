@@ -14,6 +14,7 @@ import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
 import { Keys } from "./keys.ts";
 import type { Profile } from "./profile.ts";
+import { Welcome } from "./welcome.ts";
 
 const idleAfterMs = 7000;
 const welcomeMs = 15000;
@@ -37,7 +38,7 @@ export class Overlay implements PageListener, FramePart {
   private readonly chosen_ = byId("chosen", HTMLElement);
   private readonly bar_ = byId("bar", HTMLElement);
   private readonly meter_ = byId("meter", HTMLElement);
-  private readonly welcome_ = byId("welcome", HTMLElement);
+  private readonly welcome_: Welcome;
   private readonly help_ = byId("help", HTMLDialogElement);
   private profile_: Profile | null = null;
   private profiles_ = false;
@@ -53,6 +54,7 @@ export class Overlay implements PageListener, FramePart {
   constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
     this.page_ = page;
     this.canvas_ = canvas;
+    this.welcome_ = new Welcome(page, byId("welcome", HTMLElement), byId("foot", HTMLElement));
     const showBar = () => this.showBar();
     page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
     page.commands.add(this.helpCommand_(), this.profileCommand_());
@@ -79,7 +81,7 @@ export class Overlay implements PageListener, FramePart {
     theme.addEventListener("change", applyTheme);
     applyTheme();
     window.setInterval(() => this.refreshMeter_(), meterEveryMs);
-    window.setTimeout(() => this.welcome_.classList.add("gone"), welcomeMs);
+    window.setTimeout(() => this.welcome_.leave(), welcomeMs);
     showBar();
   }
 
@@ -169,7 +171,7 @@ export class Overlay implements PageListener, FramePart {
   }
 
   grab(grab: Grab): void {
-    this.welcome_.classList.add("gone");
+    this.welcome_.leave();
     this.canvas_.classList.toggle("grabbing", this.page_.gestures.grabs.length > 0);
     if (grab.pointer.name === "mouse") this.refreshHint_();
   }
@@ -305,6 +307,7 @@ export class Overlay implements PageListener, FramePart {
 
   private refreshMeter_(): void {
     this.refreshBar_();
+    this.welcome_.place();
     const { world, viewer: { timing } } = this.page_;
     const step = make("b", "", world.stepMs.toFixed(2));
     const frame = make("b", "", timing.frameMs.toFixed(1));

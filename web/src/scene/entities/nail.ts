@@ -52,6 +52,11 @@ export class NailView extends EntityRecords<NailEntity> {
     super.destroy(slot);
   }
 
+  /** Calls a function with the place of each nail, world, m. */
+  forEachPlace(take: (place: Vector3) => void): void {
+    for (const { at } of this.records_.values()) if (placeOf(this.poses_, at, this.place_)) take(this.place_);
+  }
+
   draw(): void {
     const around = aroundOf(this.pool_.count);
     if (around !== this.around_) {
