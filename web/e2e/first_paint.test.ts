@@ -67,3 +67,24 @@ it("says that it opens the world, above a moving bar, until the world is drawn",
   await loading.waitFor({ state: "hidden" });
   await page.close();
 });
+
+it("paints before it prepares to draw, which takes long in software", async () => {
+  const page = await browser.context.newPage();
+  await page.addInitScript(() => {
+    const own = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, ...given: Parameters<typeof own>) {
+      performance.mark("context");
+      return own.apply(this, given);
+    } as typeof own;
+  });
+  for (let trial = 0; trial < 3; trial++) {
+    await page.goto(server.url);
+    await page.waitForFunction(() => globalThis.iota?.connected && performance.getEntriesByName("first-contentful-paint").length > 0);
+    const { paint, context } = await page.evaluate(() => ({
+      paint: performance.getEntriesByName("first-contentful-paint")[0].startTime, context: performance.getEntriesByName("context")[0].startTime,
+    }));
+    expect(paint, "first paint, ms").toBeLessThan(context);
+    await page.goto("about:blank");
+  }
+  await page.close();
+});

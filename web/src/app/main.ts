@@ -15,6 +15,9 @@ import { byId } from "../ui/dom.ts";
 import { offerHeadset } from "../xr/entry.ts";
 import { makeDebug } from "./debug.ts";
 
+/** For a browser that reports no paints. */
+const longestPaintMs = 3000;
+
 /** Address of the world's socket: beside this page, with its token. */
 function socketUrl(): string {
   const url = new URL("ws", document.baseURI);
@@ -142,19 +145,31 @@ function main(): void {
   void offerHeadset(page, canvas);
 }
 
-try {
-  main();
-} catch (error) {
-  // Most likely WebGL is missing: show the error on the page.
-  document.getElementById("loading")?.remove();
-  const text = error instanceof Error ? error.message : String(error);
-  const card = document.createElement("section");
-  card.className = "card error";
-  const title = document.createElement("h2");
-  title.textContent = "This browser cannot draw the world";
-  const body = document.createElement("p");
-  body.textContent = text;
-  card.append(title, body);
-  document.getElementById("cards")?.append(card);
-  throw error;
+/** Until the page has painted that it opens the world: main() takes a second or two where WebGL is in software, in which
+ * nothing would be seen. A hidden page does not paint. */
+function firstPaint(): Promise<void> {
+  return new Promise((resolve) => {
+    if (document.visibilityState !== "visible") return resolve();
+    new PerformanceObserver(() => resolve()).observe({ type: "paint", buffered: true });
+    window.setTimeout(resolve, longestPaintMs);
+  });
 }
+
+void firstPaint().then(() => {
+  try {
+    main();
+  } catch (error) {
+    // Most likely WebGL is missing: show the error on the page.
+    document.getElementById("loading")?.remove();
+    const text = error instanceof Error ? error.message : String(error);
+    const card = document.createElement("section");
+    card.className = "card error";
+    const title = document.createElement("h2");
+    title.textContent = "This browser cannot draw the world";
+    const body = document.createElement("p");
+    body.textContent = text;
+    card.append(title, body);
+    document.getElementById("cards")?.append(card);
+    throw error;
+  }
+});
