@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { BufferGeometry, Matrix4, Object3D, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Color, Matrix4, Object3D, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { Hit, pickRay } from "../src/interact/picking.ts";
 import { body, bodyEntity, id, packRotation, part, style, TestWorld } from "./test_world.ts";
@@ -52,6 +52,35 @@ describe("bodies", () => {
     });
     expect(made).toEqual({ geometries: 0, objects: 0 });
     expect(test.meshes().map((mesh) => mesh.count)).toEqual([count + 1, count + 1]);
+  });
+
+  it("send their tints to the GPU only while these change", () => {
+    const test = told(3);
+    const version = () => (test.meshes()[0].geometry.getAttribute("tint") as BufferAttribute).version;
+    expect(version()).toBe(0);
+    const red = new Color(1, 0, 0);
+    const shown: number[] = [];
+    for (let frame = 0; frame < 60; frame++) {
+      test.world.entities.body.setTint(1, red, 0.5);
+      test.poses([body(1, (frame % 50) / 10)]);
+      shown.push(version());
+    }
+    expect(shown[0]).toBe(1);
+    expect(shown[5]).toBe(6);
+    const settled = shown.at(-1);
+    expect(test.meshes()[0].geometry.getAttribute("tint").getW(1)).toBeCloseTo(0.5, 3);
+    for (let frame = 0; frame < 300; frame++) {
+      test.world.entities.body.setTint(1, red, 0.5);
+      test.poses([body(1, (frame % 50) / 10)]);
+    }
+    const still = version();
+    test.world.entities.body.setTint(1, red, 0.5);
+    test.poses([body(1, 3)]);
+    expect(version()).toBe(still);
+    expect(still).toBeLessThan(settled! + 300);
+    test.world.entities.body.clearTints();
+    test.poses([body(1, 3)]);
+    expect(version()).toBe(still + 1);
   });
 
   it("that come and go leave the others where they are", () => {

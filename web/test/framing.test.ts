@@ -175,6 +175,28 @@ describe("another scene on the same page", () => {
     return { view: navigation.goal, left };
   }
 
+  it("is not looked for on a page at rest", () => {
+    vi.stubGlobal("innerWidth", 1280);
+    vi.stubGlobal("innerHeight", 720);
+    const test = new TestWorld();
+    const viewer = {
+      camera, size: 1, stage: { setScene: vi.fn() }, invalidate: () => {}, renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
+      resting: false,
+    };
+    const framing = new Framing(test.world, viewer as unknown as Viewer, new Navigation(camera));
+    join(test, framing, "one", 0.5, [0, 10]);
+    const looks = (): number => {
+      viewer.stage.setScene.mockClear();
+      for (let frame = 0; frame < 90; frame++) framing.update(1 / 30);
+      return viewer.stage.setScene.mock.calls.length;
+    };
+    expect(looks()).toBeGreaterThan(7);
+    viewer.resting = true;
+    expect(looks()).toBe(0);
+    viewer.resting = false;
+    expect(looks()).toBeGreaterThan(7);
+  });
+
   it.each([["of another title", "other", "connected"], ["of another server, with the same title", "one", "lost"]] as const)("%s is framed as it would be alone, though the user has moved the camera before", (_, title, link) => {
     const [small, large] = [["one", 0.02, [4.9, 5.1]], [title, 0.5, [0, 10]]] as const;
     const { pivot, distance } = show(link, large).view;

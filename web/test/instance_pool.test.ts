@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { BoxGeometry, Matrix4, MeshStandardMaterial, Vector3 } from "three";
+import { BoxGeometry, InstancedBufferAttribute, Matrix4, MeshStandardMaterial, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { InstancePool } from "../src/scene/instance_pool.ts";
 
@@ -58,5 +58,9 @@ describe("a pool of instances", () => {
     pool.upload();
     expect(pool.mesh.instanceMatrix.updateRanges).toEqual([{ start: 0, count: 32 }]);
     expect(pool.mesh.instanceMatrix.version).toBe(2);
+    const tint = pool.mesh.geometry.getAttribute("tint") as InstancedBufferAttribute;
+    expect(tint.version, "without tints").toBe(0);
+    pool.uploadTints();
+    expect([tint.version, tint.updateRanges]).toEqual([1, [{ start: 0, count: 8 }]]);
   });
 });

@@ -29,3 +29,12 @@ it("a frame that takes longer than all easing is drawn", () => {
   redraw.ask();
   expect(drawn(redraw, 10, 5)).toBe(1);
 });
+
+it("a page rests after its last picture, until the next change", () => {
+  const redraw = new Redraw();
+  expect(redraw.isResting).toBe(false);
+  drawn(redraw, 1000, 1 / 60);
+  expect(redraw.isResting).toBe(true);
+  redraw.ask();
+  expect(redraw.isResting).toBe(false);
+});

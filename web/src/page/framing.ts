@@ -105,7 +105,8 @@ export class Framing implements FramePart, PageListener {
       this.frame_(false);
     }
     this.wait_ -= seconds;
-    if (this.framed_ !== null && this.wait_ > 0 && !this.falling_) return;
+    // A page at rest has nothing new to look at.
+    if (this.framed_ !== null && (this.wait_ > 0 || this.viewer_.resting) && !this.falling_) return;
     this.wait_ = lookEverySeconds;
     // A first look at a part of the scene would be kept: light and ground do not shrink at once.
     if (!this.world_.described || this.script_ === "") return;

@@ -12,6 +12,11 @@ export class Redraw {
     this.left_ = drawOn;
   }
 
+  /** Whether nothing has changed for a while. */
+  get isResting(): boolean {
+    return this.left_ <= 0;
+  }
+
   /**
    * Once a frame; whether it is drawn. `seconds` as the parts of the page are told: where frames take long, easing needs as many of
    * them, and so more time.

@@ -101,6 +101,11 @@ export class Viewer {
     }
   }
 
+  /** Whether nothing has changed for a while, so that no picture is drawn. */
+  get resting(): boolean {
+    return this.redraw_.isResting;
+  }
+
   /** Starts drawing; `ready` is called once, after the first pictures of a complete world. */
   start(worthShowing: () => boolean, ready: () => void): void {
     this.worthShowing_ = worthShowing;

@@ -86,11 +86,14 @@ export class InstancePool {
     this.hues_.needsUpdate = true;
   }
 
-  /** Call it after the arrays were written. */
+  /** Call it after the matrices were written. */
   upload(): void {
-    const instances = this.count * this.pieces;
-    uploadRange(this.mesh.instanceMatrix, this.matrixRange_, 16 * instances);
-    uploadRange(this.mesh.geometry.getAttribute("tint") as InstancedBufferAttribute, this.tintRange_, 4 * instances);
+    uploadRange(this.mesh.instanceMatrix, this.matrixRange_, 16 * this.count * this.pieces);
+  }
+
+  /** Call it after the tints were written: most pools have none. */
+  uploadTints(): void {
+    uploadRange(this.mesh.geometry.getAttribute("tint") as InstancedBufferAttribute, this.tintRange_, 4 * this.count * this.pieces);
   }
 
   /** Replaces the geometry and disposes of the old one. */

@@ -465,13 +465,20 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   private drawBatch_({ pool, placements }: Batch): void {
     const { position, rotation, known } = this.poses;
     const { members, count, matrices, tints } = pool;
+    let tinted = false;
     for (let index = 0; index < count; index++) {
       const body = members[index];
       const size = known[body] === 1 ? Math.max(this.grown_[body], 1e-3) : 0;
       writeMatrix(position, rotation, body, placements, placementSize * index, size, matrices, 16 * index);
-      for (let channel = 0; channel < 4; channel++) tints[4 * index + channel] = this.tintNow_[4 * body + channel];
+      for (let channel = 0; channel < 4; channel++) {
+        const tint = this.tintNow_[4 * body + channel];
+        if (tints[4 * index + channel] === tint) continue;
+        tints[4 * index + channel] = tint;
+        tinted = true;
+      }
     }
     pool.upload();
+    if (tinted) pool.uploadTints();
   }
 
   /** Whether a fully drawn body reaches as far as this one. */

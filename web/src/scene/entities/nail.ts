@@ -3,7 +3,7 @@
 // given by a point of a body moves with it.
 
 import { Group, Matrix4, SphereGeometry, Vector3 } from "three";
-import type { NailEntity } from "../../protocol/generated.ts";
+import { NO_BODY, type NailEntity } from "../../protocol/generated.ts";
 import { placeOf } from "../anchors.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
@@ -23,6 +23,11 @@ export class NailView extends EntityRecords<NailEntity> {
   private readonly poses_: PoseBuffer;
   private readonly pool_: InstancePool;
   private around_ = aroundOf(0);
+  /** Since the last draw. */
+  private changed_ = false;
+  /** Whether a nail is on a body or a frame. */
+  private moves_ = false;
+  private drawnRadius_ = 0;
   private readonly indices_ = new Map<number, number>();
   private readonly matrix_ = new Matrix4();
   private readonly place_ = new Vector3();
@@ -39,10 +44,17 @@ export class NailView extends EntityRecords<NailEntity> {
 
   override create(entity: NailEntity): void {
     super.create(entity);
+    this.changed_ = true;
     this.indices_.set(entity.id.slot, this.pool_.add(entity.id.slot));
   }
 
+  override change(entity: NailEntity): void {
+    super.change(entity);
+    this.changed_ = true;
+  }
+
   override destroy(slot: number): void {
+    this.changed_ = true;
     const index = this.indices_.get(slot);
     if (index !== undefined) {
       const moved = this.pool_.remove(index);
@@ -58,6 +70,8 @@ export class NailView extends EntityRecords<NailEntity> {
   }
 
   draw(): void {
+    if (!this.changed_ && !this.moves_ && this.drawnRadius_ === this.pinRadius) return;
+    this.changed_ = this.moves_ = false;
     const around = aroundOf(this.pool_.count);
     if (around !== this.around_) {
       this.around_ = around;
@@ -65,8 +79,10 @@ export class NailView extends EntityRecords<NailEntity> {
     }
     const { members, count, mesh } = this.pool_;
     const radius = this.pinRadius;
+    this.drawnRadius_ = radius;
     for (let index = 0; index < count; index++) {
       const nail = this.records_.get(members[index]);
+      if (nail !== undefined && nail.at.body !== NO_BODY) this.moves_ = true;
       if (nail !== undefined && placeOf(this.poses_, nail.at, this.place_)) {
         this.matrix_.makeScale(radius, radius, radius).setPosition(this.place_);
       } else {
