@@ -155,6 +155,7 @@ export class Viewer {
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
     if (this.redraw_.isDue(seconds)) {
+      this.stage.drawReflections();
       if (this.presenting || !this.renderer.shadowMap.enabled) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);

@@ -49,16 +49,16 @@ function makeBase(name: string): MeshStandardMaterial {
   const set = (values: MeshStandardMaterialParameters) => material.setValues(values);
   switch (name) {
     case "steel":
-      set({ color: "#b9bec3", metalness: 1, roughness: 0.3, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      set({ color: "#959ba1", metalness: 1, roughness: 0.3, roughnessMap: texture("brushed", makeBrushedRoughness) });
       break;
     case "brass":
-      set({ color: "#c79a4b", metalness: 1, roughness: 0.26, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      set({ color: "#c0934a", metalness: 1, roughness: 0.26, roughnessMap: texture("brushed", makeBrushedRoughness) });
       break;
     case "rubber":
       set({ color: "#26282b", roughness: 0.86 });
       break;
     case "wood":
-      set({ roughness: 0.55, map: texture("wood", makeWoodColor) });
+      set({ roughness: 0.45, map: texture("wood", makeWoodColor) });
       break;
     case "rope":
       set({ roughness: 0.9, map: texture("rope", makeRopeColor), normalMap: texture("rope_normals", makeRopeNormals) });
@@ -67,10 +67,14 @@ function makeBase(name: string): MeshStandardMaterial {
       set({ color: "#8fc9bd", roughness: 0.18, transparent: true, opacity: 0.72 });
       break;
     default:
-      set({ color: "#c9c4ba", roughness: 0.6 });
+      // As glossy plastic: a sharp highlight and a faint mirror at grazing angles, at the cost of a matte one.
+      set({ color: "#c9c4ba", roughness: 0.3 });
   }
   return material;
 }
+
+/** Share of the surroundings' diffuse light that reaches surfaces: things near by hide the sky and shade the ground. */
+export const openness = { value: 1 };
 
 /** Mean brightness of the color texture of a material; 1 for plain ones. */
 const meanLight: Record<string, number> = { wood: 0.19, rope: 0.24 };
@@ -86,14 +90,14 @@ function seenNormal(stage: "vertex" | "fragment"): [string, string] {
 
 function tint(material: MeshStandardMaterial, light: number): void {
   material.onBeforeCompile = (shader) => {
-    shader.uniforms["meanLight"] = { value: light };
+    Object.assign(shader.uniforms, { meanLight: { value: light }, openness });
     shader.vertexShader = shader.vertexShader.replace(...seenNormal("vertex"));
     shader.fragmentShader = shader.fragmentShader.replace(...seenNormal("fragment"));
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nattribute vec3 hue;\nvarying vec4 vTint;\nvarying vec3 vHue;")
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;\nvHue = hue;");
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nvarying vec4 vTint;\nvarying vec3 vHue;\nuniform float meanLight;\nconst vec3 luma = vec3(0.3, 0.6, 0.1);")
+      .replace("#include <common>", "#include <common>\nvarying vec4 vTint;\nvarying vec3 vHue;\nuniform float meanLight, openness;\nconst vec3 luma = vec3(0.3, 0.6, 0.1);")
       .replace(
         "#include <color_fragment>",
         `#include <color_fragment>
@@ -102,6 +106,7 @@ if (vHue.r > 0.5) diffuseColor.rgb = (vHue - 1.0) * dot(diffuseColor.rgb, luma) 
 float shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
       )
+      .replace("#include <lights_fragment_maps>", "#include <lights_fragment_maps>\niblIrradiance *= openness;")
       .replace("#include <metalnessmap_fragment>", "#include <metalnessmap_fragment>\nmetalnessFactor *= 1.0 - 0.8 * vTint.a;")
       .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += vTint.rgb * vTint.a * 0.3;");
   };

@@ -3,22 +3,26 @@
 // soft boxes for reflections. All of it is computed, nothing is downloaded, and it scales with the scene.
 
 import {
-  BackSide, BoxGeometry, CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial, Sphere, SphereGeometry, Vector3,
-  type PerspectiveCamera, type Texture, type WebGLRenderer,
+  CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh, MeshLambertMaterial, Scene, Sphere, SphereGeometry,
+  Vector3, type PerspectiveCamera, type WebGLRenderer,
 } from "three";
 import { ContactShadow } from "./contact_shadow.ts";
+import { openness } from "./materials.ts";
+import { makeSky, Reflections, type SkyColors } from "./reflections.ts";
 import { makeFloorColor } from "./textures.ts";
 
 interface Theme {
-  /** At the end of the ground, above it, and overhead. */
-  readonly far: string;
+  /** At the end of the ground and above it, and overhead. */
   readonly horizon: string;
   readonly zenith: string;
   readonly ground: string;
+  /** How much darker the ground is at a distance, where it does not fade into a brighter horizon. */
+  readonly pool: number;
   readonly key: number;
   readonly fill: number;
-  readonly environment: number;
+  /** Soft boxes that surfaces mirror. */
+  readonly lamps: number;
+  readonly openness: number;
 }
 
 /** The script's colors and light; null: the theme's. */
@@ -31,8 +35,8 @@ export interface Surroundings {
 }
 
 const themes: Record<"light" | "dark", Theme> = {
-  light: { far: "#d6d5d1", horizon: "#eceded", zenith: "#9fb0bd", ground: "#c9c0b2", key: 3.2, fill: 0.3, environment: 0.8 },
-  dark: { far: "#24272b", horizon: "#3a4148", zenith: "#0d1013", ground: "#5a5651", key: 2.4, fill: 0.22, environment: 0.6 },
+  light: { horizon: "#d5d7d7", zenith: "#8ea7bb", ground: "#c9c0b2", pool: 0.04, key: 3.2, fill: 0.3, lamps: 1, openness: 0.8 },
+  dark: { horizon: "#2f3338", zenith: "#0d1013", ground: "#5a5651", pool: 0.3, key: 2.4, fill: 0.22, lamps: 0.7, openness: 1 },
 };
 
 /** Relative to the size of the scene (half the diagonal of its box): the ground, its texture, start and end of its
@@ -42,73 +46,14 @@ const tileSize = 2;
 const contactStrength = 0.75;
 /** Ambient light on the ground, also in shadows. */
 const groundAmbient = 1.15;
+/** Mean of the ground's texture, linear. */
+const floorMean = 0.912;
+/** To the key light. */
+const keyDirection = new Vector3(0.55, 1.35, 0.75);
 /** Shadows are drawn on a ground that is so far below, in sizes of the scene. */
 const farGround = 3;
-const fogNear = 4;
-const fogFar = 26;
-
-/** Sky by the height of each pixel's direction; noise of half a step of the screen's colors hides their bands. */
-function makeSky(): ShaderMaterial {
-  return new ShaderMaterial({
-    side: BackSide, depthWrite: false, depthTest: false, fog: false, toneMapped: false,
-    uniforms: { far: { value: new Color() }, horizon: { value: new Color() }, zenith: { value: new Color() } },
-    vertexShader: `
-      varying vec3 vDirection;
-      void main() {
-        vDirection = position;
-        gl_Position = (projectionMatrix * vec4(mat3(modelViewMatrix) * position, 1.0)).xyww;
-      }`,
-    fragmentShader: `
-      uniform vec3 far, horizon, zenith;
-      varying vec3 vDirection;
-      void main() {
-        float height = normalize(vDirection).y;
-        vec3 sky = mix(horizon, zenith, pow(clamp(height * 1.5, 0.0, 1.0), 0.7));
-        gl_FragColor = vec4(mix(far, sky, smoothstep(-0.004, 0.012, height)), 1.0);
-        #include <colorspace_fragment>
-        gl_FragColor.rgb += (fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5) / 255.0;
-      }`,
-  });
-}
-
-function makeStudio(renderer: WebGLRenderer): Texture {
-  const studio = new Scene();
-  const walls = new Mesh(new BoxGeometry(12, 6, 12), new MeshBasicMaterial({ color: "#8e9499", side: BackSide }));
-  walls.position.y = 2;
-  const floor = new Mesh(new PlaneGeometry(12, 12), new MeshBasicMaterial({ color: "#4a443d" }));
-  floor.rotation.x = -Math.PI / 2;
-  floor.position.y = -0.95;
-  const ceiling = new Mesh(new PlaneGeometry(12, 12), new MeshBasicMaterial({ color: "#b9bcbe" }));
-  ceiling.rotation.x = Math.PI / 2;
-  ceiling.position.y = 4.95;
-  studio.add(walls, floor, ceiling);
-  const panel = (width: number, height: number, strength: number, tint: string, at: Vector3) => {
-    const light = new Mesh(
-      new PlaneGeometry(width, height),
-      new MeshBasicMaterial({ color: new Color(tint).multiplyScalar(strength), toneMapped: false }),
-    );
-    light.position.copy(at);
-    light.lookAt(0, 0.5, 0);
-    studio.add(light);
-  };
-  panel(3.4, 2.4, 12, "#fff1dc", new Vector3(3.2, 4.4, 3.4));
-  panel(1.4, 4.6, 7, "#dfeaff", new Vector3(-5.4, 1.8, 2.2));
-  panel(5.0, 0.8, 8, "#ffffff", new Vector3(0, 4.6, -3.4));
-  panel(0.6, 4.2, 6, "#fff6e8", new Vector3(4.6, 1.6, -4.2));
-  // In front of the scene: flat faces towards the user mirror these, with a dark gap between them.
-  panel(4.2, 3.0, 2.2, "#fff4e6", new Vector3(2.6, 1.8, 5.6));
-  panel(0.9, 3.4, 3.6, "#e8f0ff", new Vector3(-2.6, 1.6, 5.4));
-  const generator = new PMREMGenerator(renderer);
-  const target = generator.fromScene(studio, 0.025);
-  generator.dispose();
-  studio.traverse((item) => {
-    if (item instanceof Mesh) {
-      (item.geometry as PlaneGeometry).dispose();
-      (item.material as MeshBasicMaterial).dispose();
-    }
-  });
-  return target.texture;
-}
+const fogNear = 1.5;
+const fogFar = 24;
 
 /** Darkened near bodies. */
 function addContactShadow(material: MeshLambertMaterial, shadow: ContactShadow): void {
@@ -130,18 +75,18 @@ diffuseColor.rgb *= 1.0 - contactStrength * (1.0 - exp(-5.0 * contact));`);
 
 /** The studio is in a pool of light, which gives depth; its ground is flat with one normal, so ambient light is one
  * number. */
-function addPool(material: MeshLambertMaterial, ambient: { value: number }): void {
+function addPool(material: MeshLambertMaterial, ambient: { value: number }, pool: { value: number }): void {
   const before = material.onBeforeCompile;
   material.onBeforeCompile = (shader, renderer) => {
     before.call(material, shader, renderer);
-    shader.uniforms["groundAmbient"] = ambient;
+    Object.assign(shader.uniforms, { groundAmbient: ambient, pool });
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nvarying vec2 vSizes;")
       .replace("#include <project_vertex>", "#include <project_vertex>\nvSizes = position.xy;");
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nuniform float groundAmbient;\nvarying vec2 vSizes;")
+      .replace("#include <common>", "#include <common>\nuniform float groundAmbient, pool;\nvarying vec2 vSizes;")
       .replace("#include <lights_fragment_maps>", "iblIrradiance += vec3(groundAmbient);")
-      .replace("#include <color_fragment>", "#include <color_fragment>\ndiffuseColor.rgb *= 1.0 - 0.3 * smoothstep(0.8, 8.0, length(vSizes));");
+      .replace("#include <color_fragment>", "#include <color_fragment>\ndiffuseColor.rgb *= 1.0 - pool * smoothstep(0.8, 8.0, length(vSizes));");
   };
 }
 
@@ -188,12 +133,15 @@ export class Stage {
   readonly ground: Mesh<CircleGeometry, MeshLambertMaterial>;
 
   private readonly scene_: Scene;
-  private readonly sky_ = new Mesh(new SphereGeometry(1, 16, 12), makeSky());
+  private readonly skyColors_: SkyColors = { horizon: { value: new Color() }, zenith: { value: new Color() } };
+  private readonly sky_ = new Mesh(new SphereGeometry(1, 16, 12), makeSky(this.skyColors_));
+  private readonly reflections_: Reflections;
   private readonly key_ = new DirectionalLight("#fff0dc");
   private readonly fill_ = new HemisphereLight("#dce8f5", "#8a8073");
   private readonly fog_ = new Fog("#ffffff", fogNear, fogFar);
   private readonly cell_ = { value: 0.1 };
   private readonly ambient_ = { value: groundAmbient };
+  private readonly pool_ = { value: 0 };
   private readonly contact_: ContactShadow;
   private readonly middle_ = new Vector3(0, 1, 0);
   /** The ball in which things are lit with shadows. */
@@ -206,7 +154,7 @@ export class Stage {
 
   constructor(scene: Scene, renderer: WebGLRenderer) {
     this.scene_ = scene;
-    scene.environment = makeStudio(renderer);
+    this.reflections_ = new Reflections(renderer, this.skyColors_);
     scene.fog = this.fog_;
     const material = new MeshLambertMaterial({ map: makeFloorColor(), dithering: true });
     material.map?.repeat.set((2 * groundRadius) / tileSize, (2 * groundRadius) / tileSize);
@@ -214,7 +162,7 @@ export class Stage {
     addGrid(material, this.cell_);
     this.contact_ = new ContactShadow(renderer);
     addContactShadow(material, this.contact_);
-    addPool(material, this.ambient_);
+    addPool(material, this.ambient_, this.pool_);
     this.ground = new Mesh(new CircleGeometry(groundRadius, 64), material);
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.receiveShadow = true;
@@ -242,22 +190,26 @@ export class Stage {
   }
 
   private paint_(): void {
-    const { sky, horizon: edge, ground, light } = this.surroundings_;
-    const usual = this.theme_;
-    const theme = {
-      far: edge ?? usual.far, horizon: edge ?? usual.horizon, zenith: sky ?? usual.zenith, ground: ground ?? usual.ground,
-      key: light * usual.key, fill: light * usual.fill, environment: light * usual.environment,
-    };
-    const { far, horizon, zenith } = this.sky_.material.uniforms;
-    (far.value as Color).set(theme.far);
-    (horizon.value as Color).set(theme.horizon);
-    (zenith.value as Color).set(theme.zenith);
-    this.fog_.color.set(theme.far);
-    this.scene_.environmentIntensity = theme.environment;
-    this.ground.material.color.set(theme.ground);
-    this.key_.intensity = theme.key;
-    this.fill_.intensity = theme.fill;
+    const { sky, horizon, ground, light } = this.surroundings_;
+    const { theme_: theme, skyColors_: colors } = this;
+    colors.horizon.value.set(horizon ?? theme.horizon);
+    colors.zenith.value.set(sky ?? theme.zenith);
+    this.fog_.color.copy(colors.horizon.value);
+    this.ground.material.color.set(ground ?? theme.ground);
+    this.key_.intensity = light * theme.key;
+    this.fill_.intensity = light * theme.fill;
     this.ambient_.value = groundAmbient * light;
+    this.pool_.value = theme.pool;
+    openness.value = theme.openness;
+    this.reflect_();
+  }
+
+  /** Surfaces mirror the ground as it is lit far from shadows. */
+  private reflect_(): void {
+    const { key_: key, fill_: fill, ground: { material: { color } } } = this;
+    const lit = key.color.clone().multiplyScalar((key.intensity * keyDirection.y) / keyDirection.length())
+      .add(fill.color.clone().multiplyScalar(fill.intensity)).addScalar(this.ambient_.value).multiply(color).multiplyScalar(floorMean / Math.PI);
+    this.reflections_.set(this.surroundings_.light * this.theme_.lamps, this.hasGround_ ? lit : null);
   }
 
   /** Sky, ground and fog give way to what the cameras of a headset see. */
@@ -276,6 +228,7 @@ export class Stage {
     this.hasGround_ = height !== null;
     this.ground.visible = this.hasGround_ && !this.passthrough_;
     if (height !== null) this.ground.position.y = height;
+    this.reflect_();
     this.lit_.makeEmpty();
   }
 
@@ -323,7 +276,7 @@ export class Stage {
     const both = scene.clone().union(lit);
     lit.copy(!isLit && both.radius < 2 * scene.radius ? both : scene);
     this.contact_.aim(lit.center.x, this.ground.position.y, lit.center.z, lit.radius);
-    this.light_(this.key_, 0.55, 1.35, 0.75);
+    this.light_(this.key_);
   }
 
   /** Updates range of view, fog and sky for the camera. `distance`: to its pivot, m. */
@@ -351,6 +304,11 @@ export class Stage {
     this.fog_.far = 2 * this.fog_.near + fogFar * this.size_;
   }
 
+  /** Renders what surfaces mirror, if it has changed; call it before each picture of the scene. */
+  drawReflections(): void {
+    this.reflections_.update(this.scene_);
+  }
+
   /** Renders the contact shadow; call it before each picture of the scene. */
   drawContacts(): void {
     this.contact_.strength.value = this.ground.visible ? contactStrength : 0;
@@ -362,10 +320,10 @@ export class Stage {
     this.contact_.strength.value = 0;
   }
 
-  private light_(light: DirectionalLight, x: number, y: number, z: number): void {
+  private light_(light: DirectionalLight): void {
     const { center, radius: reach } = this.lit_;
     light.target.position.copy(center);
-    light.position.set(x, y, z).multiplyScalar(reach).add(center);
+    light.position.copy(keyDirection).multiplyScalar(reach).add(center);
     const { camera } = light.shadow;
     camera.left = camera.bottom = -reach;
     camera.right = camera.top = reach;
