@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { bodyDistance, bodyReach, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shapes/shape.ts";
+import { bodyDistance, bodyReach, makeGeometry, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shapes/shape.ts";
 
 /** A box as a closed mesh: corners by the bits of their numbers. */
 function boxMesh(x: number, y: number, z: number): { vertices: number[]; triangles: number[] } {
@@ -89,5 +90,34 @@ describe("a shape on a body", () => {
   it("reaches as far as its offset and size", () => {
     const ball = parseShape({ kind: "sphere", sizes: [0.1], offset: [0, 0.2, 0] });
     expect(bodyReach([placeShape(ball, false, null)])).toBeCloseTo(0.3, 9);
+  });
+});
+
+describe("the triangles of a box", () => {
+  const box = parseShape({ kind: "box", sizes: [0.2, 0.3, 0.4, 0.02] });
+
+  it.each([["tiny", 12], ["coarse", 44]] as const)("that is %s on the screen are %i, closed and seen from outside", (detail, count) => {
+    const geometry = makeGeometry(box, detail);
+    const [index, position] = [geometry.index!, geometry.getAttribute("position")];
+    expect(index.count / 3).toBe(count);
+    expect(position.count).toBe(24);
+    let volume = 0;
+    const open = new Set<string>();
+    for (let corner = 0; corner < index.count; corner += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromBufferAttribute(position, index.getX(corner + k)));
+      volume += a.dot(b.clone().cross(c)) / 6;
+      const names = [a, b, c].map((place) => place.toArray().map((value) => value.toFixed(6)).join());
+      for (const [from, to] of [[0, 1], [1, 2], [2, 0]]) {
+        if (!open.delete(`${names[to]} ${names[from]}`)) open.add(`${names[from]} ${names[to]}`);
+      }
+    }
+    expect(open.size).toBe(0);
+    expect(volume).toBeGreaterThan(0.97 * 0.2 * 0.3 * 0.4);
+    expect(volume).toBeLessThan(1.001 * 0.2 * 0.3 * 0.4);
+  });
+
+  it("keep a rounding that is part of its form, however small the box is on the screen", () => {
+    const count = (rounding: number) => makeGeometry(parseShape({ kind: "box", sizes: [0.2, 0.3, 0.4, rounding] }), "tiny").index!.count / 3;
+    expect([count(0.01), count(0.06)]).toEqual([12, 44]);
   });
 });

@@ -24,8 +24,10 @@ const fineCount = 24;
 const coarseCount = 160;
 const coarsePixels = 5;
 const clearly = 1.25;
-/** More of one part are never drawn coarse: a headset draws each of them three times, for two eyes and for shadows. */
-const coarseUpTo = 1500;
+/** Triangles of one part that are drawn coarse at most: a headset draws each of them three times, for two eyes and for shadows. */
+const mostCoarse = 120_000;
+/** So many of a part are drawn coarse whatever they have. */
+const fewCoarse = 1500;
 /** For rods of at least this half length in radii, the thickness counts. */
 const thinness = 6;
 /** Frames between two measurements of a batch's size on the screen, and the number of measured members. */
@@ -45,13 +47,16 @@ class Batch {
   readonly pool: InstancePool;
   private readonly shape_: Shape;
   private detail_: Detail = "coarse";
+  private readonly coarseUpTo_: number;
   /** Placement of each instance in its body's frame. */
   private placements_ = new Float32Array(placementSize);
 
   /** Made for the first body's length, so that round ends and rope strands of equal bodies are not scaled. */
   constructor(shape: Shape, root: Group) {
     this.shape_ = shape;
-    this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape), 16).addTo(root);
+    const geometry = makeGeometry(shape, this.detail_);
+    this.coarseUpTo_ = Math.max(fewCoarse, mostCoarse / ((geometry.index ?? geometry.getAttribute("position")).count / 3));
+    this.pool = new InstancePool(geometry, materialOf(shape), 16).addTo(root);
   }
 
   /** Radius about the part's own middle, m. */
@@ -84,7 +89,7 @@ class Batch {
     const fine = finePixels * Math.sqrt(Math.max(this.pool.count / fineCount, 1)) * (now === "fine" ? 1 : clearly);
     const coarse = coarsePixels * Math.sqrt(Math.max(this.pool.count / coarseCount, 1)) * (now === "tiny" ? clearly : 1);
     const few = this.pool.count <= fineUpTo;
-    const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse && this.pool.count <= coarseUpTo ? "coarse" : "tiny";
+    const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse && this.pool.count <= this.coarseUpTo_ ? "coarse" : "tiny";
     if (wanted === now) return;
     this.detail_ = wanted;
     this.pool.setGeometry(makeGeometry(this.shape_, wanted));
