@@ -64,12 +64,11 @@ function makeSurroundings(colors: SkyColors, ground: { value: Color }, exposure:
         vec3 film = max(inverse(fromFilm) * min(skyOf(height), 0.9), 0.0);
         vec3 a = 1.0 - 0.983729 * film, b = 0.4329510 * film - 0.0245786, c = 0.238081 * film + 0.000090537;
         vec3 sky = inverse(toFilm) * ((b + sqrt(b * b + 4.0 * a * c)) / (2.0 * a)) * 0.6 / exposure;
-        // Metal needs contrast: the studio is dark overhead, and the ground under a thing is in its shadow.
-        gl_FragColor = vec4(max(sky, 0.0) * mix(1.0, 0.15, smoothstep(0.14, 0.36, height)), 1.0);
-        if (ground.r >= 0.0) {
-          vec3 shaded = ground * mix(1.0, 0.15, smoothstep(-0.2, -0.6, height));
-          gl_FragColor.rgb = mix(gl_FragColor.rgb, shaded, smoothstep(0.0, -0.06, height));
-        }
+        // Things need contrast: the studio is dark overhead, and below a thing is its shadow.
+        float open = mix(1.0, 0.15, smoothstep(0.14, 0.36, height)) * mix(1.0, 0.15, smoothstep(-0.2, -0.6, height));
+        sky = max(sky, 0.0);
+        if (ground.r >= 0.0) sky = mix(sky, ground, smoothstep(0.0, -0.06, height));
+        gl_FragColor = vec4(open * sky, 1.0);
       }`,
   });
 }
