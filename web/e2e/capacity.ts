@@ -252,20 +252,20 @@ async function grabs(): Promise<void> {
   await serving(["web/e2e/chain_probe.py"], {}, (server) => browsing(async (browser) => {
     const tab = await browser.open(server.url);
     await tab.freezeInView(4);
-    const told = (what: string, times: Awaited<ReturnType<typeof grabParts>>) => {
+    const frameMs = () => tab.page.evaluate(() => iota.frameMs);
+    const told = async (what: string, times: Awaited<ReturnType<typeof grabParts>>) => {
       const parts = (["sent", "held", "moved", "drawn"] as const).map((part) => `${part} ${median(times.map((time) => time[part])).toFixed(1)}`);
-      console.log(`  ${what}, ms after the press: ${parts.join(", ")}`);
+      console.log(`  ${what}, ms after the press: ${parts.join(", ")}; frames are ${(await frameMs()).toFixed(0)} apart`);
     };
     const times = await grabParts(tab);
-    const frameMs = await tab.page.evaluate(() => iota.frameMs);
-    add(`from a press to visible motion, median of 15, ${frameMs.toFixed(0)} ms a frame`, median(times.map(({ drawn: time }) => time)), "ms", 50);
-    told("with drawing", times);
+    add("from a press to visible motion, median of 15", median(times.map(({ drawn: time }) => time)), "ms", 50);
+    await told("with drawing", times);
     await tab.page.evaluate(() => {
       iota.page.viewer.renderer.render = () => undefined;
     });
     const without = await grabParts(tab);
     add("the same without drawing, as a fast GPU leaves it", median(without.map(({ drawn: time }) => time)), "ms", 50);
-    told("without drawing", without);
+    await told("without drawing", without);
   }));
 }
 
