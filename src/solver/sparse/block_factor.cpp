@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/sparse/block_factor.h"
 
-#include "solver/sparse/panel_product.h"
 #include "solver/sparse/pivot_block.h"
 
 #include "base/slack.h"
@@ -43,19 +42,6 @@ void for_each_product(const Number* a, int rows, const Number* b, int columns, S
       subtract(r, c, row_product<Pivot>(a + r * Pivot, b + c * Pivot));
 }
 
-/// Calls f.template operator()<Pivot>() for the run-time size of a pivot block.
-template <class Function>
-auto with_pivot(int pivot, Function f) {
-  switch (pivot) {
-    case 1: return f.template operator()<1>();
-    case 2: return f.template operator()<2>();
-    case 3: return f.template operator()<3>();
-    case 4: return f.template operator()<4>();
-    case 5: return f.template operator()<5>();
-    default: return f.template operator()<6>();
-  }
-}
-
 }  // namespace
 
 void BlockFactor::reset(const BlockPattern& pattern) {
@@ -75,13 +61,11 @@ void BlockFactor::grow() {
 void BlockFactor::size_fronts() {
   const auto widest = static_cast<std::size_t>(pattern_->widest_front()) * BlockPattern::max_pivot;
   unscaled_.resize(widest), front_.resize(widest);
-  std::size_t rows = 0, columns = 0;
+  std::size_t largest = 0;
   for (const BlockPattern::Panel& panel : pattern_->panels())
-    rows = std::max<std::size_t>(rows, panel.rows), columns = std::max<std::size_t>(columns, panel.columns);
-  if (rows == 0) return;
-  const std::size_t stride = rows + panel_slack, size = stride * columns + panel_slack;
-  resize_with_slack(panel_lower_, size), resize_with_slack(panel_upper_, size);
-  resize_with_slack(product_, stride * BlockPattern::max_pivot + panel_slack);
+    largest = std::max(largest, std::size_t{strips_in(panel.rows)} * strip_rows * panel.columns);
+  if (largest == 0) return;
+  resize_with_slack(panel_lower_, largest), resize_with_slack(panel_upper_, largest);
   resize_with_slack(row_of_, pattern_->vertices().size());
 }
 
@@ -173,148 +157,6 @@ template <int Pivot, bool Symmetric>
     left += a->width * Pivot, right += a->width * Pivot;
   }
   return wrong;
-}
-
-// --- panels ------------------------------------------------------------------------------------------------------------
-
-template <bool Symmetric>
-int BlockFactor::eliminate(const BlockPattern::Panel& panel) {
-  stride_ = (panel.rows + panel_slack - 1) / panel_slack * panel_slack;
-  place_rows(panel);
-  gather<Symmetric>(panel);
-  int wrong = 0;
-  for (const std::uint32_t v : pattern_->panel_vertices().subspan(panel.first, panel.count)) {
-    const BlockPattern::Vertex& vertex = pattern_->vertices()[v];
-    with_pivot(vertex.pivot,
-               [&]<int Pivot> { wrong += factor_columns<Symmetric, Pivot>(vertex, row_of_[v], panel.rows); });
-  }
-  store<Symmetric>(panel);
-  update_later<Symmetric>(panel);
-  return wrong;
-}
-
-void BlockFactor::place_rows(const BlockPattern::Panel& panel) {
-  const auto members = pattern_->panel_vertices().subspan(panel.first, panel.count);
-  std::uint32_t row = 0;
-  for (const std::uint32_t v : members) row_of_[v] = row, row += pattern_->vertices()[v].pivot;
-  const BlockPattern::Vertex& last = pattern_->vertices()[members.back()];
-  for (const auto& e : pattern_->entries().subspan(last.first_entry, last.entry_count))
-    row_of_[e.vertex] = row, row += e.width;
-}
-
-template <bool Symmetric>
-void BlockFactor::gather(const BlockPattern::Panel& panel) {
-  const std::size_t size = stride_ * panel.columns + panel_slack;
-  std::fill_n(panel_lower_.begin(), size, 0.0);
-  std::fill_n(panel_upper_.begin(), size, 0.0);
-  for (const std::uint32_t v : pattern_->panel_vertices().subspan(panel.first, panel.count)) {
-    const BlockPattern::Vertex& vertex = pattern_->vertices()[v];
-    const std::uint32_t pivot = vertex.pivot;
-    double* const columns = panel_lower_.data() + row_of_[v] * stride_;
-    [[maybe_unused]] double* const mirrored = panel_upper_.data() + row_of_[v] * stride_;
-    for (std::uint32_t r = 0; r < pivot; ++r)
-      for (std::uint32_t c = 0; c < pivot; ++c)
-        columns[c * stride_ + row_of_[v] + r] = diagonals_[vertex.diagonal + r * pivot + c];
-    for (const auto& e : pattern_->entries().subspan(vertex.first_entry, vertex.entry_count))
-      for (std::uint32_t r = 0; r < e.width; ++r)
-        for (std::uint32_t c = 0; c < pivot; ++c) {
-          columns[c * stride_ + row_of_[e.vertex] + r] = lower_[e.offset + r * pivot + c];
-          if constexpr (!Symmetric) mirrored[c * stride_ + row_of_[e.vertex] + r] = upper_[e.offset + r * pivot + c];
-        }
-  }
-}
-
-// Updates by the previous columns, then the pivot block, then the rows below it.
-template <bool Symmetric, int Pivot>
-int BlockFactor::factor_columns(const BlockPattern::Vertex& vertex, std::uint32_t at, std::uint32_t rows) {
-  double* const lower = panel_lower_.data() + at;  // at row `at` of column 0
-  double* const upper = panel_upper_.data() + at;
-  double *const l = lower + at * stride_, *const u = upper + at * stride_;
-  const int depth = static_cast<int>(at), below = static_cast<int>(rows - at);
-  const auto subtract = [&](double* from, const double* x, const double* y) {
-    multiply_panel(product_.data(), x, y, below, Pivot, depth, stride_);
-    for (int c = 0; c < Pivot; ++c)
-      for (int r = 0; r < below; ++r) from[c * stride_ + r] -= product_[c * stride_ + r];
-  };
-  if (depth > 0) {
-    subtract(l, lower, upper);
-    if constexpr (!Symmetric) subtract(u, upper, lower);
-  }
-  int wrong = 0;
-  double d[Pivot][Pivot];
-  for (int r = 0; r < Pivot; ++r)
-    for (int c = 0; c < (Symmetric ? r + 1 : Pivot); ++c) d[r][c] = l[c * stride_ + r];
-  factor_pivot_block<Symmetric>(
-      d, [&](int k, double pivot) { wrong += k < vertex.positives ? !(pivot > 0) : !(pivot < 0); });
-  for (int r = 0; r < Pivot; ++r)
-    for (int c = 0; c < (Symmetric ? r + 1 : Pivot); ++c) diagonals_[vertex.diagonal + r * Pivot + c] = d[r][c];
-  for (int k = 0; k < Pivot; ++k) {  // like factor_row_below, by columns
-    double *const lk = l + k * stride_, *const uk = u + k * stride_;
-    if constexpr (Symmetric) {
-      std::copy(lk + Pivot, lk + below, uk + Pivot);
-      for (int j = 0; j < k; ++j)
-        for (int r = Pivot; r < below; ++r) uk[r] -= u[j * stride_ + r] * d[k][j];
-      for (int r = Pivot; r < below; ++r) lk[r] = uk[r] * d[k][k];
-    } else {
-      for (int j = 0; j < k; ++j)
-        for (int r = Pivot; r < below; ++r) {
-          lk[r] -= l[j * stride_ + r] * d[j][k];
-          uk[r] -= u[j * stride_ + r] * d[k][j];
-        }
-      for (int r = Pivot; r < below; ++r) lk[r] *= d[k][k];
-    }
-  }
-  return wrong;
-}
-
-template <bool Symmetric>
-void BlockFactor::store(const BlockPattern::Panel& panel) {
-  for (const std::uint32_t v : pattern_->panel_vertices().subspan(panel.first, panel.count)) {
-    const BlockPattern::Vertex& vertex = pattern_->vertices()[v];
-    const std::uint32_t pivot = vertex.pivot;
-    const double* const columns = panel_lower_.data() + row_of_[v] * stride_;
-    [[maybe_unused]] const double* const mirrored = panel_upper_.data() + row_of_[v] * stride_;
-    for (const auto& e : pattern_->entries().subspan(vertex.first_entry, vertex.entry_count))
-      for (std::uint32_t r = 0; r < e.width; ++r)
-        for (std::uint32_t c = 0; c < pivot; ++c) {
-          lower_[e.offset + r * pivot + c] = columns[c * stride_ + row_of_[e.vertex] + r];
-          if constexpr (!Symmetric) upper_[e.offset + r * pivot + c] = mirrored[c * stride_ + row_of_[e.vertex] + r];
-        }
-  }
-}
-
-// The last vertex has coupled all later ones of the panel, so each of these has entries for those after it.
-template <bool Symmetric>
-void BlockFactor::update_later(const BlockPattern::Panel& panel) {
-  const BlockPattern::Vertex& last = pattern_->vertices()[pattern_->panel_vertices()[panel.first + panel.count - 1]];
-  const auto entries = pattern_->entries();
-  const std::uint32_t end = last.first_entry + last.entry_count;
-  const auto depth = static_cast<int>(panel.columns);
-  for (std::uint32_t a = last.first_entry; a < end; ++a) {
-    const std::uint32_t row = row_of_[entries[a].vertex];
-    const int width = entries[a].width, rows = static_cast<int>(panel.rows - row);
-    const BlockPattern::Vertex& later = pattern_->vertices()[entries[a].vertex];
-    const std::size_t later_pivot = later.pivot;
-    const auto subtract = [&](double* to, std::size_t from, int target_rows) {
-      for (int r = 0; r < target_rows; ++r)
-        for (int c = 0; c < width; ++c)
-          to[static_cast<std::size_t>(r) * later_pivot + static_cast<std::size_t>(c)] -=
-              product_[static_cast<std::size_t>(c) * stride_ + from + static_cast<std::size_t>(r)];
-    };
-    const auto subtract_all_below = [&](double* values) {
-      const auto* target = entries.data() + later.first_entry;
-      for (std::uint32_t b = a + 1; b < end; ++b, ++target) {
-        while (target->vertex != entries[b].vertex) ++target;
-        subtract(values + target->offset, row_of_[entries[b].vertex] - row, entries[b].width);
-      }
-    };
-    multiply_panel(product_.data(), panel_lower_.data() + row, panel_upper_.data() + row, rows, width, depth, stride_);
-    subtract(diagonals_.data() + later.diagonal, 0, width);
-    subtract_all_below(lower_.data());
-    if constexpr (Symmetric) continue;
-    multiply_panel(product_.data(), panel_upper_.data() + row, panel_lower_.data() + row, rows, width, depth, stride_);
-    subtract_all_below(upper_.data());
-  }
 }
 
 // --- all vertices ------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "solver/sparse/block_pattern.h"
 #include "solver/sparse/leaves.h"
+#include "solver/sparse/panel_product.h"
 
 #include <span>
 #include <vector>
@@ -54,6 +55,8 @@ class BlockFactor {
   template <bool Symmetric>
   int eliminate(const BlockPattern::Panel&);
   void place_rows(const BlockPattern::Panel&);
+  template <class Visit>
+  void for_each_below(const BlockPattern::Panel&, Visit) const;
   template <bool Symmetric>
   void gather(const BlockPattern::Panel&);
   template <bool Symmetric, int Pivot>
@@ -62,6 +65,13 @@ class BlockFactor {
   void store(const BlockPattern::Panel&);
   template <bool Symmetric>
   void update_later(const BlockPattern::Panel&);
+  template <bool Symmetric>
+  void update_columns(const BlockPattern::Panel&, const BlockPattern::Vertex& last, std::uint32_t begin,
+                      std::uint32_t end);
+  std::size_t place_in_panel(std::uint32_t row, std::uint32_t column) const {
+    return place_in_strips(row, column, stride_);
+  }
+  static std::uint32_t strips_in(std::uint32_t rows) { return (rows + strip_rows - 1) / strip_rows; }
   void size_fronts();
   /// visit(vertex) for each in an order in which the right-hand side can be substituted forward.
   template <class Visit>
@@ -77,8 +87,8 @@ class BlockFactor {
   std::vector<double> unscaled_;     // L D of the front at hand, symmetric case
   std::vector<TwoTriangles> front_;  // the front at hand, unsymmetric case
 
-  // The panel at hand: by columns, `stride_` apart.
-  std::vector<double> panel_lower_, panel_upper_, product_;  // L; L D or U'; what is left for later vertices
+  // The panel at hand: strips of rows, `stride_` apart, each by columns.
+  std::vector<double> panel_lower_, panel_upper_;  // L; L D or U'
   std::size_t stride_ = 0;
   std::vector<std::uint32_t> row_of_;  // of a vertex: where its unknowns begin in the panel
 };

@@ -32,7 +32,6 @@ bool PatternBuilder::follow_part(BlockPattern& pattern, CouplingGraph& graph, co
 // From the last vertex down, each joins the panel that starts at its parent in the elimination tree, if that pads its
 // columns with few zeros. Zeros stay zeros, so only the time depends on the choice.
 void BlockPattern::find_panels() {
-  constexpr std::uint32_t most_columns = 96;   // two such panels fit into the first caches
   constexpr std::uint32_t fewest_padding = 8;  // always acceptable rows
   panels_.clear(), panel_vertices_.clear(), panel_of_.clear();
   if (std::none_of(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.is_wide(); })) return;
@@ -47,7 +46,7 @@ void BlockPattern::find_panels() {
     if (vertex.entry_count == 0) continue;
     const std::uint32_t parent = entries_[vertex.first_entry].vertex;
     const std::uint32_t padded = columns[parent] + below[parent];
-    if (!begins[parent] || columns[parent] + vertex.pivot > most_columns) continue;
+    if (!begins[parent] || columns[parent] + vertex.pivot > Panel::most_columns) continue;
     if (padded > rows + std::max(fewest_padding, padded / 5)) continue;
     begins[parent] = 0;
     next[v] = parent, columns[v] = columns[parent] + vertex.pivot, below[v] = below[parent];

@@ -50,9 +50,10 @@ class BlockPattern {
   /// Vertices that are eliminated together as one dense block of columns: each is coupled first with the next one, and
   /// has few couplings that the last one does not have. They are eliminated when the last one is due.
   struct Panel {
-    std::uint32_t first = 0, count = 0;  ///< of `panel_vertices`
-    std::uint32_t columns = 0;           ///< unknowns of its vertices
-    std::uint32_t rows = 0;              ///< columns, and unknowns of the last vertex's entries
+    static constexpr int most_columns = 96;  ///< of a few strips of rows two such panels fit into the first cache
+    std::uint32_t first = 0, count = 0;      ///< of `panel_vertices`
+    std::uint32_t columns = 0;               ///< unknowns of its vertices
+    std::uint32_t rows = 0;                  ///< columns, and unknowns of the last vertex's entries
   };
   /// The place of the 3 x 3 block of two nodes: in the block of the first-eliminated one.
   struct PairSlot {

@@ -56,4 +56,17 @@ inline void factor_row_below(const Number (&d)[Pivot][Pivot], Number (&l)[Pivot]
   });
 }
 
+/// Calls f.template operator()<Pivot>() for the run-time size of a pivot block.
+template <class Function>
+inline auto with_pivot(int pivot, Function f) {
+  switch (pivot) {
+    case 1: return f.template operator()<1>();
+    case 2: return f.template operator()<2>();
+    case 3: return f.template operator()<3>();
+    case 4: return f.template operator()<4>();
+    case 5: return f.template operator()<5>();
+    default: return f.template operator()<6>();
+  }
+}
+
 }  // namespace iota::solver

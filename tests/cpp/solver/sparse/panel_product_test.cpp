@@ -9,24 +9,29 @@
 namespace iota::solver {
 namespace {
 
-TEST(PanelProduct, multiplies_like_three_loops_in_every_size) {
+TEST(PanelProduct, multiplies_like_three_loops_in_every_size_and_place) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> number(-1, 1);
-  for (int rows : {1, 3, 15, 16, 17, 40, 48})
-    for (int columns = 1; columns <= 6; ++columns)
-      for (int depth : {1, 2, 7}) {
-        const std::size_t stride = 48;
-        std::vector<double> x(stride * 8 + panel_slack), y(stride * 8), t(stride * 8);
-        for (double& v : x) v = number(random);
-        for (double& v : y) v = number(random);
-        multiply_panel(t.data(), x.data(), y.data(), rows, columns, depth, stride);
-        for (int r = 0; r < rows; ++r)
-          for (int c = 0; c < columns; ++c) {
-            double sum = 0;
-            for (int k = 0; k < depth; ++k) sum += x[k * stride + r] * y[k * stride + c];
-            ASSERT_EQ(t[c * stride + r], sum) << "the same bits on all processors";
-          }
-      }
+  constexpr std::size_t depth_of_panel = 8, stride = depth_of_panel * strip_rows;
+  std::vector<double> x(6 * stride), y(2 * stride);
+  for (double& v : x) v = number(random);
+  for (double& v : y) v = number(random);
+  for (int strips : {1, 2, 3, 6})
+    for (std::size_t first = 0; first < strip_rows; ++first)
+      for (int columns = 1; columns <= 6; ++columns)
+        for (int depth : {1, 2, 7}) {
+          std::vector<double> t(static_cast<std::size_t>(strips * columns * strip_rows) + 1, 7);
+          multiply_strips(t.data(), x.data(), strips, y.data(), first, columns, depth, stride);
+          for (int row = 0; row < strips * strip_rows; ++row)
+            for (int c = 0; c < columns; ++c) {
+              double sum = 0;
+              for (int k = 0; k < depth; ++k)
+                sum += x[place_in_strips(row, k, stride)] * y[place_in_strips(first + c, k, stride)];
+              ASSERT_EQ(t[(row / strip_rows * columns + c) * strip_rows + row % strip_rows], sum)
+                  << "the same bits on all processors";
+            }
+          ASSERT_EQ(t.back(), 7) << "nothing is written behind the product";
+        }
 }
 
 }  // namespace
