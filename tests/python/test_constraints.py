@@ -175,6 +175,24 @@ def test_beads_run_on_points_and_on_functions() -> None:
     run(system, 0.1)
 
 
+@pytest.mark.parametrize("budget", [0, 40])
+def test_a_box_laid_on_a_plane_rests_and_each_step_without_a_solution_says_so(budget: int) -> None:
+    """A face touches a plane in many points, and one row knows one of them: no step has a solution (see docs/why.md)."""
+    system = iota.System()
+    system.budget_iterations = budget
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.1 + 1e-3, 0))
+    touch = system.surface_to_surface(box, iota.Box((0.2, 0.2, 0.2)), None, iota.HalfSpace((0, 1, 0)))
+    reports = [system.step(1 / 60) for _ in range(4)]
+    assert [report.unconverged for report in reports[1:]] == [1, 1, 1]
+    assert [report.cut_short for report in reports[1:]] == [1 if budget else 0] * 3
+    assert box.position == pytest.approx((0, 0.1, 0), abs=1e-6)
+    assert system.energy.made < 1e-9
+    assert system.validate() == []
+    touch.destroy()
+    assert run(system, 0.1).unconverged == 0
+    assert box.position.y == pytest.approx(0.1 - 9.81 * 0.1**2 / 2, abs=1e-4)
+
+
 def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     system = iota.System(damping=0.5)
     ball = system.body(shape=iota.Sphere(0.2), mass=1, position=(0.3, 1, 0))
