@@ -57,10 +57,10 @@ def record(*arguments: str | Path, **environment: str) -> subprocess.CompletedPr
 
 
 def red_center(pixels: Any) -> float:
-    """Middle of what is red, px from the left."""
+    """Middle of what is red, px from the left; highlights and what is mirrored at a rim are paler."""
     red, green, blue = (pixels[..., channel].astype(int) for channel in range(3))
-    _, x = np.nonzero((red > 90) & (red > 2 * green) & (red > 2 * blue))
-    return float(x.mean())
+    _, x = np.nonzero(red - np.maximum(green, blue) > 40)
+    return float(x.mean()) + 0.5
 
 
 @needs_browser
