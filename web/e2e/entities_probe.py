@@ -83,7 +83,8 @@ def draw_more(world: iota.World) -> None:
         color=["#8a4fb0", "#f2a324"],
     )
     frame = world.frame((9, 9, 9))
-    world.shape(looks.pyramid((0.2, 0.2, 0.2), color="#2f9d92"), on=frame, position=(0, 0.1, 0), rotation=UPRIGHT)
+    # So steep that its face does not mirror the lamp above it, which is white.
+    world.shape(looks.pyramid((0.4, 0.2, 0.2), color="#2f9d92"), on=frame, position=(0, 0.2, 0), rotation=UPRIGHT)
     # Green and red above, blue and yellow below.
     four = np.array([[(0.3, 0.6, 0.32), (0.8, 0, 0)], [(0, 0, 0.8), (0.8, 0.7, 0)]])
     world.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=(1.1, 1.5, 0))
