@@ -128,12 +128,22 @@ export class Tab {
     await this.until("it has been drawn", () => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
   }
 
-  /** Returns a paused world to its start. A page can do so once a second. */
-  async backToStart(): Promise<void> {
-    await new Promise((resolve) => setTimeout(resolve, Math.max(0, this.begunAnew_ + 1000 - performance.now())));
-    await this.page.evaluate(() => iota.page.commands.run("reset"));
-    await this.until("it has begun anew", () => iota.time === 0);
-    this.begunAnew_ = performance.now();
+  /** Returns the world to its start, and waits until the page shows that. A page can do so once a second. */
+  async reset(): Promise<void> {
+    for (let trial = 0; trial < 8; trial++) {
+      await new Promise((resolve) => setTimeout(resolve, Math.max(0, this.begunAnew_ + 1000 - performance.now())));
+      const hasBegun = await this.page.evaluate(async () => {
+        const before = iota.time;
+        iota.page.commands.run("reset");
+        // A time that is merely small may be that after an earlier reset.
+        const isAnew = () => iota.time === 0 || iota.time < before;
+        for (let wait = 0; wait < 800 && !isAnew(); wait++) await new Promise((resolve) => setTimeout(resolve, 5));
+        return isAnew();
+      });
+      this.begunAnew_ = performance.now();
+      if (hasBegun) return;
+    }
+    throw new Error("the world did not begin anew");
   }
 
   /** Waits until the camera of the flat page stands still, and returns its place. */
@@ -163,7 +173,7 @@ export class Tab {
   /** Waits until the world has gone on by s of its own time. */
   async goOn(seconds: number): Promise<void> {
     const from = await this.page.evaluate(() => iota.time);
-    // A reset begins at 0 again.
+    // A script may reset it, whose time begins at 0 again.
     await this.until(`${seconds} s have passed in the world`, ([began, span]) => iota.time > began + span || iota.time < began, [from, seconds] as const);
   }
 
@@ -207,17 +217,6 @@ export class Tab {
       return performance.now() - began < longest;
     });
     if (!rested) throw new Error("the paused world goes on moving");
-  }
-
-  async reset(): Promise<void> {
-    await this.page.keyboard.press("Escape");
-    // A second reset within a second is refused.
-    const isWhole = () => new Set(iota.articulates().values()).size === 1 && iota.time < 1.5;
-    for (let trial = 0; trial < 8; trial++) {
-      await this.page.keyboard.press("r");
-      if (await this.page.waitForFunction(isWhole, undefined, { timeout: 4000, polling: 20 }).then(() => true, () => false)) return;
-    }
-    await this.until("the chain is whole again", isWhole);
   }
 
   /** Freezes the world when a body is well in view and not covered by the page's controls. */

@@ -22,6 +22,7 @@ afterAll(async () => {
 
 beforeEach(async () => {
   await tab.page.mouse.up();
+  await tab.page.keyboard.press("Escape");
   await tab.pause(false);
   await tab.reset();
 });
@@ -160,7 +161,6 @@ describe("the page of a chain", () => {
   });
 
   it("selects several links by a rectangle, breaks all of them at once, and takes that back at once", async () => {
-    await tab.reset();
     await tab.freeze();
     const places = await Promise.all([6, 9].map((link) => tab.place(link)));
     const [left, right] = [Math.min(...places.map(([x]) => x)) - 30, Math.max(...places.map(([x]) => x)) + 30];
@@ -180,7 +180,6 @@ describe("the page of a chain", () => {
     await tab.until("all are on again", () => new Set(iota.articulates().values()).size === 1);
     await tab.page.keyboard.press("Escape");
     await tab.until("nothing is selected", () => iota.page.selection.several.size === 0);
-    await tab.reset();
   });
 
   it("tells the user of a part of the page that cannot be fetched", async () => {

@@ -74,7 +74,7 @@ it("shadows on a ground far below what falls are in the first picture, and in no
   try {
     const tab = await open(server.url, true);
     await tab.pause(true);
-    await tab.backToStart();
+    await tab.reset();
     // The rod, which has shadows of itself, is in the upper half.
     await expect.poll(async () => (await drawn(tab, "shadows")).low).toBeLessThan(0.4);
     expect(await tab.page.evaluate(() => iota.bodyPosition(0)[1]), "it has not fallen").toBeGreaterThan(-1);

@@ -20,7 +20,7 @@ beforeAll(async () => {
   await tab.drawn();
   // Once more, for the paths that the page has seen from their start.
   await tab.until("the script has stopped it", () => iota.paused && iota.time > 0.55);
-  await tab.backToStart();
+  await tab.reset();
   // Not by a key until it runs, which it does for 0.6 s only: a busy page could miss that, and press again.
   await tab.page.evaluate(() => iota.page.commands.run("play"));
   await tab.until("it stays where the script stops it", () => iota.paused && iota.time > 0.55);

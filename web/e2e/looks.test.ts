@@ -34,7 +34,7 @@ beforeAll(async () => {
   await tab.until("its moving things have come some way", () => iota.time > 0.6);
   // The ball that runs about is where it began.
   await tab.freeze();
-  await tab.backToStart();
+  await tab.reset();
   await tab.freeze();
 });
 

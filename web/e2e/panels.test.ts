@@ -46,7 +46,7 @@ async function visit(server: WorldServer, options: BrowserOptions, look: (tab: T
     await tab.drawn();
     // The world at its start, so that plots are empty and all is whole.
     await tab.pause(true);
-    await tab.backToStart();
+    await tab.reset();
     await tab.page.evaluate((rules) => {
       const sheet = new CSSStyleSheet();
       sheet.replaceSync(rules);
@@ -105,7 +105,7 @@ describe("the headset", () => {
     try {
       const me = await HeadsetTab.open(browser, server().url);
       await me.tab.pause(true);
-      await me.tab.page.evaluate(() => iota.page.commands.run("reset"));
+      await me.tab.reset();
       await me.enter();
       await me.lookAtWrist();
       await expectKept(me.tab, `panel_wrist_${name}`, () => me.tab.page.evaluate(() => {

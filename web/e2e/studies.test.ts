@@ -209,7 +209,7 @@ class Study {
    * have torn off. */
   private async beginAnew(): Promise<void> {
     await this.tab.pause(true);
-    await this.tab.backToStart();
+    await this.tab.reset();
   }
 
   /** Repeats the first drag with a finger. */

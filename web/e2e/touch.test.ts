@@ -22,6 +22,7 @@ afterAll(async () => {
 
 beforeEach(async () => {
   await tab.lift();
+  await tab.page.keyboard.press("Escape");
   await tab.pause(false);
   await tab.reset();
 });

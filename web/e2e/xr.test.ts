@@ -33,7 +33,7 @@ afterAll(async () => {
 /** Restores the whole chain at rest: earlier tests leave it broken, folded or swinging. */
 async function calm(): Promise<void> {
   await me.tab.pause(false);
-  await me.tab.page.evaluate(() => iota.page.commands.run("reset"));
+  await me.tab.reset();
   await me.tab.until("the chain hangs still", () => iota.step > 60 && iota.bodies().every((id) => {
     const [x, , z] = iota.bodyPosition(id);
     return Math.hypot(x, z) < 0.12;
