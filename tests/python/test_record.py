@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import iota
 from iota.cli.record import Bar
 from iota.film import browser
 
@@ -61,6 +62,24 @@ def red_center(pixels: Any) -> float:
     red, green, blue = (pixels[..., channel].astype(int) for channel in range(3))
     _, x = np.nonzero(red - np.maximum(green, blue) > 40)
     return float(x.mean()) + 0.5
+
+
+@needs_browser
+def test_a_film_opens_where_the_browser_reports_no_paint(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on a busy machine; a page that people look at waits for that."""
+
+    class WithoutPaint(browser.FilmPage):
+        def __init__(self, page: Any) -> None:
+            page.add_init_script("globalThis.PerformanceObserver = class { observe() {} }")
+            super().__init__(page)
+
+    monkeypatch.setattr(browser, "FilmPage", WithoutPaint)
+    system = iota.System()
+    system.body().particle((0, 1, 0))
+    world = iota.World(system)
+    with browser.film_page(world.serve(port=0), 64, 48) as page:
+        page.wait_for(0, meanwhile=lambda: world.advance(0))
+    world.stop()
 
 
 @needs_browser

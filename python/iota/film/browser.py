@@ -98,13 +98,13 @@ def open_browser(purpose: str = "films") -> Iterator[Any]:
 
 @contextmanager
 def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
-    """A page of that size, px. Raises Failed if no browser can be started."""
+    """The page at an address with a token, of that size, px. Raises Failed if no browser can be started."""
     with open_browser() as browser:
         page = browser.new_page(viewport={"width": width, "height": height})
         page.clock.install(time=0)
         page.clock.pause_at(1)
         film = FilmPage(page)
-        page.goto(url)
+        page.goto(f"{url}&film")
         yield film
 
 

@@ -146,10 +146,10 @@ function main(): void {
 }
 
 /** Until the page has painted that it opens the world: main() takes a second or two where WebGL is in software, in which
- * nothing would be seen. A hidden page does not paint. */
+ * nothing would be seen. A hidden page does not paint. Nobody sees that of a film, whose clock stands: it might wait for ever. */
 function firstPaint(): Promise<void> {
   return new Promise((resolve) => {
-    if (document.visibilityState !== "visible") return resolve();
+    if (document.visibilityState !== "visible" || new URLSearchParams(location.search).has("film")) return resolve();
     new PerformanceObserver(() => resolve()).observe({ type: "paint", buffered: true });
     window.setTimeout(resolve, longestPaintMs);
   });
