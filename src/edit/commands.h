@@ -136,6 +136,16 @@ using Command = std::variant<
     Destroy<AngleSpringId>>;
 // clang-format on
 
+/// The place of a command in that list.
+template <class C, class Commands = Command>
+inline constexpr std::uint8_t place_of = 0;
+template <class C, class... Commands>
+inline constexpr std::uint8_t place_of<C, std::variant<Commands...>> = [] {
+  std::uint8_t place = 0;
+  static_cast<void>(((std::is_same_v<C, Commands> || (++place, false)) || ...));
+  return place;
+}();
+
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for
 /// users (`queued_as`).
 template <class C>

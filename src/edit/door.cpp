@@ -7,6 +7,23 @@
 
 namespace iota::edit {
 
+namespace {
+
+/// Calls visit(number, command) for each command that `write` appended.
+template <class Visit>
+void for_each_command(std::span<const std::byte> bytes, Visit visit) {
+  Reader reader(bytes);
+  for (std::size_t number = 1; !reader.at_end(); ++number) {
+    Command command;
+    serialize(reader, command);
+    if (!reader.ok())
+      throw std::invalid_argument(text("replay: command ", number, " of the recording is cut short or damaged"));
+    visit(number, command);
+  }
+}
+
+}  // namespace
+
 std::string queued_edits() {
   std::vector<std::string_view> names;
   const auto add = [&]<class C>() {
@@ -34,8 +51,7 @@ void Door::apply_queue(StepReport& report) {
   ingredient::begin_edits(editor_.model);
   const double before = editor_.held.book().edits;
   const std::uint32_t version = editor_.model.structure_version;
-  std::vector<Command> edits;
-  edits.swap(queue_);
+  const std::vector<std::byte> edits = std::exchange(queue_, {});
   const auto apply_one = [&]<class C>(const C& command) {
     if constexpr (!is_queueable<C>)
       return;
@@ -44,13 +60,13 @@ void Door::apply_queue(StepReport& report) {
     else
       apply(editor_, command);
   };
-  for (const Command& edit : edits) {
+  for_each_command(edits, [&](std::size_t, const Command& edit) {
     try {
       std::visit(apply_one, edit);
     } catch (const std::exception& error) {
       report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
     }
-  }
+  });
   report.edits->changed = report.edits->changed || editor_.model.structure_version != version;
   report.edits->articulates_after = editor_.model.articulates.size();
   report.edits->structure_version = editor_.model.structure_version;
@@ -80,19 +96,6 @@ void Door::record_step(const Step& step) {
 
 namespace {
 
-/// Calls visit(number, command) for each command of a recording.
-template <class Visit>
-void for_each_command(const Recording& recording, Visit visit) {
-  Reader reader(recording.commands);
-  for (std::size_t number = 1; !reader.at_end(); ++number) {
-    Command command;
-    serialize(reader, command);
-    if (!reader.ok())
-      throw std::invalid_argument(text("replay: command ", number, " of the recording is cut short or damaged"));
-    visit(number, command);
-  }
-}
-
 struct KeepFunctions {
   explicit KeepFunctions(Editor& editor) : editor(editor) { editor.keeps_functions = true; }
   ~KeepFunctions() { editor.keeps_functions = false; }
@@ -103,13 +106,13 @@ struct KeepFunctions {
 
 std::optional<std::uint64_t> Door::replay(const Recording& recording,
                                           const std::function<void(const Command&)>& execute) {
-  for_each_command(recording, [](std::size_t, const Command&) {});  // throws before anything changes
+  for_each_command(recording.commands, [](std::size_t, const Command&) {});  // throws before anything changes
   editor_.restore(recording.start);
   editor_.forget_history();
   const KeepFunctions keep(editor_);
   std::size_t steps = 0;
   std::optional<std::uint64_t> differs;
-  for_each_command(recording, [&](std::size_t number, const Command& command) {
+  for_each_command(recording.commands, [&](std::size_t number, const Command& command) {
     if (differs) return;
     try {
       execute(command);

@@ -57,9 +57,18 @@ class Door {
 
   Editor& editor_;
   bool is_stepping_ = false;
-  std::vector<Command> queue_;  // requested during the step
+  std::vector<std::byte> queue_;  // requested during the step, as in a recording
   std::optional<Recording> recording_;
 };
+
+/// Appends a command as recordings have it. A `Command` is not made of it: each file that executes commands would compile
+/// that for all of them.
+template <class C>
+void write(std::vector<std::byte>& bytes, const C& command) {
+  Writer writer(bytes);
+  writer.value(place_of<C>);
+  serialize(writer, command);
+}
 
 // --- definitions --------------------------------------------------------------------------------------------------------
 
@@ -73,7 +82,7 @@ ResultOf<C> Door::execute(const C& command) {
 template <class C>
 ResultOf<C> Door::put_off(const C& command) {
   if constexpr (is_queueable<C>) {
-    queue_.push_back(command);
+    write(queue_, command);
     if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>) {
       RestructureReport report;
       report.queued = true;
@@ -114,10 +123,7 @@ void Door::note_edit() {
 
 template <class C>
 void Door::record(const C& command) {
-  if (!recording_) return;
-  Writer writer(recording_->commands);
-  writer.value(static_cast<std::uint8_t>(Command(std::in_place_type<C>).index()));
-  serialize(writer, command);
+  if (recording_) write(recording_->commands, command);
 }
 
 }  // namespace iota::edit
