@@ -79,7 +79,7 @@ def test_a_film_opens_where_the_browser_reports_no_paint(monkeypatch: pytest.Mon
     world = iota.World(system)
     with browser.film_page(world.serve(port=0), 64, 48) as page:
         page.wait_for(0, meanwhile=lambda: world.advance(0))
-    world.stop()
+    world.close()
 
 
 @needs_browser
