@@ -18,7 +18,8 @@ class Edits : public View {
   /// @name Combining and separating
   ///@{
   /// Same particle: nothing. Same body: q is absorbed by p. Hinged: the hinge becomes rigid, q's body is absorbed by
-  /// p's. Unrelated: a hinge; particles that are apart meet at once (`over` = 0) or within `over` seconds.
+  /// p's. Unrelated: a hinge; particles that are apart meet at once (`over` = 0, or a gap below 1e-4 of the bodies'
+  /// extent) or within `over` seconds.
   RestructureReport combine(ParticleId p, ParticleId q, double over = 0);
   /// Makes two bodies one rigid body, without moving them; b is absorbed.
   RestructureReport combine(BodyId a, BodyId b);

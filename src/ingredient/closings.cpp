@@ -21,8 +21,11 @@ double closing_factor(double elapsed, double duration) {
   return 1 - 0.99 * s * s * (3 - 2 * s);
 }
 
-solver::DistanceConstraint constraint_of(const Closing& closing, std::uint32_t a, std::uint32_t b) {
-  return {{a, b}, closing.distance, closing.distance};
+/// At some time of the closing. Its scale is the present length: at that of the start, a gap of a few percent of the last
+/// lengths counted as met, and the step that closed it made energy.
+solver::DistanceConstraint constraint_of(const Closing& closing, double elapsed, std::uint32_t a, std::uint32_t b) {
+  const double length = closing.distance * closing_factor(elapsed, closing.duration);
+  return {{a, b}, length, length};
 }
 
 }  // namespace
@@ -39,7 +42,7 @@ void Closings::build(const IslandMap& map, Problem& problem) {
     const Closing& c = model.closings[slot];
     const std::uint32_t a = map.node_of(c.p), b = map.node_of(c.q);
     if (a == none || b == none) continue;  // of an inactive body
-    problem.add(constraint_of(c, a, b), {owner, {}, slot});
+    problem.add(constraint_of(c, c.elapsed, a, b), {owner, {}, slot});
   }
 }
 
@@ -49,7 +52,8 @@ void Closings::load(const Model& model, const IslandNodes&, double h, Problem& p
   for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Closing& c = model.closings[key.slot];
     distances.multipliers[i] = c.multiplier;
-    distances.items[i].length = c.distance * closing_factor(c.elapsed + h, c.duration);
+    const auto [p, q] = distances.items[i].nodes;
+    distances.items[i] = constraint_of(c, c.elapsed + h, p, q);
     problem.has_new_rows = problem.has_new_rows || (h > 0 && c.elapsed == 0);
   });
 }
@@ -86,8 +90,8 @@ void Closings::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.closings.for_each_of(p, [&](std::uint32_t slot) {
       const Closing& closing = model.closings[slot];
-      for_each_row_force(step, constraint_of(closing, 0, 1), &closing.multiplier, std::array{closing.p, closing.q},
-                         [&](std::uint32_t particle, const Vec3& force) {
+      for_each_row_force(step, constraint_of(closing, closing.elapsed, 0, 1), &closing.multiplier,
+                         std::array{closing.p, closing.q}, [&](std::uint32_t particle, const Vec3& force) {
                            if (particle == p)
                              reader.take({.particle = p, .force = force, .part = model.particles[p].part});
                          });

@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 import iota
@@ -78,6 +79,38 @@ def test_combine_over_a_time_closes_smoothly(space: iota.System) -> None:
     assert space.closing_count == 0 and gaps[-1] == 0
     assert all(late <= early + 1e-12 for early, late in pairwise(gaps))
     assert 0.05 < gaps[len(gaps) // 2] < 0.65
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust"])
+@pytest.mark.parametrize("last", [0.05, 0.2, 0.5, 1.0])  # of a step: the part of the last one that the closing takes
+def test_the_end_of_a_slow_combine_makes_no_energy(mode: str, last: float) -> None:
+    system = iota.System(mode=mode, damping=2)
+    links = iota.builder.chain(24, 1.8, top=(0, 0, 0), direction=(0.01, -1, 0.007)).realize(system).bodies
+    above, below = links[4].particles[-1], links[5].particles[0]
+    above.separate(below)
+    dt = 1 / 60
+    system.step(dt, count=30)
+    above.combine(below, over=(round(abs(above.position - below.position) / (1.5 * dt)) - 1 + last) * dt)
+    while system.closing_count:
+        assert system.step(dt).energy.made == 0
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust"])
+def test_a_slow_combine_over_a_gap_of_any_size_leaves_the_motion_alone(mode: str) -> None:
+    energies = []
+    for gap in [0, *10.0 ** -np.arange(4, 13)]:
+        system = iota.System(mode=mode)
+        upper = iota.builder.chain(8, 0.8, top=(0, 0, 0), direction=(0.3, -0.9, 0.1)).realize(system).bodies
+        end = upper[-1].particles[-1]
+        top = np.array(tuple(end.position)) + gap * np.array((0.6, 0.8, 0))
+        lower = iota.builder.chain(8, 0.8, top=tuple(top), direction=(-0.3, -0.9, 0.1)).realize(system).bodies
+        lower[0].particles[0].release()
+        end.combine(lower[0].particles[0], over=0.1)
+        for _ in range(12):
+            report = system.step(0.01)
+            assert report.unconverged == 0, f"a gap of {gap:g} m"
+        energies.append(report.energy.kinetic)
+    assert energies == pytest.approx([energies[0]] * len(energies), rel=0.02)
 
 
 def test_combine_of_bodies_makes_one_rigid_body_in_place(space: iota.System) -> None:
