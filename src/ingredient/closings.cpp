@@ -21,11 +21,11 @@ double closing_factor(double elapsed, double duration) {
   return 1 - 0.99 * s * s * (3 - 2 * s);
 }
 
-/// At some time of the closing. Its scale is the present length: at that of the start, a gap of a few percent of the last
-/// lengths counted as met, and the step that closed it made energy.
-solver::DistanceConstraint constraint_of(const Closing& closing, double elapsed, std::uint32_t a, std::uint32_t b) {
-  const double length = closing.distance * closing_factor(elapsed, closing.duration);
-  return {{a, b}, length, length};
+/// With the scale of the start, as in the model's multiplier: forces are known without the time. The solver's row has the
+/// scale of the present length. With that of the start, a gap of a few percent of the last lengths counted as met, and the
+/// step that closed it made energy.
+solver::DistanceConstraint constraint_of(const Closing& closing, std::uint32_t a, std::uint32_t b) {
+  return {{a, b}, closing.distance, closing.distance};
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void Closings::build(const IslandMap& map, Problem& problem) {
     const Closing& c = model.closings[slot];
     const std::uint32_t a = map.node_of(c.p), b = map.node_of(c.q);
     if (a == none || b == none) continue;  // of an inactive body
-    problem.add(constraint_of(c, c.elapsed, a, b), {owner, {}, slot});
+    problem.add(constraint_of(c, a, b), {owner, {}, slot});
   }
 }
 
@@ -51,9 +51,9 @@ void Closings::load(const Model& model, const IslandNodes&, double h, Problem& p
   auto& distances = problem.pool_of<solver::DistanceConstraint>();
   for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Closing& c = model.closings[key.slot];
-    distances.multipliers[i] = c.multiplier;
-    const auto [p, q] = distances.items[i].nodes;
-    distances.items[i] = constraint_of(c, c.elapsed + h, p, q);
+    const double factor = closing_factor(c.elapsed + h, c.duration);
+    distances.items[i].length = distances.items[i].scale = factor * c.distance;
+    distances.multipliers[i] = factor * c.multiplier;
     problem.has_new_rows = problem.has_new_rows || (h > 0 && c.elapsed == 0);
   });
 }
@@ -62,7 +62,8 @@ void Closings::store(Model& model, const IslandNodes&, double, const Problem& pr
   if (model.closings.size() == 0) return;
   const auto& distances = problem.pool_of<solver::DistanceConstraint>();
   for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    model.closings[key.slot].multiplier = distances.multipliers[i];
+    Closing& c = model.closings[key.slot];
+    c.multiplier = distances.multipliers[i] * c.distance / distances.items[i].scale;
   });
 }
 
@@ -90,8 +91,8 @@ void Closings::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.closings.for_each_of(p, [&](std::uint32_t slot) {
       const Closing& closing = model.closings[slot];
-      for_each_row_force(step, constraint_of(closing, closing.elapsed, 0, 1), &closing.multiplier,
-                         std::array{closing.p, closing.q}, [&](std::uint32_t particle, const Vec3& force) {
+      for_each_row_force(step, constraint_of(closing, 0, 1), &closing.multiplier, std::array{closing.p, closing.q},
+                         [&](std::uint32_t particle, const Vec3& force) {
                            if (particle == p)
                              reader.take({.particle = p, .force = force, .part = model.particles[p].part});
                          });

@@ -113,6 +113,25 @@ def test_a_slow_combine_over_a_gap_of_any_size_leaves_the_motion_alone(mode: str
     assert energies == pytest.approx([energies[0]] * len(energies), rel=0.02)
 
 
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust"])
+def test_a_hinge_breaks_at_the_force_that_it_reports_while_a_particle_of_it_closes(mode: str) -> None:
+    def close(break_force: float, steps: int) -> tuple[float, list[float]]:
+        system = iota.System(mode=mode)
+        left = iota.builder.chain(3, 0.3, top=(0, 0, 0), direction=(0.3, -0.9, 0.1)).realize(system).bodies
+        right = iota.builder.chain(3, 0.3, top=(0.5, 0, 0), direction=(-0.3, -0.9, 0.1)).realize(system).bodies
+        hinge = left[1].particles[1]
+        hinge.break_force = break_force
+        left[2].particles[0].combine(right[2].particles[1], over=0.1)
+        for _ in range(steps):
+            system.step(0.01)
+        return abs(hinge.hinge_force), [broken.force for broken in system.broken]
+
+    for steps in (5, 8, 10):
+        force, unbroken = close(math.inf, steps)
+        _, broken = close(0.999 * force, steps)
+        assert unbroken == [] and broken == pytest.approx([force], rel=1e-6)
+
+
 def test_combine_of_bodies_makes_one_rigid_body_in_place(space: iota.System) -> None:
     (a, _), (c, d) = rod(space, 0), rod(space, 3, 1)
     report = a.body.combine(c.body)
