@@ -292,6 +292,8 @@ solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_
   return report;
 }
 
+void Island::forget_factors() { integrator_->forget_factors(); }
+
 IslandReport Island::report(const Model& model) const {
   IslandReport report{.points = static_cast<std::uint32_t>(nodes_.size()),
                       .resting = is_asleep(model),

@@ -80,6 +80,8 @@ class Island {
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
 
+  void forget_factors();  ///< of its last step, with which the next one would begin
+
   /// Wakes it in the next step.
   void wake() { to_wake_ = true; }
   bool is_asleep(const model::Model&) const;

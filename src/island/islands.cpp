@@ -17,6 +17,12 @@ void Islands::forget() {
   knows_all_ = false, order_is_old_ = true;
 }
 
+void Islands::renew() {
+  renew_ = true;
+  for (const auto& island : island_of_leader_)
+    if (island) island->forget_factors();
+}
+
 // Its articulates will get a new one.
 void Islands::drop(std::uint32_t leader) {
   island_of_leader_[leader].reset();

@@ -17,8 +17,8 @@ class Islands {
   }
   bool update(model::Model&, const Parallel&, MovedRings&);
   void forget();
-  /// The next update rebuilds every island from the model.
-  void renew() { renew_ = true; }
+  /// The next steps depend on the model alone: rebuilds islands that have followed edits, and forgets factors.
+  void renew();
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
   /// Number of islands of a task: all if threads would not be faster.

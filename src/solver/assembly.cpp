@@ -344,6 +344,7 @@ void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, 
 
 template <bool Midpoint>
 void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
+  forget_factors();
   factor_.clear(!Midpoint);
   for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
   for (const auto& c : problem.mass_couplings) add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
@@ -431,6 +432,11 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
   }
 }
 
+bool Assembly::has_factors_of(const Stage& stage) const {
+  return factored_ && factored_->h == stage.h && factored_->midpoint == stage.midpoint &&
+         factored_->compliance == stage.compliance && factored_->part == stage.part;
+}
+
 template <bool Midpoint>
 bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
   bool good = false;
@@ -438,6 +444,7 @@ bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, cons
     const Timed timed(times_, &StepTimes::factor);
     assemble<Midpoint>(problem, stage, x, hessian);
     good = factor_.factorize(unknowns_) == 0;
+    factored_ = stage;
   }
   const Timed timed(times_, &StepTimes::solve);
   factor_.finish(unknowns_);

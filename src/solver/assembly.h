@@ -6,6 +6,7 @@
 #include "solver/stage.h"
 #include "solver/timed.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -79,6 +80,10 @@ class Assembly {
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
   /// Forces are scaled to the displacement of a point in a step, in mean constraint lengths.
   double inverse_scale(const Stage& stage) const { return 1 / (stage.inertia * reference_length_); }  ///< times mass
+  /// Whether the latest factors are those of a matrix of this stage, maybe of an earlier step with other places. Not after
+  /// a change of structure.
+  bool has_factors_of(const Stage&) const;
+  void forget_factors() { factored_.reset(); }
   /// Whether a factorization costs much more than the rest of an iteration.
   bool is_dear() const { return factor_.is_dear(); }
   const BlockPattern& pattern() const { return pattern_; }
@@ -126,7 +131,8 @@ class Assembly {
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;
-  std::vector<double> unknowns_;  // residuals, and then the step
+  std::vector<double> unknowns_;   // residuals, and then the step
+  std::optional<Stage> factored_;  // of the latest factors
   double reference_length_ = 1;
   /// Only for extreme masses: of each node its mass plus the equivalent mass of its rows, kg.
   std::vector<double> resistance_;

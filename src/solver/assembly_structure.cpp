@@ -134,6 +134,7 @@ void Assembly::compile(Problem& problem) {
   CouplingGraph graph = graph_of(problem);
   pattern_.analyze(graph);
   factor_.reset(pattern_);
+  forget_factors();
   problem.fit_pools();
   auto constraint = graph.constraints.begin();
   problem.for_each_constraint_pool([&](auto& pool) {
@@ -173,6 +174,7 @@ void Assembly::follow(Problem& problem) {
   if (!order_suits) return compile(problem);
   reference_length_ = set_reference_lengths(problem);
   factor_.grow();
+  forget_factors();
   place_nodes(problem);
   weigh(problem);
   const auto has_moved = [&](std::uint32_t node) { return pattern_.has_moved(node_unknown_[node]); };

@@ -127,6 +127,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
       is_mid_point ? Stage::mid_point(part.h, part.from, part.to) : Stage::end_point(part.h, part.from, part.to);
   stage.tolerance *= settings_.tolerance, stage.compliance = attempt.compliance;
   stage.part = is_soft ? 1 : compliance_part(part, attempt.scheme);
+  stage.is_held = holds_.count > 1;
   problem.copy_multipliers_to(multipliers_saved_);
   const Trial trial{.scheme = attempt.scheme,
                     .is_finest = !attempt.is_halved || !may_halve(part, report),

@@ -55,6 +55,7 @@ class Integrator {
     return runge_kutta_->velocities()[node] - h * runge_kutta_->accelerations()[node];
   }
 
+  void forget_factors() { newton_.forget_factors(); }                     ///< see Newton
   double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
 
   /// The solver of the equations of steps; null: the built-in Newton.

@@ -89,7 +89,11 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
   measure<Midpoint>(problem, stage);
   Hessian hessian = Hessian::exact;
-  bool stuck = false, settled = true, factor_will_do = false, served_on = false;
+  bool stuck = false, settled = true, served_on = false;
+  // The factors of the last step may do, too. Of bounded rows they may be those of other sides.
+  const bool may_carry = stage.is_held && !has_laws_ && assembly_.is_dear();
+  const bool carries = may_carry && assembly_.has_factors_of(stage);
+  bool factor_will_do = carries, is_untried = carries;
   int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
   const double blur = blur_of_places(problem);
   while (true) {
@@ -113,17 +117,22 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       on_trial = find_step<Midpoint>(problem, stage, hessian);
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
+    if (std::exchange(is_untried, false) && !(residual_.worst <= Set::fast * before)) {
+      take_back_step<Midpoint>(problem, stage);
+      factor_will_do = false;
+      continue;
+    }
     const bool is_clamped = std::exchange(hessian, Hessian::exact) == Hessian::clamped;
-    const bool own_direction = !is_clamped && !served_on;
+    // If a Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy loads on
+    // small links leave ten times the estimate.
+    const double nothing = std::min(Set::noise * blur * residual_.noise, Set::round_off_floor);
     if (!(residual_.worst <= Set::fast * before)) {
       if (assembly_.is_round_off_of_laws<Midpoint>(problem, stage, x_.data())) {
         residual_.worst = residual_.rows;
         stuck = true;
         break;
       }
-      // If an exact Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy
-      // loads on small links leave ten times the estimate.
-      stuck = own_direction && before <= std::min(Set::noise * blur * residual_.noise, Set::round_off_floor);
+      stuck = !is_clamped && (may_carry || !served_on) && before <= nothing;
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step<Midpoint>(problem, stage);
         hessian = Hessian::clamped;
@@ -135,12 +144,13 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       }
       if (stuck) break;
     }
-    // Near the solution the old factor is reused if a factorization costs much more than an iteration.
-    factor_will_do =
-        assembly_.is_dear() && residual_.worst <= (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
+    // Near the solution the old factor is reused if a factorization costs much more than an iteration, and once more before
+    // the residual counts as round-off: of a net of 100 x 100 a new one for that was a third of a step.
+    const double wanted = (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
+    factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing) : wanted);
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
-    polish<Midpoint>(problem, stage, report, served_on);
+    polish<Midpoint>(problem, stage, report, served_on || (carries && report.iterations == 0));
   report.residual = residual_.worst, report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
   const bool exact = stage.compliance <= exact_rows;
@@ -276,7 +286,7 @@ bool Newton::is_balanced() const {
 template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   if (!(residual_.worst <= stage.tolerance)) return;
-  bool needs_factor = report.iterations == 0;
+  bool needs_factor = report.iterations == 0 && !factor_is_old;
   for (int step = 0; step < Set::polish_steps; ++step) {
     const bool met = residual_.rows <= round_off, balanced = is_balanced();
     if (met && balanced) return;

@@ -56,6 +56,8 @@ class Newton {
   /// finds no root, they are solved here.
   void set_external(Solver* solver) { external_ = solver; }
   bool has_external() const { return external_ != nullptr; }
+  /// The next step does not begin with the factors of the last one: it depends on nothing but the problem's state.
+  void forget_factors() { assembly_.forget_factors(); }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what

@@ -23,6 +23,10 @@ struct Stage {
   int iterations_left = std::numeric_limits<int>::max();  ///< of a budget
   double part = 1;  ///< of the whole step whose row compliance the stage has: a taut net stores energy in it
 
+  /// By more than one pivot, so that no momentum has to be kept: factors of an earlier step leave an error common to all
+  /// points, of 1e-5 of the angular momentum of a free body.
+  bool is_held = false;
+
   bool is_projection() const { return h == 0; }
   /// Of rows: multiplies sum |G|^2 / m.
   double row_compliance() const { return compliance / (inertia * part * part); }

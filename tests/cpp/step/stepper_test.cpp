@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dial from plausible to accurate, any time step, and what no step may do.
 #include "scenes/chain.h"
+#include "scenes/net.h"
 
 #include <gtest/gtest.h>
 
@@ -296,6 +297,39 @@ TEST(FarFromTheOrigin, round_off_of_places_is_not_chased) {
       ASSERT_EQ(report.fallbacks + report.unconverged, 0);
       ASSERT_LE(report.iterations_max, 12);
     }
+  }
+}
+
+/// Positions of the knots of a net that falls from two nails, after a quarter of a second.
+std::vector<Vec3> fall_of_a_net(System& system, bool forgets_factors) {
+  const scenes::Net net = scenes::make_net(system, {.side = 16});
+  for (int i = 0; i < 30; ++i) {
+    if (forgets_factors) (void)system.snapshot();
+    const StepReport report = system.step(1.0 / 120);
+    EXPECT_EQ(report.fallbacks + report.unconverged, 0) << i;
+  }
+  std::vector<Vec3> knots;
+  for (const ParticleId knot : net.knots) knots.push_back(system.particles().position(knot));
+  return knots;
+}
+
+TEST(HeldNet, moves_by_the_factors_of_the_step_before_as_by_its_own) {
+  System carries({.mode = IntegrationMode::robust}), forgets({.mode = IntegrationMode::robust});
+  const std::vector<Vec3> a = fall_of_a_net(carries, false), b = fall_of_a_net(forgets, true);
+  double difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference = std::max(difference, norm(a[i] - b[i]));
+  EXPECT_LT(difference, 1e-11) << "m";
+  EXPECT_NE(carries.state_hash(), forgets.state_hash()) << "neither began with the factors of the step before";
+}
+
+TEST(HeldNet, goes_on_after_a_snapshot_as_one_that_is_restored_from_it) {
+  System system({.mode = IntegrationMode::robust}), restored;
+  (void)scenes::make_net(system, {.side = 16});
+  (void)system.step(1.0 / 120, 20);
+  restored.restore(system.snapshot());
+  for (int i = 0; i < 20; ++i) {
+    (void)system.step(1.0 / 120), (void)restored.step(1.0 / 120);
+    ASSERT_EQ(system.state_hash(), restored.state_hash()) << i;
   }
 }
 
