@@ -260,10 +260,12 @@ solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_
   }
   model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
+  problem_.unsolved_steps = memory.unsolved_steps;
   solver::IntegratorSettings settings = settings_of(model);
   settings.max_iterations = model.budget.iterations, settings.deadline = deadline;
   auto report = integrator_->advance(problem_, h, settings);
   memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
+  memory.unsolved_steps = problem_.unsolved_steps;
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
     impose_velocities(h);
@@ -273,7 +275,7 @@ solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_
   if (!std::isfinite(report.dissipated + report.lost + report.made + report.external_work) || !has_finite_motion()) {
     // Extreme forces (1e300 N) overflow doubles. Nothing has been stored in the model yet: the points keep their
     // places, at rest, and the report counts the step as unconverged.
-    memory.standing_gap = 0;
+    memory.try_again();
     load(model, h);
     report = {};
     report.converged = false;
@@ -319,7 +321,7 @@ bool Island::has_finite_motion() const {
 }
 
 bool Island::project(Model& model, bool positions) {
-  if (!nodes_.bodies.empty()) articulate(model).standing_gap = 0;  // try again
+  if (!nodes_.bodies.empty()) articulate(model).try_again();
   load(model, 0);
   const bool met = project_all(model, positions);
   MovedRings moved{.is_asked_for = false};
@@ -343,7 +345,7 @@ bool Island::project_all(Model& model, bool positions) {
 
 bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved) {
   if (nodes_.bodies.empty()) return true;  // inactive
-  articulate(model).standing_gap = 0;
+  articulate(model).try_again();
   load(model, 0);
   const std::vector<std::uint32_t> edited = nodes_of(model, bodies);
   const bool is_local = !idle_ && !edited.empty() && integrator_->project_locally(problem_, positions, edited);

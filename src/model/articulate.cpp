@@ -9,7 +9,7 @@ void Structure::touch(std::uint32_t articulate, Touch what) {
   Articulate& a = articulates[articulate];
   ++a.version;
   a.to_wake = 1;
-  a.standing_gap = 0;  // a conflict may be solvable now
+  a.try_again();
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
   Touch& touched = touch_of_[articulate];
   if (touched == untouched) touched_.push_back(articulate);
@@ -34,7 +34,7 @@ void Structure::touch_rows(std::uint32_t body) {
 void Structure::touch_pull(std::uint32_t body) {
   Articulate& a = articulates[bodies[body].articulate];
   a.to_wake = 1;
-  a.standing_gap = 0;  // a conflict may be solvable now
+  a.try_again();
   local_change_.pulled.push_back(body);
 }
 

@@ -137,6 +137,10 @@ struct Articulate {
   double slow_time = 0;       ///< s; of an island, at the articulate of its first body
   std::uint64_t standing_steps = 0;  ///< since the last attempt to close a conflict
   double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
+  std::uint64_t unsolved_steps = 0;  ///< in a row, of which no part was solved
+
+  /// What could not be solved may be solvable now.
+  void try_again() { standing_gap = 0, unsolved_steps = 0; }
 };
 
 /// A named set of particles; its slot is its bit in Particle::groups.

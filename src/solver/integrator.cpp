@@ -5,6 +5,7 @@
 #include "solver/integrator.h"
 
 #include "base/slack.h"
+#include "solver/back_off.h"
 #include "solver/timed.h"
 
 #include <algorithm>
@@ -61,8 +62,10 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   step_length_ = h;
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
+  const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
+  if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
-  is_cut_short_ = is_instant_ = has_corrected_ = false;
+  is_cut_short_ = is_instant_ = has_corrected_ = false, solves_part_ = false;
   look_at(problem);
   close_gaps(problem, report);
   energy_ = {};
@@ -72,7 +75,9 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   const double taken = settings.max_error > 0 && !by_end_point ? advance_explicitly(problem, h, report) : 0;
   if (taken < 1) advance_part(problem, {.from = taken, .h = (1 - taken) * h}, by_end_point ? 1 : 0, report);
   if (holds_offsets_) restore_bounds(problem);
-  if (is_cut_short_) {
+  const bool is_unsolved = taken == 0 && !solves_part_;
+  problem.unsolved_steps = is_unsolved && (is_brief || !is_cut_short_) ? problem.unsolved_steps + 1 : 0;
+  if (is_cut_short_ && !is_brief) {
     report.cut_short = true;
     report.gap = problem.worst_gap(problem.position.data());
   }
@@ -188,6 +193,7 @@ void Integrator::commit(Problem& problem, const Stage& stage, const StepEnergy& 
   track(problem, stage.fraction);
   has_corrected_ = is_instant_ = false;
   ++report.substeps;
+  solves_part_ = true;
 }
 
 void Integrator::track(Problem& problem, double fraction) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Constraints that are violated at the start of a step: closed by moving positions only, or held at their gap.
+#include "solver/back_off.h"
 #include "solver/integrator.h"
 
 #include <algorithm>
@@ -10,14 +11,8 @@ namespace iota::solver {
 
 namespace {
 
-constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until an unchanged conflict is tried again
 // Of a gap that moves; relaxes it by 10 %: at full extension the constraint gradient is singular.
 constexpr double relaxation = 1.1;
-
-/// Whether a conflict that is unchanged for this many steps is tried again: the interval doubles each time.
-bool is_due(std::uint64_t steps) {
-  return steps % longest_wait == 0 || (steps >= shortest_wait && (steps & (steps - 1)) == 0);
-}
 
 }  // namespace
 

@@ -141,6 +141,7 @@ struct Problem {
   bool has_new_rows = false;
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
   std::uint64_t standing_steps = 0;  ///< since then
+  std::uint64_t unsolved_steps = 0;  ///< the latest ones in a row of which no part was solved
 
   std::size_t size() const { return position.size(); }
 

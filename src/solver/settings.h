@@ -55,6 +55,8 @@ struct IntegratorSettings {
 
   static constexpr int last_resort_iterations = 24;  ///< beyond `max_iterations`
   static constexpr int last_resort_pieces = 8;       ///< of a (sub-)step
+  /// After so many steps without a solution (a box that lies on a plane by one row) most get only so many iterations.
+  static constexpr int full_tries = 4, brief_iterations = 24;
   static constexpr double largest_violation = 1e-2;  ///< relative: a step with wider gaps is rejected
 
   static IntegratorSettings plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }

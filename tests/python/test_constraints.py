@@ -193,6 +193,23 @@ def test_a_box_laid_on_a_plane_rests_and_each_step_without_a_solution_says_so(bu
     assert box.position.y == pytest.approx(0.1 - 9.81 * 0.1**2 / 2, abs=1e-4)
 
 
+def test_an_island_without_a_solution_costs_little_until_it_is_touched() -> None:
+    """The box of the test above. It is tried in full for some steps, then after 8, 16, 32 ... steps."""
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.1 + 1e-3, 0))
+    system.surface_to_surface(box, iota.Box((0.2, 0.2, 0.2)), None, iota.HalfSpace((0, 1, 0)))
+    iterations = []
+    for _ in range(60):
+        system.step(1 / 60)
+        iterations.append(system.islands()[0].iterations)
+    assert max(iterations) > 400
+    assert sum(n > 24 for n in iterations[30:]) <= 2, iterations
+    assert box.position == pytest.approx((0, 0.1, 0), abs=1e-6)
+    box.velocity = (0, 1, 0)
+    assert system.step(1 / 60).unconverged == 0, "a box that leaves is free at once"
+    assert box.position.y == pytest.approx(0.1 + 1 / 60, abs=0.01)
+
+
 def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     system = iota.System(damping=0.5)
     ball = system.body(shape=iota.Sphere(0.2), mass=1, position=(0.3, 1, 0))
