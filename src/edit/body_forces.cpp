@@ -75,12 +75,12 @@ void apply(Editor& e, const SetBodyMass& c) {
   model::Model& model = e.model;
   const std::uint32_t body = c.body.slot;
   const double factor = c.value / model.body_mass(body);
-  model.for_each_particle_of(body, [&](std::uint32_t p) { model.particles[p].mass *= factor; });
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.particles[p].mass *= factor;
+    model.for_each_twin_of(p, [&](std::uint32_t twin) { model.twins[twin].mass *= factor; });
+  });
   model.for_each_inertia_of(body, [&](std::uint32_t i) { model.inertia_pairs[i].inertia *= factor; });
   if (auto* const spin = model.spins.find(body)) spin->momentum *= factor;
-  model.twins.for_each([&](std::uint32_t slot, const model::Twin& twin) {
-    if (model.particles[twin.particle].body == body) model.twins[slot].mass *= factor;
-  });
   model.touch_body(body);
 }
 

@@ -127,9 +127,11 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   std::array<std::size_t, 2> next{0, 0}, end{1, 1};
   flood[0][0] = body_a, flood[0][half] = none, mark_of[body_a] = first_mark;
   flood[1][0] = body_b, flood[1][half] = none, mark_of[body_b] = first_mark + 1;
-  bool met = false;
-  std::uint32_t which = 0;
-  for (; !met && next[which] < end[which]; which = 1 - which) {
+  // From the smaller body first: if that is all of its side, the other one is not looked at.
+  std::uint32_t which = bodies[body_a].count <= bodies[body_b].count ? 1 : 0;  // the other one's turn
+  bool met = false, has_all = false;
+  while (!met && !has_all) {
+    which = 1 - which;
     const std::uint32_t own_mark = first_mark + which;
     std::uint32_t *const found = flood[which], *const found_by = found + half;
     const auto reach = [=](std::uint32_t body, std::uint32_t by, std::size_t& count, bool& meets) {
@@ -155,7 +157,7 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
       }
       p = particle.next_in_body;
     }
-    end[which] = count, met = meets;
+    end[which] = count, met = meets, has_all = next[which] == count;
   }
   if (met) return false;
 

@@ -75,9 +75,9 @@ class Audit {
  private:
   void check_particles();
   void check_structure_lists();
-  /// Singly linked lists, each item in one at most.
-  template <class Table>
-  void check_chains(const char* what, const Table& items, std::uint32_t Body::* first);
+  /// Singly linked lists, each item in one; for_each_first(lead_to) calls that with the first item of each.
+  template <class Table, class Heads>
+  void check_chains(const char* what, const Table& items, Heads for_each_first);
   void check_rings();
   void check_bodies();
   void check_articulates();

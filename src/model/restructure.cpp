@@ -72,9 +72,7 @@ void absorb_particle(Structure& model, std::uint32_t p, std::uint32_t q, Restruc
     model.set_fuse(p, model.fuses.has(p) ? std::min(*force, model.fuses[p]) : *force);
   model.absorb_uses(q, p);
   model.acting_changed(p);
-  model.twins.for_each([&](std::uint32_t, Twin& t) {
-    if (t.particle == q) t.particle = p;
-  });
+  model.move_twins(q, p);
   const ParticleId retired = model.particles.id(q), survivor = model.particles.id(p);
   model.record_survivor(retired, survivor);
   report.absorbed_particles.push_back({retired, survivor});
@@ -166,9 +164,10 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
     }
     for (std::uint32_t s = solids; s != none; s = model.solids[s].next)
       std::replace(model.solids[s].points.begin(), model.solids[s].points.end(), particle, twin);
-    const Twin absorbed{twin, 0, model.particles[particle].part, model.particles[particle].mass};
+    const Twin absorbed{
+        .particle = twin, .part = model.particles[particle].part, .mass = model.particles[particle].mass};
     absorb_particle(model, twin, particle, report);
-    model.twins.create(absorbed);
+    model.add_twin(absorbed);
   }
   if (last_pair) *last_pair = std::exchange(model.bodies[a].first_inertia, pairs);
   if (solids != none) {
@@ -220,6 +219,7 @@ std::vector<std::uint32_t> ring_neighbors(const Structure& model, std::uint32_t 
 /// The markers of a body that are no longer in the span of its massive particles.
 std::vector<ParticleId> stray_markers(const Structure& model, std::uint32_t body) {
   std::vector<ParticleId> strays;
+  if (model.bodies[body].rank == 4) return strays;  // spans all places
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (model.particles[p].is_marker() && !model.spans(body, model.position(p)))
       strays.push_back(model.particles.id(p));

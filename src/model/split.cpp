@@ -113,9 +113,11 @@ std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
     if (known.insert(part).second) parts.push_back(part);
   };
   model.for_each_particle_of(body, [&](std::uint32_t p) { add(model.particles[p].part); });
-  model.twins.for_each([&](std::uint32_t, const Twin& t) {
-    if (model.particles[t.particle].body == body) add(t.part);
-  });
+  std::vector<std::uint32_t> twins;
+  model.for_each_particle_of(
+      body, [&](std::uint32_t p) { model.for_each_twin_of(p, [&](std::uint32_t t) { twins.push_back(t); }); });
+  std::sort(twins.begin(), twins.end());
+  for (const std::uint32_t t : twins) add(model.twins[t].part);
   return parts;
 }
 
@@ -123,17 +125,20 @@ Edit separate_part(Structure& model, std::uint32_t body, BodyId part, Restructur
   std::vector<std::uint32_t> leaving;
   bool goes = false, stays = false;              // something with mass
   bool is_part = false, has_other_part = false;  // any particle
+  std::vector<std::uint32_t> parted;             // twins that go where their particle does not
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const bool leaves = model.particles[p].part == part;
     if (leaves) leaving.push_back(p);
     (leaves ? is_part : has_other_part) = true;
     if (!model.particles[p].is_marker()) (leaves ? goes : stays) = true;
+    model.for_each_twin_of(p, [&](std::uint32_t t) {
+      const bool twin_leaves = model.twins[t].part == part;
+      (twin_leaves ? is_part : has_other_part) = true;
+      (twin_leaves ? goes : stays) = true;
+      if (twin_leaves != leaves) parted.push_back(t);
+    });
   });
-  model.twins.for_each([&](std::uint32_t, const Twin& t) {
-    if (model.particles[t.particle].body != body) return;
-    (t.part == part ? is_part : has_other_part) = true;
-    (t.part == part ? goes : stays) = true;
-  });
+  std::sort(parted.begin(), parted.end());
   if (!is_part || !has_other_part) return {};
   if (!goes || !stays)
     throw std::invalid_argument("separate: part " + std::to_string(part.slot) + " of body " + std::to_string(body) +
@@ -144,13 +149,9 @@ Edit separate_part(Structure& model, std::uint32_t body, BodyId part, Restructur
 
   // A particle that had absorbed one of the other side releases it: the hinge is restored.
   bool shared = false;
-  for (std::uint32_t t = 0; t < model.twins.slot_count(); ++t) {
-    if (!model.twins.is_alive(t)) continue;
+  for (const std::uint32_t t : parted) {
     const Twin twin = model.twins[t];
-    const std::uint32_t survivor_body = model.particles[twin.particle].body;
-    if (survivor_body != body && survivor_body != own) continue;
     const std::uint32_t home = twin.part == part ? own : body;
-    if (home == survivor_body) continue;
     Particle& survivor = model.particles[twin.particle];
     const double share = twin.mass < survivor.mass ? twin.mass : 0.5 * survivor.mass;
     survivor.mass -= share;
@@ -160,7 +161,7 @@ Edit separate_part(Structure& model, std::uint32_t body, BodyId part, Restructur
     const std::uint32_t slot = model.particles.create(back).slot;
     model.add_to_ring(slot, ring);
     model.add_to_body(slot, home);
-    model.twins.destroy(t);
+    model.remove_twin(t);
     report.created_particles.push_back(model.particles.id(slot));
     shared = true;
   }

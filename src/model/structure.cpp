@@ -54,15 +54,37 @@ std::uint32_t Structure::make_body(BodyKind kind, double damping) {
 
 void Structure::remove_particle(std::uint32_t particle) {
   set_fuse(particle, std::numeric_limits<double>::infinity());
-  if (twins.size() > 0)
-    for (std::uint32_t t = 0; t < twins.slot_count(); ++t)
-      if (twins.is_alive(t) && twins[t].particle == particle) twins.destroy(t);
+  while (const std::uint32_t* const first = first_twin.find(particle)) remove_twin(*first);
   forget_particle(particle);
   if (const std::uint32_t slot = particles[particle].attributes; slot != none) attributes.destroy(slot);
   take_from_body(particle);
   take_from_ring(particle);
   ties.erase(particle);
   particles.destroy(particle);
+}
+
+void Structure::add_twin(Twin twin) {
+  const std::uint32_t* const first = first_twin.find(twin.particle);
+  twin.next = first ? *first : none;
+  first_twin.make(twin.particle) = twins.create(twin).slot;
+}
+
+void Structure::remove_twin(std::uint32_t twin) {
+  const auto [particle, next, part, mass] = twins[twin];
+  std::uint32_t* link = first_twin.find(particle);
+  while (*link != twin) link = &twins[*link].next;
+  *link = next;
+  if (first_twin.at(particle) == none) first_twin.erase(particle);
+  twins.destroy(twin);
+}
+
+void Structure::move_twins(std::uint32_t from, std::uint32_t to) {
+  while (const std::uint32_t* const first = first_twin.find(from)) {
+    Twin twin = twins[*first];
+    remove_twin(*first);
+    twin.particle = to;
+    add_twin(twin);
+  }
 }
 
 void Structure::add_to_body(std::uint32_t particle, std::uint32_t body) {

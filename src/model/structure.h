@@ -122,7 +122,7 @@ struct Solid {
 /// A particle that was absorbed when a hinge became rigid: restored, hinged, when its part leaves the body again.
 struct Twin {
   std::uint32_t particle = none;  ///< that absorbed it
-  std::uint32_t padding = 0;
+  std::uint32_t next = none;      ///< of the same particle
   BodyId part;
   double mass = 0;  ///< its share, kg
 };
@@ -163,6 +163,7 @@ class Structure {
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
   SlotTable<Twin, Id<"twin">> twins;
+  SideTable<std::uint32_t> first_twin;  ///< of particles
   SlotTable<Attributes, Id<"attributes">> attributes;
   SlotTable<Articulate, Id<"articulate">> articulates;
   SlotTable<Group, GroupId> groups;
@@ -308,6 +309,15 @@ class Structure {
     for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
   }
 
+  void add_twin(Twin);
+  void remove_twin(std::uint32_t twin);
+  void move_twins(std::uint32_t from, std::uint32_t to);  ///< to another particle
+  template <class Visit>
+  void for_each_twin_of(std::uint32_t particle, Visit visit) const {
+    const std::uint32_t* const first = first_twin.find(particle);
+    for (std::uint32_t t = first ? *first : none; t != none; t = twins[t].next) visit(t);
+  }
+
   template <class Visit>
   void for_each_solid_of(std::uint32_t body, Visit visit) const {
     for (std::uint32_t s = bodies[body].first_solid; s != none; s = solids[s].next) visit(s);
@@ -424,6 +434,7 @@ void Structure::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), solids.archive(ar), twins.archive(ar);
   articulates.archive(ar), groups.archive(ar), inertia_pairs.archive(ar), attributes.archive(ar);
   ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
+  first_twin.archive(ar, particles.slot_count());
   more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);

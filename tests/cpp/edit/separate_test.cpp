@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 namespace iota {
 namespace {
@@ -209,6 +211,40 @@ TEST(Split, unlocking_a_hinge_brings_the_hinge_back) {
   for (int i = 0; i < 3; ++i) expect_near(system.bodies().inertia(unlocked)[i], before[i], 1e-12);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
   EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, parts_of_a_star_leave_its_locked_hinge_in_any_order_and_the_hinge_is_whole_again) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 20; ++round) {
+    System system({.gravity = {}});
+    std::vector<BodyId> arms;
+    std::vector<ParticleId> centers;
+    for (int i = 0; i < 6; ++i) {
+      arms.push_back(system.bodies().create());
+      centers.push_back(system.particles().create(arms.back(), {}, 1));
+      (void)system.particles().create(arms.back(), {std::cos(i), std::sin(i), 0.1 * i}, 2);
+      if (i > 0) (void)system.edits().combine(centers[0], centers.back());
+    }
+    std::vector<BodyId> order(arms.begin() + 1, arms.end());
+    std::shuffle(order.begin(), order.end(), random);
+    for (const BodyId arm : order) {
+      (void)system.edits().combine(arms[0], arm);
+      ASSERT_EQ(system.validate(), std::vector<std::string>{});
+    }
+    EXPECT_EQ(system.bodies().ids().size(), 1u);
+    EXPECT_NEAR(system.bodies().mass(arms[0]), 18, 1e-12);
+    std::shuffle(order.begin(), order.end(), random);
+    for (const BodyId arm : order) {
+      const RestructureReport report = system.edits().separate(arms[0], arm);
+      ASSERT_EQ(system.validate(), std::vector<std::string>{});
+      ASSERT_EQ(report.created_bodies.size(), 1u);
+      EXPECT_NEAR(system.bodies().mass(report.created_bodies[0]), 3, 1e-12);
+      EXPECT_EQ(system.bodies().particles(report.created_bodies[0]).size(), 2u);
+    }
+    EXPECT_EQ(system.bodies().ids().size(), 6u);
+    for (const BodyId arm : system.bodies().ids())
+      EXPECT_EQ(system.bodies().articulate(arm), system.bodies().articulate(arms[0])) << "hinged at the center";
+  }
 }
 
 TEST(Split, net_force_and_torque_are_those_from_outside) {

@@ -76,7 +76,7 @@ const std::vector<Damage> damages{
     {"stands on stranger", [](Everything& e) { e.model.solids[first_alive(e.model.solids)].points[0] = e.loner; }},
     {"inertia pair",
      [](Everything& e) { e.model.inertia_pairs[e.model.bodies[e.rod].first_inertia].body = e.corners_body; }},
-    {"bodies list 1 solids of 2", [](Everything& e) { e.model.bodies[e.box].first_solid = none; }},
+    {"solid 0 is in no list", [](Everything& e) { e.model.bodies[e.box].first_solid = none; }},
     // articulates
     {"hang together but are in articulates",
      [](Everything& e) { body_of(e, e.hinged).articulate = body_of(e, e.loner).articulate; }},
@@ -106,7 +106,7 @@ const std::vector<Damage> damages{
     {"a list of places of constraints has",
      [](Everything& e) { e.model.constraints[e.joint].next[a_origin] = place_count * e.joint + a_origin; }},
     {"ends with", [](Everything& e) { body_of(e, e.corner).last = e.corner; }},
-    {"inertia pairs of", [](Everything& e) { e.model.bodies[e.rod].first_inertia = none; }},
+    {"inertia pair 2 is in no list", [](Everything& e) { e.model.bodies[e.rod].first_inertia = none; }},
     {"is not basis point 1 of its body", [](Everything& e) { e.model.particles[e.corner].basis_index = 1; }},
     {"has the attributes of another",
      [](Everything& e) { e.model.particles[e.loner].attributes = first_alive(e.model.attributes); }},
@@ -149,6 +149,10 @@ const std::vector<Damage> damages{
     {"are of no emitter", [](Everything& e) { e.model.attributes[first_alive(e.model.attributes)].emitter = nowhere; }},
     {"particles, has", [](Everything& e) { ++e.model.emitters[first_alive(e.model.emitters)].alive; }},
     {"twin", [](Everything& e) { e.model.twins[first_alive(e.model.twins)].mass = -1; }},
+    {"is gone, or in two lists", [](Everything& e) { e.model.twins[first_alive(e.model.twins)].next = nowhere; }},
+    {"is a stranger", [](Everything& e) { e.model.twins[first_alive(e.model.twins)].particle = e.loner; }},
+    {"is in no list",
+     [](Everything& e) { e.model.first_twin.erase(e.model.twins[first_alive(e.model.twins)].particle); }},
     {"holds no living body", [](Everything& e) { e.model.grips[e.grip].body = nowhere; }},
     {"hangs on a stranger", [](Everything& e) { e.model.grips[e.grip].points[0] = e.loner; }},
 };

@@ -61,7 +61,7 @@ TEST(Model, removes_a_particle_with_its_inertia_solid_twin_fuse_and_attributes) 
   model.bodies[body].first_solid = model.solids.create(solid).slot;
   Twin twin;
   twin.particle = p;
-  model.twins.create(twin);
+  model.add_twin(twin);
   model.set_fuse(p, 7), model.set_fuse(other, 8);
   Attributes attributes;
   attributes.particle = p;
