@@ -205,8 +205,8 @@ std::optional<std::string> WatchedSystem::step(double dt) {
   }
   const double book = after.balance() - before.balance();
   const double size = before.kinetic + after.kinetic + std::abs(before.potential) + std::abs(after.potential) +
-                      std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated) + after.lost +
-                      after.made;
+                      std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated) +
+                      std::abs(after.lost) + std::abs(after.made);
   // Joints that are closed from far away in one step may turn by more than half a turn: one scene in ten thousand.
   const double exact = jointed_ ? 1e-2 : 1e-9;
   if (std::abs(book) > exact * size) return say("the energy book does not add up: ", book, " J of ", size);

@@ -9,7 +9,7 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '9'}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', 'A'}, "snapshot"};
 
 /// `survivor()`: the object that absorbed it, called only for a stale id.
 template <class Table, KindName name, class Survivor>

@@ -250,7 +250,7 @@ std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
     got << c.length;
     cannot(name, "length must be between 1e-9 and 1e9 m, got " + got.str());
   }
-  if (spec.kind == ConstraintKind::rod && model.particles[p].ring == model.particles[q].ring)
+  if (spec.kind == ConstraintKind::rod && are_on_one_ring(model, p, q))
     cannot(name, "particles " + std::to_string(p) + " and " + std::to_string(q) + " are hinged to each other");
   c.breaks = spec.breaks;
   c.scale = {c.length, c.length};

@@ -79,6 +79,11 @@ WeightedNodes rings_that_carry(const Model& model, std::uint32_t particle) {
   return list;
 }
 
+bool are_on_one_ring(const Model& model, std::uint32_t p, std::uint32_t q) {
+  const WeightedNodes a = rings_that_carry(model, p), b = rings_that_carry(model, q);
+  return a[0] == b[0] && a[0].second == 1;
+}
+
 WeightedNodes IslandMap::nodes_of(std::uint32_t particle) const {
   WeightedNodes list = rings_that_carry(model, particle);
   for (auto& [node, weight] : list)

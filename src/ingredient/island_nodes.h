@@ -55,6 +55,8 @@ struct IslandNodes {
 std::string name_of_ring(const Model&, std::uint32_t ring);  ///< for a sentence
 /// The particle's own ring if it is an unknown, otherwise those of its basis.
 WeightedNodes rings_that_carry(const Model&, std::uint32_t particle);
+/// Whether two particles are always at one place: hinged, or rigidly at a place that is.
+bool are_on_one_ring(const Model&, std::uint32_t p, std::uint32_t q);
 
 /// The nodes of an island by the model's numbers, and the bodies whose items are to be added; lives while the island is
 /// being built or follows a change.

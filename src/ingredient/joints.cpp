@@ -462,7 +462,7 @@ const char* reason_to_end(const Model& model, const Constraint& c) {
     if (c.particles[place] != none && model.particles[c.particles[place]].body != (place < b_origin ? a : b))
       return "one of its bodies came apart there";
   const std::uint32_t p = c.particles[a_origin], q = c.particles[b_origin];
-  if (c.kind == ConstraintKind::rod && p != none && q != none && model.particles[p].ring == model.particles[q].ring)
+  if (c.kind == ConstraintKind::rod && p != none && q != none && are_on_one_ring(model, p, q))
     return "its two ends are hinged together now";
   return a == b ? "its two bodies are one rigid body now" : nullptr;
 }
