@@ -117,15 +117,12 @@ void Audit::check_structure() {
   check_rings();
   check_bodies();
   require_owners("a fuse", model_.fuses, model_.particles);
-  const auto is_twin_of = [&](std::uint32_t twin, std::uint32_t particle) {
-    return model_.twins.is_alive(twin) && model_.twins[twin].particle == particle;
-  };
   model_.twins.for_each([&](std::uint32_t slot, const Twin& t) {
     require(model_.particles.is_alive(t.particle) && t.mass >= 0, "twin ", slot, " is of no living particle");
-    require(t.next == none || is_twin_of(t.next, t.particle), "twin ", slot, " leads to a stranger");
+    require(t.next == none || model_.twins[t.next].particle == t.particle, "twin ", slot, " leads to a stranger");
   });
   model_.first_twin.for_each([&](std::uint32_t particle, std::uint32_t first) {
-    require(is_twin_of(first, particle), "the first twin of particle ", particle, " is a stranger");
+    require(model_.twins[first].particle == particle, "the first twin of particle ", particle, " is a stranger");
   });
 }
 

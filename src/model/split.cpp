@@ -112,10 +112,11 @@ std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
     if (!parts.empty() && parts.back() == part) return;
     if (known.insert(part).second) parts.push_back(part);
   };
-  model.for_each_particle_of(body, [&](std::uint32_t p) { add(model.particles[p].part); });
   std::vector<std::uint32_t> twins;
-  model.for_each_particle_of(
-      body, [&](std::uint32_t p) { model.for_each_twin_of(p, [&](std::uint32_t t) { twins.push_back(t); }); });
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    add(model.particles[p].part);
+    model.for_each_twin_of(p, [&](std::uint32_t t) { twins.push_back(t); });
+  });
   std::sort(twins.begin(), twins.end());
   for (const std::uint32_t t : twins) add(model.twins[t].part);
   return parts;

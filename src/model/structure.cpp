@@ -70,10 +70,10 @@ void Structure::add_twin(Twin twin) {
 }
 
 void Structure::remove_twin(std::uint32_t twin) {
-  const auto [particle, next, part, mass] = twins[twin];
+  const std::uint32_t particle = twins[twin].particle;
   std::uint32_t* link = first_twin.find(particle);
   while (*link != twin) link = &twins[*link].next;
-  *link = next;
+  *link = twins[twin].next;
   if (first_twin.at(particle) == none) first_twin.erase(particle);
   twins.destroy(twin);
 }

@@ -65,7 +65,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
-  is_cut_short_ = is_instant_ = has_corrected_ = false, solves_part_ = false;
+  is_cut_short_ = solves_part_ = is_instant_ = has_corrected_ = false;
   look_at(problem);
   close_gaps(problem, report);
   energy_ = {};

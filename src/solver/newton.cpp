@@ -89,11 +89,11 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
   measure<Midpoint>(problem, stage);
   Hessian hessian = Hessian::exact;
-  bool stuck = false, settled = true, served_on = false;
+  bool stuck = false, settled = true;
   // The factors of the last step may do, too. Of bounded rows they may be those of other sides.
   const bool may_carry = stage.is_held && !has_laws_ && assembly_.is_dear();
   const bool carries = may_carry && assembly_.has_factors_of(stage);
-  bool factor_will_do = carries, is_untried = carries;
+  bool factor_will_do = carries, served_on = carries;
   int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
   const double blur = blur_of_places(problem);
   while (true) {
@@ -117,7 +117,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       on_trial = find_step<Midpoint>(problem, stage, hessian);
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    if (std::exchange(is_untried, false) && !(residual_.worst <= Set::fast * before)) {
+    if (carries && report.iterations == 1 && !(residual_.worst <= Set::fast * before)) {
       take_back_step<Midpoint>(problem, stage);
       factor_will_do = false;
       continue;
@@ -150,7 +150,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing) : wanted);
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
-    polish<Midpoint>(problem, stage, report, served_on || (carries && report.iterations == 0));
+    polish<Midpoint>(problem, stage, report, served_on);
   report.residual = residual_.worst, report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
   const bool exact = stage.compliance <= exact_rows;
