@@ -10,8 +10,15 @@ if(IOTA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${IOTA_CCACHE}")
 endif()
 
-# iota_compile(TARGET): language level, warnings, reproducible arithmetic, sanitizers.
+# A source of ours reads 8 000 to 10 000 lines of headers, which took two thirds of the compiler's time: eight sources of a
+# target share one reading. Names in anonymous namespaces must therefore differ within a folder. The preset `strict`
+# compiles each source alone, so that none relies on the includes of another.
+option(IOTA_UNITY "Compile eight sources at a time" ON)
+
+# iota_compile(TARGET [-O2]): language level, warnings, reproducible arithmetic, sanitizers, and the level of a release,
+# CMake's -O3 unless given: it takes 5 to 20 % off a step, 40 % off a law, and adds half to the time of a compilation.
 function(iota_compile target)
+  target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:${ARGN}>")
   target_compile_features(${target} PRIVATE cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic
@@ -25,6 +32,7 @@ function(iota_compile target)
     # Without it the place of a function within a cache line changes with any line of code elsewhere: an edit of a chain
     # took 294 or 334 ns by luck.
     -falign-functions=64)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${IOTA_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   # No -march=native: a release must run on another machine than the one that built it.
   if(IOTA_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)

@@ -34,7 +34,7 @@ find_package(nanobind CONFIG REQUIRED)
 file(GLOB_RECURSE iota_binding_sources CONFIGURE_DEPENDS bindings/*.cpp)
 # NOMINSIZE: nanobind would compile our sources for size; the calls that cross arrays are worth the speed.
 nanobind_add_module(_core NB_STATIC NOMINSIZE NB_SUPPRESS_WARNINGS ${iota_binding_sources})
-iota_compile(_core)
+iota_compile(_core -O2)
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/python/iota")
 target_compile_definitions(_core PRIVATE IOTA_VERSION="${PROJECT_VERSION}")
 target_include_directories(_core PRIVATE bindings src ${CMAKE_CURRENT_SOURCE_DIR})

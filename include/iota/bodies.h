@@ -41,7 +41,7 @@ struct SolidOptions {
   double damping = 0;  ///< 1/s
 };
 
-/// Of one body, J.
+/// The energy of one body, J.
 struct BodyEnergy {
   double kinetic = 0;
   double potential = 0;  ///< of its weight, and of bonds and joints that it is the first body of
@@ -77,7 +77,7 @@ class Bodies : public View {
   void set_rod(BodyId, double mass, double radius);
   void destroy(BodyId);  ///< with its particles and their bonds
   bool contains(BodyId) const;
-  /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
+  /// The id that a retired one became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<BodyId> survivor_of(BodyId) const;
   std::vector<BodyId> ids() const;  ///< in order of slots
   std::string name(BodyId) const;   ///< empty unless it was given one

@@ -41,7 +41,7 @@ class Joints : public View {
   void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);
   void set_length(ConstraintId, double);  ///< of a rod, rope, tackle or coupling: reached during the next step
   Compliance compliance(ConstraintId) const;
-  /// Of kinds that hold a place, directions or a distance: not of paths, surfaces and couplings.
+  /// Only kinds that hold a place, directions or a distance can be compliant; paths, surfaces and couplings cannot.
   void set_compliance(ConstraintId, const Compliance&);
   BreakLimits break_limits(ConstraintId) const;
   void set_break_limits(ConstraintId, const BreakLimits&);

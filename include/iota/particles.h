@@ -26,7 +26,7 @@ class Particles : public View {
   ParticleId create(BodyId body, const Vec3& position, double mass = 1, const Vec3& velocity = {});
   void destroy(ParticleId);  ///< with its bonds; its body too if it was the last one
   bool contains(ParticleId) const;
-  /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
+  /// The id that a retired one became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::vector<ParticleId> ids() const;  ///< in order of slots
   BodyId body(ParticleId) const;

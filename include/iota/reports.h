@@ -39,12 +39,12 @@ struct Broken {
 
 /// A one-sided constraint began or ceased to carry a load: surfaces met or parted, a rope became taut or slack, a
 /// coordinate reached or left a stop.
-struct ContactEvent {
+struct StopEvent {
   enum class Kind : std::uint8_t { met, parted };
   Kind kind = Kind::met;
   ConstraintId constraint;
-  std::optional<JointCoordinate> stop;  ///< of which coordinate; unset: the constraint itself
-  Vec3 position;                        ///< where it acts on a, m
+  std::optional<JointCoordinate> coordinate;  ///< whose stop; unset: the constraint itself
+  Vec3 position;                              ///< where it acts on a, m
 };
 
 /// An event that a viewer shows for a moment, and its place.
@@ -100,7 +100,7 @@ struct [[nodiscard]] StepReport {
   std::vector<BondId> switched_off;                    ///< bonds whose force was not finite, or whose function threw
   std::vector<ConstraintId> switched_off_constraints;  ///< the same of the functions of their surfaces
   std::vector<Broken> broken;
-  std::vector<ContactEvent> contacts;
+  std::vector<StopEvent> stops;
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< requested during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...

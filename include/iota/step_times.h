@@ -3,7 +3,7 @@
 
 namespace iota {
 
-/// Where the time of steps goes, s. Islands may be solved on several threads: their times are summed.
+/// The time of steps by their parts, s. Islands may be solved on several threads: their times are summed.
 struct StepTimes {
   double forces = 0;     ///< held forces; forces and constraints in the equations of a step
   double analyze = 0;    ///< islands, and the structure of their matrices; only after changes

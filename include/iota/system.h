@@ -141,7 +141,7 @@ class System {
   /// which gets dense arrays and is far slower. If it fails, the built-in one takes over, with a warning.
   std::string solver() const;
   void set_solver(std::string_view name);
-  /// Of mode accurate: the estimated error of positions that one second of simulated time may add, in mean lengths of
+  /// The estimated error of positions that one second of simulated time may add in mode accurate, in mean lengths of
   /// links (and springs) of an island. 1e-12 to 1.
   double tolerance() const;
   void set_tolerance(double);
@@ -159,7 +159,8 @@ class System {
   Vec3 momentum() const;
   Vec3 angular_momentum() const;  ///< about the origin
   double worst_gap() const;       ///< m
-  /// Of the last step: one for each island, without free particles. Empty before the first step and after `restore`.
+  /// Reports of the last step, one for each island, without free particles. Empty before the first step and after
+  /// `restore`.
   std::vector<IslandReport> islands() const;
   std::uint32_t structure_version() const;
   Snapshot snapshot() const;

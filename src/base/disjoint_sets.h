@@ -11,7 +11,14 @@ namespace iota {
 /// Sets of the numbers below some size that are joined in pairs; with path halving (Tarjan and van Leeuwen 1984).
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  DisjointSets() = default;
+  explicit DisjointSets(std::size_t size) { reset(size); }
+
+  /// Each number alone again; allocates only for more numbers than ever before.
+  void reset(std::size_t size) {
+    parent_.resize(size);
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
 
   std::uint32_t root(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];

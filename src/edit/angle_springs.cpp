@@ -45,7 +45,7 @@ void apply(Editor& e, const SetAngleSpring& c) {
   if (std::isnan(options.rest)) options.rest = ingredient::AngleSprings::angle(e.model, spring);
   take_options(spring, options);
   const model::Particle& middle = e.model.particles[spring.at(1)];
-  e.model.articulates[e.model.bodies[middle.body].articulate].to_wake = 1;
+  e.model.wake(e.model.bodies[middle.body].articulate);
 }
 
 void apply(Editor& e, const Destroy<AngleSpringId>& c) {

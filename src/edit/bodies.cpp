@@ -135,10 +135,7 @@ void put_to_rest(Editor& e, std::uint32_t body) {
   e.islands.update(model, e.parallel);
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
   const std::uint32_t articulate = model.bodies[body].articulate;
-  if (const island::Island* const island = e.islands.of_articulate(articulate))
-    island->put_to_rest(model);
-  else
-    island::FreeParticles::put_to_rest(model, articulate);
+  e.islands.put_to_rest(model, articulate);
   for (const std::uint32_t b : affected) {
     model::Articulate& a = model.articulates[model.bodies[b].articulate];
     a.to_wake = a.velocity_dirty = 0;
@@ -163,8 +160,9 @@ void apply(Editor& e, const SetKind& c) {
   if (before == BodyKind::resting) {
     for (const std::uint32_t b : model.tied_bodies(std::array{slot})) {
       if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
-      model.articulates[model.bodies[b].articulate].to_wake = 1;
+      model.wake(model.bodies[b].articulate);
     }
+    e.islands.free_particles().note_woken();
     if (c.kind == BodyKind::dynamic) return;
   }
   const auto change = [&] {
@@ -181,7 +179,7 @@ void apply(Editor& e, const SetKind& c) {
         model.stop_ring(ring);
     });
     model.touch_body(slot);
-    model.articulates[body.articulate].velocity_dirty = 1;
+    model.mark_velocities(body.articulate);
   };
   if (before == BodyKind::inactive) {  // the bodies hinged to it may have moved meanwhile
     RestructureReport report;

@@ -94,7 +94,7 @@ void wake(Editor& e, std::uint32_t constraint) {
 
 ConstraintId made(Editor& e, std::uint32_t slot) {
   model::Model& model = e.model;
-  ingredient::start_contact(model, slot);
+  ingredient::start_surface_pair(model, slot);
   constraint_changed(e, slot);
   return model.constraints.id(slot);
 }

@@ -47,8 +47,7 @@ std::uint32_t require(const model::Model& m, GripId id) { return slot_of(m.grips
 std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.emitters, id); }
 
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
-  model::Articulate& a = model.articulates[model.bodies[model.particles[particle].body].articulate];
-  a.velocity_dirty = a.to_wake = 1;
+  model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
 Snapshot Editor::snapshot() {
@@ -73,6 +72,7 @@ void Editor::restore(const Snapshot& snapshot, Origin origin) {
                                        complaints.size() > 1 ? text(", and ", complaints.size() - 1, " more") : ""));
   restored.take_over(model);
   model = std::move(restored);
+  model.list_flagged();
   islands.forget();
   held.forget();
   orientations.forget();

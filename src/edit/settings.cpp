@@ -12,7 +12,7 @@ void apply(Editor& e, const SetGravity& c) {
   model::Model& model = e.model;
   require_finite("gravity", c.value);
   model.gravity = c.value;
-  model.articulates.for_each([](std::uint32_t, model::Articulate& a) { a.to_wake = 1; });
+  model.wake_all();
 }
 
 void apply(Editor& e, const SetMode& c) { e.model.mode = c.mode; }

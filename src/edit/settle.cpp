@@ -27,7 +27,7 @@ void sort_unique(std::vector<std::uint32_t>& list, std::size_t slots) {
     if (is_in[slot]) list.push_back(slot);
 }
 
-/// Of these bodies and the springs between them; destroyed bodies have none.
+/// Energy and momenta of these bodies and the springs between them; destroyed bodies are skipped.
 Conserved conserved(const model::Model& model, std::span<const std::uint32_t> bodies) {
   return {ingredient::calc_energies(model, bodies), ingredient::calc_momenta(model, bodies)};
 }

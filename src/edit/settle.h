@@ -57,7 +57,7 @@ class Restructuring {
 
  private:
   void settle_and_measure(const model::Edit& owed);
-  /// Those of some bodies and of the ones created by the change that are alive.
+  /// The living ones among some bodies and the bodies that the change has created.
   std::vector<std::uint32_t> with_created(std::span<const std::uint32_t> bodies) const;
   std::span<const std::uint32_t> edited() const { return {bodies_.data(), body_count_}; }
 

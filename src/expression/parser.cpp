@@ -48,7 +48,7 @@ std::string show(std::string_view text, std::size_t position) {
   const std::size_t before = text.substr(0, position).rfind('\n');
   const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
   const std::size_t end = std::min(text.find('\n', position), text.size());
-  // Of a long line only a part around the place is shown.
+  // Only a part of a long line, around the place, is shown.
   const std::size_t from = position - start > 60 ? position - 60 : start, to = std::min(end, position + 40);
   std::string line(text.substr(from, to - from));
   for (char& c : line)

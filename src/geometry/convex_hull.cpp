@@ -16,7 +16,8 @@ namespace iota {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
-/// Of the extent: points nearer than this to a facet count as on it. Well above round-off, far below visibility.
+/// As a part of the extent: points nearer than this to a facet count as points on it. The value is well above round-off and
+/// too small to be seen.
 constexpr double thickness = 1e-11;
 
 struct Facet {

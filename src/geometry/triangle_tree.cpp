@@ -37,7 +37,7 @@ double solid_angle(Vec3 a, Vec3 b, Vec3 c, const Vec3& p) {
 
 namespace {
 
-/// Where a line meets the plane of a triangle: the distance along it, and shares of b and c in the point.
+/// The point in which a line meets the plane of a triangle: the distance along the line, and the shares of b and c.
 struct Crossing {
   double distance = 0, b = 0, c = 0;
   bool is_outward = false;  ///< the line leaves what the triangle bounds

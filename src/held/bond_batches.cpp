@@ -25,7 +25,7 @@ void put(double* out, std::size_t row, const Vec3& v) {
 void BondBatches::update(const model::Model& model) {
   if (seen_revision == model.bonds_revision) return;
   seen_revision = model.bonds_revision;
-  held.clear(), watched.clear(), breakable.clear();
+  held.clear(), watched.clear();
   std::vector<std::uint32_t> place_held(model.laws.slot_count(), model::none), place_watched = place_held;
   const auto put = [&](std::vector<BondBatch>& batches, std::uint32_t& place, std::uint32_t slot, std::uint32_t law) {
     if (place == model::none) {
@@ -37,7 +37,6 @@ void BondBatches::update(const model::Model& model) {
   };
   model.bonds.for_each([&](std::uint32_t slot, const ingredient::Bond& bond) {
     if (!bond.acts()) return;
-    if (std::isfinite(bond.break_force)) breakable.push_back(slot);
     if (bond.law == ingredient::scripted_law) return;
     if (!bond.implicit)
       put(held, place_held[bond.law], slot, bond.law);

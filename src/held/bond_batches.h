@@ -24,7 +24,7 @@ struct BondBatch {
   void load_rows(const model::Model&, double ahead);
   /// The numbers from `load`, at a time, without arrays for results.
   laws::PairBatch loaded(double time);
-  /// Of all its bonds at present, J; only for laws with a derivative. Overwrites the arrays.
+  /// The energy of all its bonds at present, J; only for laws with a derivative. Overwrites the arrays.
   double energy(const model::Model&);
 };
 
@@ -34,7 +34,6 @@ struct BondBatches {
   void forget() { seen_revision = ~0ull; }
 
   std::vector<BondBatch> held, watched;
-  std::vector<std::uint32_t> breakable;  ///< active bonds with a breaking force
   std::uint64_t seen_revision = ~0ull;
 };
 

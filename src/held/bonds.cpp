@@ -179,12 +179,6 @@ void HeldForces::take_scripts(StepReport& report) {
 
 // --- forces of bonds ----------------------------------------------------------------------------------------------------
 
-Vec3 HeldForces::force(std::uint32_t slot) const {
-  const ingredient::Bond& bond = model_.bonds[slot];
-  if (!bond.acts()) return {};
-  return bond.implicit == ingredient::Bond::as_force ? -ingredient::Bonds::force(model_, slot) : bond.held_force;
-}
-
 // --- cost of forces -------------------------------------------------------------------------------------------------
 
 namespace {

@@ -26,11 +26,6 @@ void HeldForces::end_step() {
 // step this is the leapfrog scheme, whose energy does not drift; forces at the start of the step would add energy.
 double HeldForces::look_ahead(double h) const { return model_.steps_to_end_point() ? 0 : h / 2; }
 
-const std::vector<std::uint32_t>& HeldForces::breakable_bonds() {
-  batches_.update(model_);
-  return batches_.breakable;
-}
-
 void HeldForces::forget() {
   batches_.forget(), sets_.forget();
   energy_is_known_ = false;

@@ -25,11 +25,6 @@ class HeldForces {
   /// Books the work of the step.
   void end_step();
 
-  /// On a bond's first particle, N: of an implicit bond at present, of a held one in the last step.
-  Vec3 force(std::uint32_t bond) const;
-  /// Active bonds with a breaking force.
-  const std::vector<std::uint32_t>& breakable_bonds();
-
   /// @name Energy, J: of bonds, fields and pairs whose law has one. It is potential energy, like that of an implicit
   /// spring, but no solver counts it, so it is booked here:
   /// - the change by edits since the last step is measured at the start of the next one;

@@ -25,7 +25,7 @@ solver::SpringForce force_of(const AngleSpring& spring) {
   return force;
 }
 
-/// Where its three particles are apart and none is switched off.
+/// Whether its three particles are apart and none is switched off.
 bool is_in_force(const Model& model, const AngleSpring& spring) {
   std::array<std::uint32_t, AngleSpring::count> rings;
   for (std::uint32_t end = 0; end < rings.size(); ++end) {

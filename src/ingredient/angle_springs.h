@@ -23,7 +23,7 @@ struct AngleSpring : model::ThreeEnds {
 /// rest angle and has there the second derivative `stiffness`. Unlike the angle itself |e|^2 is smooth where the legs are
 /// straight. Forces b/(a + b) F, -F and a/(a + b) F along e have neither a sum nor a moment. It is the spring of the
 /// solver with three points, so its energy is kept in steps.
-/// Where two of the three particles share a place the spring rests.
+/// The spring has no force while two of the three particles share a ring.
 class AngleSprings : public NoAnswers {
  public:
   struct Tables {

@@ -2,6 +2,7 @@
 #include "ingredient/bonds.h"
 
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
 #include "ingredient/row_loads.h"
 #include "laws/pair_laws.h"
 
@@ -63,7 +64,7 @@ solver::RowLaw law_of(const Bond& bond) {
   return {.compliance = 1 / spring_of(bond).stiffness, .damping = spring_of(bond).damping};
 }
 
-/// Of the row in the last step, from p to q at its end. N.
+/// The tension of the bond's row in the last step, N. `d` leads from p to q at its end.
 double tension(const Bond& bond, const Vec3& d) { return dot(bond.held_force, solver::SpringForce::direction(d)); }
 
 }  // namespace
@@ -294,6 +295,29 @@ void Bonds::acting_changed(Model& model, std::uint32_t particle) {
     bond.muted = !model.acts(bond.p) || !model.acts(bond.q);
     ++model.bonds_revision;
   });
+}
+
+Vec3 Bonds::force_on_first(const Model& model, std::uint32_t slot) {
+  const Bond& bond = model.bonds[slot];
+  if (!bond.acts()) return {};
+  return bond.implicit == Bond::as_force ? -force(model, slot) : bond.held_force;
+}
+
+void Bonds::tell(Model& model, Outcome& outcome) {
+  if (model.breakable_revision != model.bonds_revision) {
+    model.breakable_revision = model.bonds_revision;
+    model.breakable_bonds.clear();
+    model.bonds.for_each([&](std::uint32_t slot, const Bond& bond) {
+      if (bond.acts() && std::isfinite(bond.break_force)) model.breakable_bonds.push_back(slot);
+    });
+  }
+  for (const std::uint32_t slot : model.breakable_bonds) {
+    const Bond& bond = model.bonds[slot];
+    const double force = norm(force_on_first(model, slot));
+    if (!(force > bond.break_force)) continue;
+    const Vec3 middle = 0.5 * (model.position(bond.p) + model.position(bond.q));
+    outcome.overloaded.push_back({.bond = model.bonds.id(slot), .position = middle, .force = force});
+  }
 }
 
 model::ChangedSlots* Bonds::scene_log(Model& model) { return &model.changed_bonds; }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace iota::ingredient {
 
@@ -37,6 +38,9 @@ class Bonds : public NoAnswers {
     model::EndTable<Bond, BondId> bonds;
     std::uint64_t bonds_revision = 0;   ///< rises when a bond is added, removed, moved or switched; not saved
     model::ChangedSlots changed_bonds;  ///< not saved
+    /// Acting bonds with a breaking force, at a `bonds_revision`; not saved.
+    std::vector<std::uint32_t> breakable_bonds;
+    std::uint64_t breakable_revision = ~0ull;
 
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
@@ -54,6 +58,7 @@ class Bonds : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static void acting_changed(Model&, std::uint32_t particle);
+  static void tell(Model&, Outcome&);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
 
@@ -67,6 +72,8 @@ class Bonds : public NoAnswers {
   static double energy(const Model&, std::uint32_t bond);  ///< of one that is solved implicitly, at `Model::time`, J
   /// On the second particle at the present state, N.
   static Vec3 force(const Model&, std::uint32_t bond);
+  /// On the first particle, N: of an implicit force at present, of others in the last step.
+  static Vec3 force_on_first(const Model&, std::uint32_t bond);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);

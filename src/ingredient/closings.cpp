@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
 #include "ingredient/row_loads.h"
 #include "model/restructure.h"
 
@@ -97,6 +98,16 @@ void Closings::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
                              reader.take({.particle = p, .force = force, .part = model.particles[p].part});
                          });
     });
+  });
+}
+
+void Closings::end_step(Model& model, double h) {
+  model.closings.for_each([&](std::uint32_t, Closing& c) { c.elapsed += h; });
+}
+
+void Closings::tell(Model& model, Outcome& outcome) {
+  model.closings.for_each([&](std::uint32_t slot, const Closing& c) {
+    if (c.elapsed >= c.duration) outcome.met.push_back(model.closings.id(slot));
   });
 }
 

@@ -33,10 +33,12 @@ class Closings : public NoAnswers {
   static bool call_off(Model&, std::uint32_t p, std::uint32_t q);
   static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
+  static void end_step(Model&, double h);
+  static void tell(Model&, Outcome&);
 
   static std::uint32_t add(Model&, const Closing&);  ///< returns the slot; the two articulates must become one
   static void remove(Model&, std::uint32_t closing);
-  /// Of two particles, in either order; `none` without one.
+  /// The slot of the closing between two particles, in either order; `none` if there is none.
   static std::uint32_t between(const Model&, std::uint32_t p, std::uint32_t q);
   /// Ends one before its particles have met. Its articulate may split.
   static void end(Model&, std::uint32_t closing);

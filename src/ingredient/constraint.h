@@ -129,7 +129,7 @@ struct Constraint {
   std::uint32_t first_term = 0xffffffff;  ///< of a coupling
   std::uint32_t coupled = 0xffffffff;     ///< the first of the terms that refer to this constraint's coordinates
   std::array<SurfaceData, 2> surfaces{};  ///< of a and b
-  Vec3 contact;                           ///< of two surfaces, in a's frame, m
+  Vec3 nearest;                           ///< of two surfaces: of a to b, in a's frame, m
   std::array<CoordinateOptions, joint_coordinates.size()> options{};
   /// After the last step, rad (counted through full turns) and m.
   std::array<double, joint_coordinates.size()> coordinate{};

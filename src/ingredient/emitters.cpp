@@ -2,7 +2,42 @@
 #include "ingredient/emitters.h"
 
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
+#include "math/mat3.h"
+#include "shape/traits.h"
+
+#include <algorithm>
+
 namespace iota::ingredient {
+
+namespace {
+
+/// The n-th number of a seed in [0, 1): SplitMix64 (Steele, Lea, Flood 2014) as a counter-based generator.
+double dice(std::uint64_t seed, std::uint64_t n) {
+  std::uint64_t z = seed * 0xd1342543de82ef95ull + (n + 1) * 0x9e3779b97f4a7c15ull;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
+  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+class Draw {
+ public:
+  explicit Draw(Emitter& emitter) : emitter_(emitter) {}
+  double number(double low, double high) { return low + (high - low) * dice(emitter_.seed, emitter_.draws++); }
+  Vec3 in_ball(double radius) {
+    const auto draw = [this](double low, double high) { return number(low, high); };
+    return radius * shape::in_ball(draw);
+  }
+  Vec3 in_source() {
+    return shape::inside(shape::from_data(emitter_.source),
+                         [this](double low, double high) { return number(low, high); });
+  }
+
+ private:
+  Emitter& emitter_;
+};
+
+}  // namespace
 
 void Emitters::check_links(const Model& model, model::Audit& audit) {
   model.attributes.for_each([&](std::uint32_t slot, const model::Attributes& a) {
@@ -19,7 +54,7 @@ void Emitters::check_links(const Model& model, model::Audit& audit) {
 
 void Emitters::validate(const Model& model, model::Audit& audit) {
   std::vector<std::uint32_t> emitted(model.emitters.slot_count(), 0);
-  model.attributes.for_each([&](std::uint32_t slot, const model::Attributes& a) {
+  model.attributes.for_each([&](std::uint32_t, const model::Attributes& a) {
     if (a.emitter == none) return;
     ++emitted[a.emitter];
   });
@@ -44,6 +79,47 @@ void Emitters::describe(const SceneView& view, SceneChanges& changes) {
       changes.particle_sets.set.push_back({slot, model.emitters[slot].active != 0, model.emitters[slot].max_count});
     else
       changes.particle_sets.gone.push_back(slot);
+  }
+}
+
+void Emitters::end_step(Model& model, double h) {
+  model.emitters.for_each([&](std::uint32_t, Emitter& e) {
+    if (e.active) e.due += e.rate * h;
+  });
+}
+
+void Emitters::tell(Model& model, Outcome& outcome) {
+  model.emitters.for_each([&](std::uint32_t slot, const Emitter& e) {
+    if (e.active && e.due >= 1) outcome.due.push_back(model.emitters.id(slot));
+  });
+}
+
+// The births of a step are spread over it: each particle has already moved since its birth.
+void Emitters::bear(Model& model, std::uint32_t slot, double h, std::vector<ParticleId>& born) {
+  const Vec3 gravity = model.acting_gravity();
+  const double rate = model.emitters[slot].rate, owed = model.emitters[slot].due;
+  const auto count = static_cast<std::uint64_t>(owed);
+  model.emitters[slot].due = owed - static_cast<double>(count);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Emitter& e = model.emitters[slot];
+    if (e.alive >= e.max_count) return;
+    Draw draw(e);
+    const double since = std::min(h, (owed - static_cast<double>(i + 1)) / rate);
+    Vec3 position = e.position + rotate(e.orientation, draw.in_source());
+    Vec3 velocity = rotate(e.orientation, e.velocity) + draw.in_ball(e.velocity_spread);
+    const double lifetime = e.lifetime + draw.number(-e.lifetime_spread, e.lifetime_spread);
+    position += since * velocity + (since * since / 2) * gravity;
+    velocity += since * gravity;
+    if (!(since < lifetime)) continue;
+    const std::uint32_t body = model.make_body(BodyKind::dynamic, e.damping);
+    const std::uint32_t particle = model.make_particle(body, position, e.mass, velocity);
+    model.rebuild_basis(body);
+    model::Attributes a;
+    a.particle = particle, a.emitter = slot, a.age = since, a.lifetime = lifetime;
+    model.particles[particle].attributes = model.attributes.create(a).slot;
+    ++e.alive, ++e.born;
+    born.push_back(model.particles.id(particle));
+    ++model.structure_version, ++model.spark_changes;
   }
 }
 

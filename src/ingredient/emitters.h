@@ -26,7 +26,7 @@ struct Emitter {
   std::uint64_t born = 0;
 };
 
-/// Sources of particles, which are born and die between steps, see src/step/lifetimes.h.
+/// Sources of particles, which are born and die between steps.
 class Emitters : public NoAnswers {
  public:
   struct Tables {
@@ -43,6 +43,11 @@ class Emitters : public NoAnswers {
   static void describe(const SceneView&, SceneChanges&);
   static void validate(const Model&, model::Audit&);
   static void check_links(const Model&, model::Audit&);
+  static void end_step(Model&, double h);
+  static void tell(Model&, Outcome&);
+
+  /// Creates the particles that an emitter owes after a step of h seconds, and adds them to a list.
+  static void bear(Model&, std::uint32_t emitter, double h, std::vector<ParticleId>& born);
 };
 
 }  // namespace iota::ingredient

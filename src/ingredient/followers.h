@@ -8,8 +8,8 @@
 
 namespace iota::ingredient {
 
-/// Takes ingredients along over an edit of some bodies that may absorb, tear apart or destroy what they hang on: made
-/// before the edit, asked to follow after it.
+/// Keeps ingredients attached to their places during an edit that may merge, split or destroy the bodies that they are
+/// attached to. It is made before the edit and follows after it.
 class Followers {
  public:
   Followers(const Model& model, std::span<const std::uint32_t> bodies) {

@@ -12,7 +12,7 @@ namespace iota::ingredient {
 
 namespace {
 
-/// Of the movable bodies connected to a body, kg.
+/// The mass of all movable bodies that are connected to a body, kg.
 double calc_tied_mass(const Model& model, std::uint32_t body) {
   double mass = 0;
   const auto add = [&](std::uint32_t b) {
@@ -95,16 +95,17 @@ void Grips::store(Model& model, const IslandNodes&, double h, const Problem& pro
 void Grips::check_links(const Model& model, model::Audit& audit) {
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     audit.require(model.bodies.is_alive(g.body), "grip ", slot, " holds no living body");
-    audit.require(g.count >= 1 && g.count <= g.points.size(), "grip ", slot, " hangs on ", g.count, " points");
+    audit.require(g.count >= 1 && g.count <= g.points.size(), "grip ", slot, " refers to ", g.count, " points");
     for (std::uint32_t i = 0; i < std::min<std::size_t>(g.count, g.points.size()); ++i)
-      audit.require(model.particles.is_alive(g.points[i]), "grip ", slot, " hangs on a stranger");
+      audit.require(model.particles.is_alive(g.points[i]), "grip ", slot, " refers to a particle that does not exist");
   });
 }
 
 void Grips::validate(const Model& model, model::Audit& audit) {
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     for (std::uint32_t i = 0; i < g.count; ++i)
-      audit.require(model.particles[g.points[i]].body == g.body, "grip ", slot, " hangs on a stranger");
+      audit.require(model.particles[g.points[i]].body == g.body, "grip ", slot,
+                    " refers to a particle of another body");
   });
 }
 

@@ -22,6 +22,7 @@ namespace iota::ingredient {
 using model::Structure;
 using solver::Problem;
 using Visit = Structure::Visit;
+struct Outcome;
 
 /// The default functions of an ingredient, which do nothing. An ingredient inherits them and hides those that it
 /// defines. Static functions are for the whole model. The others are for one island: an ingredient object belongs to an
@@ -48,7 +49,7 @@ struct NoAnswers {
   static void add_energy(const Scope&, Energies&) {}
   static void add_momentum(const Scope&, Momenta&) {}
   /// The largest gap of its constraints, m.
-  static double worst_gap(const Model&) { return 0; }
+  static double worst_gap(const Scope&) { return 0; }
   /// Its forces on the points of a body in the last step.
   static void add_loads(const LastStep&, std::uint32_t /*body*/, LoadReader&) {}
   /// Whether it acts on a body of a single particle, which is then not free.
@@ -117,6 +118,16 @@ struct NoAnswers {
   static void draw(const SceneView&, std::uint32_t /*body*/, DrawnBody&) {}
   ///@}
 
+  /// @name After a step
+  ///@{
+
+  /// Its changes by a step of h seconds that no island makes: ages, orientations of balls, forces that end.
+  static void end_step(Model&, double /*h*/) {}
+  /// Tells what the step has led to: overloads, stops, births, deaths, ends. It makes no edit, since others read loads
+  /// after it. It is asked in each step: keep it cheap if nothing can happen.
+  static void tell(Model&, Outcome&) {}
+  ///@}
+
   /// @name Building and stepping
   ///@{
 
@@ -161,54 +172,58 @@ struct NoAnswers {
 
   /// @name Sleep
   ///@{
-  bool wakes(const Model&, const IslandNodes&) const { return false; }  ///< a sleeping island
-  bool keeps_awake(const Problem&) const { return false; }              ///< an island that would fall asleep
+  /// visit(ring): of what must not be still in the next step.
+  static void visit_stirred(const Model&, Visit) {}
+  bool keeps_awake(const Problem&) const { return false; }  ///< an island that would fall asleep
   void put_to_rest(Model&, const Problem&) const {}
   ///@}
 };
 
 /// The functions of every ingredient for the model.
 template <class I>
-concept ModelIngredient = requires(
-    Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies, Momenta& momenta,
-    const LastStep& step, LoadReader& loads, std::uint32_t slot, std::span<const std::uint32_t> bodies,
-    std::vector<std::string>& notes, Visit visit, const SceneView& view, SceneChanges& changes, DrawnBody& drawn) {
-  typename I::Tables;
-  I::take_over(model, model);
-  I::validate(seen, audit);
-  I::check_links(seen, audit);
-  I::add_energy(scope, energies);
-  I::add_momentum(scope, momenta);
-  { I::worst_gap(seen) } -> std::same_as<double>;
-  I::add_loads(step, slot, loads);
-  { I::holds(seen, slot) } -> std::same_as<bool>;
-  { I::uses(seen, slot) } -> std::same_as<bool>;
-  { I::replaces_gravity(seen) } -> std::same_as<bool>;
-  { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
-  I::visit_joined(seen, slot, visit);
-  { I::ties_rigidly } -> std::convertible_to<bool>;
-  I::visit_tied(seen, slot, visit);
-  { I::ties_any(seen) } -> std::same_as<bool>;
-  { I::ties_to_world(seen, slot) } -> std::same_as<bool>;
-  I::visit_companions(seen, slot, visit);
-  I::absorb(model, slot, slot);
-  I::drop(model, slot);
-  I::forget_particle(model, slot);
-  I::forget_body(model, slot);
-  I::ring_changed(model, slot);
-  I::ring_merged(model, slot, slot, true);
-  I::inertia_changed(model, slot);
-  I::acting_changed(model, slot);
-  { I::call_off(model, slot, slot) } -> std::same_as<bool>;
-  I::settle(model, bodies, notes);
-  { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
-  I::follow(model, I::remember(seen, bodies));
-  I::follow_bases(model);
-  I::prepare(model, slot);
-  { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
-  I::describe(view, changes);
-  I::draw(view, slot, drawn);
-};
+concept ModelIngredient =
+    requires(Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies,
+             Momenta& momenta, const LastStep& step, LoadReader& loads, std::uint32_t slot,
+             std::span<const std::uint32_t> bodies, std::vector<std::string>& notes, Visit visit, const SceneView& view,
+             SceneChanges& changes, DrawnBody& drawn, double h, Outcome& outcome) {
+      typename I::Tables;
+      I::take_over(model, model);
+      I::validate(seen, audit);
+      I::check_links(seen, audit);
+      I::add_energy(scope, energies);
+      I::add_momentum(scope, momenta);
+      { I::worst_gap(scope) } -> std::same_as<double>;
+      I::add_loads(step, slot, loads);
+      { I::holds(seen, slot) } -> std::same_as<bool>;
+      { I::uses(seen, slot) } -> std::same_as<bool>;
+      { I::replaces_gravity(seen) } -> std::same_as<bool>;
+      { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
+      I::visit_joined(seen, slot, visit);
+      { I::ties_rigidly } -> std::convertible_to<bool>;
+      I::visit_tied(seen, slot, visit);
+      { I::ties_any(seen) } -> std::same_as<bool>;
+      { I::ties_to_world(seen, slot) } -> std::same_as<bool>;
+      I::visit_companions(seen, slot, visit);
+      I::absorb(model, slot, slot);
+      I::drop(model, slot);
+      I::forget_particle(model, slot);
+      I::forget_body(model, slot);
+      I::ring_changed(model, slot);
+      I::ring_merged(model, slot, slot, true);
+      I::inertia_changed(model, slot);
+      I::acting_changed(model, slot);
+      { I::call_off(model, slot, slot) } -> std::same_as<bool>;
+      I::settle(model, bodies, notes);
+      { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
+      I::follow(model, I::remember(seen, bodies));
+      I::follow_bases(model);
+      I::prepare(model, slot);
+      { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
+      I::describe(view, changes);
+      I::draw(view, slot, drawn);
+      I::end_step(model, h);
+      I::tell(model, outcome);
+    };
 
 /// The functions of every ingredient for the stages of a step of an island.
 template <class I>
@@ -231,7 +246,6 @@ concept IslandIngredient =
       { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
       fixed.impose_velocities(problem, h);
       fixed.impose_positions(problem);
-      { fixed.wakes(seen, nodes) } -> std::same_as<bool>;
       { fixed.keeps_awake(solved) } -> std::same_as<bool>;
       fixed.put_to_rest(model, solved);
     };

@@ -74,5 +74,13 @@ template <class List>
 void add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   for_each_type<List>([&]<class I>() { I::add_loads(step, body, reader); });
 }
+template <class List>
+void end_step(Model& model, double h) {
+  for_each_type<List>([&]<class I>() { I::end_step(model, h); });
+}
+template <class List>
+void tell(Model& model, Outcome& outcome) {
+  for_each_type<List>([&]<class I>() { I::tell(model, outcome); });
+}
 
 }  // namespace iota::ingredient

@@ -183,15 +183,15 @@ bool has_coordinate_row(const Model& model, std::uint32_t slot, JointCoordinate 
   return rows.with_coordinate(which, [](const auto&) {});
 }
 
-void start_contact(Model& model, std::uint32_t slot) {
+void start_surface_pair(Model& model, std::uint32_t slot) {
   Constraint& c = model.constraints[slot];
   if (info(c.kind).form != ConstraintKindInfo::Form::surface_pair) return;
   const JointPlaces places(model, c);
   auto ignore = [](const auto&, RowUse) {};
   solver::SurfacePairConstraint row =
-      JointRowBuilder<decltype(ignore)>(c, model.geometry(slot), places.arms, ignore).contact_row();
+      JointRowBuilder<decltype(ignore)>(c, model.geometry(slot), places.arms, ignore).surface_pair_row();
   row.start(places.position.data(), 1);
-  c.contact = row.contact;
+  c.nearest = row.nearest;
 }
 
 }  // namespace iota::ingredient

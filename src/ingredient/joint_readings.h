@@ -13,7 +13,7 @@ namespace iota::ingredient {
 void refresh_coordinates(model::Model&, std::uint32_t joint);
 
 /// Finds the nearest points of a joint's two surfaces.
-void start_contact(model::Model&, std::uint32_t joint);
+void start_surface_pair(model::Model&, std::uint32_t joint);
 
 /// Force and torque of a joint (a coupling: of its first joint) on its side a in the last step, about `position`.
 struct Reaction {

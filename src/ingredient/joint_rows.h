@@ -56,7 +56,7 @@ class JointRowBuilder {
       case Form::distance: return c_.kind == ConstraintKind::span ? coordinate(slide, span_row()) : distance();
       case Form::path: hold(curve_row()); return coordinate(slide, station_row());
       case Form::surface: return hold(surface_row());
-      case Form::surface_pair: return hold(contact_row());
+      case Form::surface_pair: return hold(surface_pair_row());
       case Form::coupling: return;  // its row has other joints' places
     }
   }
@@ -116,7 +116,8 @@ class JointRowBuilder {
     return row;
   }
 
-  /// Of a's origin relative to b's, along the axis; product / scale is the target in m.
+  /// The row of a slide: it holds the place of a's origin relative to b's along the axis. product / scale is the target
+  /// in m.
   solver::BilinearConstraint slide_row() const {
     solver::BilinearConstraint row;
     const int axis = c_.has(b_axis) ? b_axis : a_axis;
@@ -160,14 +161,14 @@ class JointRowBuilder {
     return row;
   }
 
-  solver::SurfacePairConstraint contact_row() const {
+  solver::SurfacePairConstraint surface_pair_row() const {
     solver::SurfacePairConstraint row;
     sides(row, {a_origin, a_axis, a_side, a_third}, {b_origin, b_axis, b_side, b_third});
     add(row, 0, b_origin, 1), add(row, 0, a_origin, -1);
     frame(row, 1, a_origin), frame(row, 4, b_origin);
     row.surface_a = geometry_.surfaces[0].get(), row.surface_b = geometry_.surfaces[1].get();
     row.reference = std::min(row.surface_a->scale(), row.surface_b->scale());
-    row.contact = c_.contact;
+    row.nearest = c_.nearest;
     return row;
   }
 
@@ -396,7 +397,7 @@ inline void set_target(solver::SpanConstraint& row, double, double target) { row
 template <class Row>
 void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
   std::copy_n(c.multipliers.begin() + use.first, Row::rows, multipliers);
-  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) row.contact = c.contact;
+  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) row.nearest = c.nearest;
   if constexpr (std::is_same_v<Row, solver::CouplingConstraint>)
     if (info(c.kind).screw) std::get<solver::AngleConstraint>(row.terms[0].coordinate).near = c.coordinate[angle];
   if constexpr (std::is_same_v<Row, solver::CurveConstraint>)
@@ -405,7 +406,7 @@ void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
 template <class Row>
 void save_held(const Row& row, Constraint& c, RowUse use, const double* multipliers) {
   std::copy_n(multipliers, Row::rows, c.multipliers.begin() + use.first);
-  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) c.contact = row.contact;
+  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) c.nearest = row.nearest;
   if constexpr (std::is_same_v<Row, solver::CurveConstraint>) {
     const Vec3 force = row.force(multipliers);
     c.multipliers[0] = force.x, c.multipliers[1] = force.y, c.multipliers[2] = force.z;

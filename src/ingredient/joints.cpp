@@ -5,6 +5,7 @@
 #include "ingredient/joint_readings.h"
 #include "ingredient/joint_rows.h"
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
 #include "model/restructure.h"
 #include "solver/largest.h"
 
@@ -380,11 +381,18 @@ void Joints::add_energy(const Scope& scope, Energies& sum) {
     });
 }
 
-double Joints::worst_gap(const Model& model) {
+double Joints::worst_gap(const Scope& scope) {
+  const Model& model = scope.model;
   solver::Largest worst;
-  model.constraints.for_each([&](std::uint32_t, const Constraint& c) {
+  const auto add = [&](const Constraint& c) {
     if (is_in_force(model, c)) worst.add(c.gap);
-  });
+  };
+  if (scope.is_whole())
+    model.constraints.for_each([&](std::uint32_t, const Constraint& c) { add(c); });
+  else if (model.constraints.size() > 0)
+    scope.for_each_particle([&](std::uint32_t p, const model::Particle&) {
+      model.for_each_constraint_of(p, [&](std::uint32_t slot, int) { add(model.constraints[slot]); });
+    });
   return worst.value;
 }
 
@@ -608,6 +616,55 @@ void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::ve
                          most_coupled_points, " points together now"));
     destroy(model, slot);
   }
+}
+
+namespace {
+
+bool tell_failure(const Model& model, std::uint32_t slot, Outcome& outcome) {
+  for (const auto& surface : model.geometry(slot).surfaces) {
+    if (!surface || surface->failure().empty()) continue;
+    outcome.failed.push_back(model.constraints.id(slot));
+    outcome.warnings.push_back(text("constraint ", slot, " (", info(model.constraints[slot].kind).name,
+                                    "): the function of its surface ", surface->failure(),
+                                    "; the constraint is switched off"));
+    return true;
+  }
+  return false;
+}
+
+bool tell_overload(const Model& model, std::uint32_t slot, Outcome& outcome) {
+  const BreakLimits& limits = model.constraints[slot].breaks;
+  if (std::isinf(limits.force) && std::isinf(limits.torque)) return false;
+  const Reaction reaction = calc_reaction(model, slot);
+  const double force = norm(reaction.force), torque = norm(reaction.torque);
+  if (!(force > limits.force || torque > limits.torque)) return false;
+  outcome.overloaded.push_back(
+      {.constraint = model.constraints.id(slot), .position = reaction.position, .force = force, .torque = torque});
+  return true;
+}
+
+/// What began or ceased to carry a load since it was last told. `carries`: what will carry one after this step's edits.
+void tell_stops(Model& model, std::uint32_t slot, Constraint::Bits carries, Outcome& outcome) {
+  Constraint& c = model.constraints[slot];
+  if (carries.bits == c.told.bits) return;
+  for (int bit = 0; bit <= static_cast<int>(joint_coordinates.size()); ++bit) {
+    if (carries[bit] == c.told[bit]) continue;
+    StopEvent& event = outcome.stops.emplace_back();
+    event.kind = carries[bit] ? StopEvent::Kind::met : StopEvent::Kind::parted;
+    event.constraint = model.constraints.id(slot);
+    if (bit > 0) event.coordinate = joint_coordinates[static_cast<std::size_t>(bit - 1)];
+    event.position = calc_reaction(model, slot).position;
+  }
+  c.told = carries;
+}
+
+}  // namespace
+
+void Joints::tell(Model& model, Outcome& outcome) {
+  model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
+    const bool ends = c.active && (tell_failure(model, slot, outcome) || tell_overload(model, slot, outcome));
+    tell_stops(model, slot, ends ? Constraint::Bits{} : c.carries, outcome);
+  });
 }
 
 model::ChangedSlots* Joints::scene_log(Model& model) { return &model.changed_constraints; }

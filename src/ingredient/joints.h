@@ -19,7 +19,7 @@ class Joints : public NoAnswers {
     SideTable<model::ListHead> places;  ///< of particles: the head of the list of their places
     std::vector<Vec3> curve_points;     ///< of paths, m
     SlotTable<CoupledTerm, Id<"coupled term">> coupled_terms;
-    /// Of function surfaces, by key; not saved.
+    /// The functions of function surfaces, by key; not saved.
     std::map<std::uint64_t, SurfaceFunction> surface_functions;
     std::vector<ConstraintGeometry> geometries;  ///< by slot of the constraint; not saved
     model::ChangedSlots changed_constraints;     ///< not saved
@@ -43,7 +43,7 @@ class Joints : public NoAnswers {
   static void validate(const Model&, model::Audit&);
   static void check_links(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
-  static double worst_gap(const Model&);
+  static double worst_gap(const Scope&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
   static bool uses(const Model& model, std::uint32_t particle) { return holds(model, particle); }
@@ -55,6 +55,7 @@ class Joints : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static void tell(Model&, Outcome&);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
 

@@ -15,7 +15,7 @@ namespace iota::ingredient {
 /// mode accurate) all are of the instant at the end.
 class LastStep {
  public:
-  /// Of the island that has a particle.
+  /// The last step of the island that contains a particle.
   LastStep(const model::Model& model, std::uint32_t particle);
 
   const model::Model& model;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
 #include "model/nailed.h"
 #include "solver/largest.h"
 
@@ -76,14 +77,26 @@ void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
   });
 }
 
+namespace {
+
+/// Of a pinned ring.
+bool is_moved(const Model& model, std::uint32_t slot, const Nail& nail) {
+  const model::Ring& ring = model.rings[slot];
+  return (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};
+}
+
+}  // namespace
+
 bool Nails::prescribes_motion(const Model& model, const IslandNodes& nodes) const {
   bool any = false;
-  nodes.for_each_pinned([&](std::uint32_t slot) {
-    const model::Ring& ring = model.rings[slot];
-    const Nail& nail = model.nails.at(slot);
-    any = any || (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};
-  });
+  nodes.for_each_pinned([&](std::uint32_t ring) { any = any || is_moved(model, ring, model.nails.at(ring)); });
   return any;
+}
+
+void Nails::visit_stirred(const Model& model, Visit visit) {
+  model.nails.for_each([&](std::uint32_t ring, const Nail& nail) {
+    if (is_moved(model, ring, nail)) visit(ring);
+  });
 }
 
 double Nails::velocity_jump(const Problem& problem, double h) const {
@@ -117,9 +130,10 @@ void Nails::validate(const Model& model, model::Audit& audit) {
   });
 }
 
-double Nails::worst_gap(const Model& model) {
+double Nails::worst_gap(const Scope& scope) {
+  const Model& model = scope.model;
   solver::Largest worst;
-  model.nails.for_each([&](std::uint32_t ring, const Nail& nail) {
+  scope.for_each_ring_in(model.nails, [&](std::uint32_t ring, const Nail& nail) {
     if (!model.rings[ring].nailed) return;
     bool moves = false;
     model.for_each_in_ring(
@@ -159,6 +173,15 @@ void Nails::describe(const SceneView& view, SceneChanges& changes) {
     else
       changes.nails.gone.push_back(ring);
   }
+}
+
+void Nails::tell(Model& model, Outcome& outcome) {
+  model.fuses.for_each([&](std::uint32_t particle, double most) {
+    const double force = norm(calc_hinge_force(model, particle));
+    if (force > most)
+      outcome.overloaded.push_back(
+          {.particle = model.particles.id(particle), .position = model.position(particle), .force = force});
+  });
 }
 
 }  // namespace iota::ingredient

@@ -12,8 +12,8 @@ struct Nail {
   Vec3 multiplier;  ///< minus its force, N; warm start and reaction
 };
 
-/// Pins of rings: nails, static and scripted bodies. Nails that the script moves arrive at the end of the
-/// step.
+/// Pins of rings: nails, static and scripted bodies. Nails that the script moves arrive at the end of the step. Also tells
+/// which nails and hinges are overloaded.
 class Nails : public NoAnswers {
  public:
   struct Tables {
@@ -31,7 +31,9 @@ class Nails : public NoAnswers {
   static void prepare(Model&, std::uint32_t body);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
-  static double worst_gap(const Model&);
+  static double worst_gap(const Scope&);
+  static void visit_stirred(const Model&, Visit);
+  static void tell(Model&, Outcome&);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
@@ -44,8 +46,6 @@ class Nails : public NoAnswers {
   double velocity_jump(const Problem&, double h) const;
   void impose_velocities(Problem&, double h) const;
   void impose_positions(Problem&) const;
-
-  bool wakes(const Model& model, const IslandNodes& nodes) const { return prescribes_motion(model, nodes); }
 };
 
 }  // namespace iota::ingredient

@@ -2,6 +2,11 @@
 #include "ingredient/oriented_particles.h"
 
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
+#include "math/mat3.h"
+
+#include <cmath>
+
 namespace iota::ingredient {
 
 namespace {
@@ -20,6 +25,33 @@ void for_each_ball(const Scope& scope, Visit visit) {
     });
 }
 
+// Free spin is exact: angular velocity is constant, and the rotation is by its length. The torque towards a direction
+// is linearly implicit, so that any stiffness is stable.
+void turn(Model& model, model::Attributes& a, double h) {
+  const model::Particle& p = model.particles[a.particle];
+  if (model.bodies[p.body].kind == BodyKind::inactive) return;
+  const auto energy = [&] { return 0.5 * a.moment * dot(a.spin, a.spin); };
+  const double before = energy();
+  const Vec3 old = a.spin;
+  Vec3 impulse = h * a.torque;
+  double divisor = 1;
+  if (a.stiffness > 0 || a.alignment_damping > 0) {
+    const Vec3 normal = rotate(a.orientation, {0, 0, 1});
+    impulse += (h * a.stiffness) * cross(normal, a.preferred);
+    divisor += h * (a.alignment_damping + h * a.stiffness) / a.moment;
+  }
+  a.spin = (1 / divisor) * (a.spin + (1 / a.moment) * impulse);
+  a.orientation = normalized(multiply(turn_by((h / 2) * (old + a.spin)), a.orientation));
+  a.torque = {};
+  model.external_work += energy() - before;
+  const double lost = model.damping + a.damping;
+  if (lost > 0) {
+    const double start = energy();
+    a.spin *= std::exp(-lost * h);
+    model.dissipated += start - energy();
+  }
+}
+
 }  // namespace
 
 void OrientedParticles::validate(const Model& model, model::Audit& audit) {
@@ -36,6 +68,19 @@ void OrientedParticles::add_energy(const Scope& scope, Energies& sum) {
 
 void OrientedParticles::add_momentum(const Scope& scope, Momenta& sum) {
   for_each_ball(scope, [&](const model::Attributes& ball) { sum.angular += ball.moment * ball.spin; });
+}
+
+void OrientedParticles::end_step(Model& model, double h) {
+  model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
+    a.age += h;
+    if (a.oriented) turn(model, a, h);
+  });
+}
+
+void OrientedParticles::tell(Model& model, Outcome& outcome) {
+  model.attributes.for_each([&](std::uint32_t, const model::Attributes& a) {
+    if (a.age >= a.lifetime) outcome.ended.push_back(model.particles.id(a.particle));
+  });
 }
 
 }  // namespace iota::ingredient

@@ -30,11 +30,10 @@ void Pushes::store(Model& model, const IslandNodes& nodes, double, const Problem
   });
 }
 
-bool Pushes::wakes(const Model& model, const IslandNodes& nodes) const {
-  if (model.pushes.is_empty()) return false;
-  bool any = false;
-  nodes.for_each_ring(model, [&](std::uint32_t ring) { any = any || model.pushes[ring].force != Vec3{}; });
-  return any;
+void Pushes::visit_stirred(const Model& model, Visit visit) {
+  model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
+    if (push.force != Vec3{}) visit(ring);
+  });
 }
 
 bool Pushes::keeps_awake(const Problem& problem) const {
@@ -59,6 +58,17 @@ void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
         particle.ring, [&](std::uint32_t other) { free += is_free(model.bodies[model.particles[other].body].kind); });
     if (!moves && free > 0) return;
     reader.take({.particle = p, .force = (1.0 / std::max(1, free)) * push->before, .part = particle.part});
+  });
+}
+
+// Forces act for one step, also on points that cannot move: otherwise they would act when such a body becomes dynamic.
+void Pushes::end_step(Model& model, double) {
+  model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
+    if (push.force == Vec3{}) return;
+    bool all_free = true;
+    model.for_each_in_ring(
+        ring, [&](std::uint32_t p) { all_free = all_free && is_free(model.bodies[model.particles[p].body].kind); });
+    if (!all_free) model.pushes.at(ring).force = {};
   });
 }
 

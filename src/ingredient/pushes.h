@@ -26,10 +26,11 @@ class Pushes : public NoAnswers {
   static void ring_changed(Model&, std::uint32_t ring);
   static void ring_merged(Model&, std::uint32_t into, std::uint32_t from, bool replaces);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
+  static void end_step(Model&, double h);
 
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  bool wakes(const Model&, const IslandNodes&) const;
+  static void visit_stirred(const Model&, Visit);
   bool keeps_awake(const Problem&) const;
 };
 

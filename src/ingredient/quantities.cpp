@@ -43,10 +43,27 @@ Momenta calc_momenta(const model::Model& model, std::span<const std::uint32_t> b
   return sum;
 }
 
-double worst_gap(const model::Model& model) {
+double worst_gap(const Scope& scope) {
   solver::Largest worst;
-  for_each_type<Ingredients>([&]<class I>() { worst.add(I::worst_gap(model)); });
+  for_each_type<Ingredients>([&]<class I>() { worst.add(I::worst_gap(scope)); });
   return worst.value;
+}
+
+double worst_gap(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  solver::Largest worst;
+  for_each_alive(model, bodies, [&](const Scope& body) { worst.add(worst_gap(body)); });
+  return worst.value;
+}
+
+void Book::add(const Book& part) {
+  energies.kinetic += part.energies.kinetic, energies.potential += part.energies.potential;
+  solver::Largest worst;  // which passes NaN on
+  worst.add(worst_gap), worst.add(part.worst_gap);
+  worst_gap = worst.value;
+}
+
+Book calc_book(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  return {calc_energies(model, bodies), worst_gap(model, bodies)};
 }
 
 void begin_edits(model::Model& model) {

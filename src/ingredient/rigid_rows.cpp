@@ -82,9 +82,10 @@ void RigidRows::validate(const Model& model, model::Audit& audit) {
   });
 }
 
-double RigidRows::worst_gap(const Model& model) {
+double RigidRows::worst_gap(const Scope& scope) {
+  const Model& model = scope.model;
   solver::Largest worst;
-  model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
+  scope.for_each_body([&](std::uint32_t slot, const model::Body& b) {
     if (!is_free(b.kind)) return;  // not free: it is at its assigned place
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = model::basis_pairs[row];

@@ -9,7 +9,7 @@ namespace iota::ingredient {
 class RigidRows : public NoAnswers {
  public:
   static void validate(const Model&, model::Audit&);
-  static double worst_gap(const Model&);
+  static double worst_gap(const Scope&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
   void build(const IslandMap&, Problem&);

@@ -37,6 +37,35 @@ class Scope {
     else if (is_active(body_))
       structure_.for_each_inertia_of(body_, [&](std::uint32_t i) { visit(structure_.inertia_pairs[i]); });
   }
+  /// visit(slot, body): inactive ones, too.
+  template <class Visit>
+  void for_each_body(Visit visit) const {
+    if (is_whole())
+      structure_.bodies.for_each(visit);
+    else
+      visit(body_, structure_.bodies[body_]);
+  }
+  /// visit(particle): of those that have a value in a side table; inactive ones, too.
+  template <class T, class Visit>
+  void for_each_particle_in(const SideTable<T>& values, Visit visit) const {
+    if (is_whole())
+      values.for_each([&](std::uint32_t particle, const T&) { visit(particle); });
+    else if (!values.is_empty())
+      structure_.for_each_particle_of(body_, [&](std::uint32_t p) {
+        if (values.has(p)) visit(p);
+      });
+  }
+  /// visit(ring, value): of those that have a value in a side table; inactive ones, too.
+  template <class T, class Visit>
+  void for_each_ring_in(const SideTable<T>& values, Visit visit) const {
+    if (is_whole())
+      values.for_each(visit);
+    else if (!values.is_empty())
+      structure_.for_each_particle_of(body_, [&](std::uint32_t p) {
+        const std::uint32_t ring = structure_.particles[p].ring;
+        if (values.has(ring)) visit(ring, values.at(ring));
+      });
+  }
   /// visit(body): of those that have a value in a side table.
   template <class T, class Visit>
   void for_each_body_in(const SideTable<T>& values, Visit visit) const {

@@ -102,9 +102,10 @@ void Ties::validate(const Model& model, model::Audit& audit) {
   });
 }
 
-double Ties::worst_gap(const Model& model) {
+double Ties::worst_gap(const Scope& scope) {
+  const Model& model = scope.model;
   solver::Largest worst;
-  model.ties.for_each([&](std::uint32_t p, const model::Tie&) {
+  scope.for_each_particle_in(model.ties, [&](std::uint32_t p) {
     if (!is_free(model.bodies[model.particles[p].body].kind)) return;  // not free: it is at its assigned place
     worst.add(norm(model.carried(p).first - model.position(p)));
   });

@@ -36,15 +36,24 @@ void FreeParticles::set(std::uint32_t articulate, bool free) {
 void FreeParticles::refresh(const Model& model) {
   if (!is_old_) return;
   is_old_ = false;
-  in_order_.clear();
+  ++version_;
+  awake_.clear(), still_.clear();
   for (std::uint32_t a = 0; a < articulates_.size(); ++a) {
     if (!articulates_[a]) continue;
     const std::uint32_t body = model.articulates[a].first, particle = model.bodies[body].first;
-    in_order_.push_back({a, body, particle, model.particles[particle].ring});
+    if (is_resting(model, a))
+      still_.push_back(body);
+    else
+      awake_.push_back({a, body, particle, model.particles[particle].ring});
   }
 }
 
 void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
+  rest(model, articulate);
+  is_old_ = true;
+}
+
+void FreeParticles::rest(Model& model, std::uint32_t articulate) {
   model::Body& body = model.bodies[model.articulates[articulate].first];
   body.kind = BodyKind::resting;
   model.stop_ring(model.particles[body.first].ring);
@@ -53,36 +62,31 @@ void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
 void FreeParticles::wake(Model& model, std::uint32_t articulate) {
   model::Articulate& a = model.articulates[articulate];
   a.slow_time = 0;
-  if (model.bodies[a.first].kind == BodyKind::resting) model.bodies[a.first].kind = BodyKind::dynamic;
+  if (model.bodies[a.first].kind != BodyKind::resting) return;
+  model.bodies[a.first].kind = BodyKind::dynamic;
+  is_old_ = true;
 }
 
 std::size_t FreeParticles::size(const Model& model) {
   refresh(model);
-  return in_order_.size();
+  return awake_.size() + still_.size();
 }
 
 solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Parallel& parallel) {
   refresh(model);
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
-  const std::size_t chunks = (in_order_.size() + chunk - 1) / chunk;
+  const std::size_t chunks = (awake_.size() + chunk - 1) / chunk;
   shares_.assign(chunks, {});
   const bool robust = model.steps_to_end_point();
   const Vec3 gravity = model.acting_gravity();
   parallel.for_each(chunks, 1, [&](std::size_t c) {
     Share share;
-    for (std::size_t i = c * chunk; i < std::min(in_order_.size(), (c + 1) * chunk); ++i) {
-      const Place& place = in_order_[i];
+    for (std::size_t i = c * chunk; i < std::min(awake_.size(), (c + 1) * chunk); ++i) {
+      const Place& place = awake_[i];
       model::Ring& ring = model.rings[place.ring];
       ingredient::Push* const push = model.pushes.find(place.ring);
       if (push) push->before = std::exchange(push->force, Vec3{});
       const Vec3 force = push ? push->before : Vec3{};
-      if (model.bodies[place.body].kind == BodyKind::resting) {
-        if (force == Vec3{}) {
-          ++share.resting;
-          continue;
-        }
-        wake(model, place.articulate);
-      }
       const double mass = model.particles[place.particle].mass;
       const double damping = model.damping + model.body_damping[place.body];
       const Vec3 before = ring.velocity;
@@ -112,7 +116,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         slow_time = !pushed && speed2 < model.rest_speed * model.rest_speed ? slow_time + h : 0;
         if (slow_time >= model.rest_after) {
           share.lost += 0.5 * mass * speed2;
-          put_to_rest(model, place.articulate);
+          rest(model, place.articulate);
           ++share.resting;
         }
       }
@@ -120,9 +124,9 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
     shares_[c] = share;
   });
   solver::AdvanceReport report;
-  resting_ = 0;
+  resting_ = still();
   for (const Share& share : shares_) {
-    resting_ += share.resting;
+    resting_ += share.resting, is_old_ = is_old_ || share.resting > 0;
     report.dissipated += share.dissipated, report.lost += share.lost, report.external_work += share.work;
     report.converged = report.converged && !share.is_stuck;
   }

@@ -15,14 +15,32 @@ class FreeParticles {
  public:
   static bool is_free(const model::Model&, std::uint32_t articulate);
 
-  void forget() { articulates_.clear(), in_order_.clear(), is_old_ = false; }
+  void forget() { articulates_.clear(), awake_.clear(), still_.clear(), is_old_ = false; }
   void set(std::uint32_t articulate, bool free);
   bool contains(std::uint32_t articulate) const { return articulate < articulates_.size() && articulates_[articulate]; }
 
   /// Stops a free particle until a force acts on it, or wakes it; see System::set_rest.
-  static void put_to_rest(model::Model&, std::uint32_t articulate);
-  static void wake(model::Model&, std::uint32_t articulate);
+  void put_to_rest(model::Model&, std::uint32_t articulate);
+  void wake(model::Model&, std::uint32_t articulate);
+  static bool is_resting(const model::Model& model, std::uint32_t articulate) {
+    return model.bodies[model.articulates[articulate].first].kind == BodyKind::resting;
+  }
   std::uint32_t resting() const { return resting_; }  ///< number of resting ones in the last step
+
+  /// Those that rested when the last step began: it did not look at them. visit(body)
+  std::uint32_t still() const { return static_cast<std::uint32_t>(still_.size()); }
+  template <class Visit>
+  void for_each_still(Visit visit) const {
+    for (const std::uint32_t body : still_) visit(body);
+  }
+  template <class Visit>
+  void for_each_awake(Visit visit) const {
+    for (const Place& place : awake_) visit(place.body);
+  }
+  /// Another number whenever the still ones are others.
+  std::uint64_t version() const { return version_; }
+  /// An edit has woken some.
+  void note_woken() { is_old_ = true; }
 
   /// One step of h seconds for all of them.
   solver::AdvanceReport advance(model::Model&, double h, const Parallel&);
@@ -34,12 +52,15 @@ class FreeParticles {
     std::uint32_t articulate, body, particle, ring;
   };
   void refresh(const model::Model&);
+  static void rest(model::Model&, std::uint32_t articulate);
 
   std::vector<std::uint8_t> articulates_;  // 1 where free, by slot
-  std::vector<Place> in_order_;
+  std::vector<Place> awake_;               // in order
+  std::vector<std::uint32_t> still_;       // bodies, in order
+  std::uint64_t version_ = 0;
   struct Share {
     double dissipated = 0, lost = 0, work = 0;
-    std::uint32_t resting = 0;
+    std::uint32_t resting = 0;  // fell asleep
     bool is_stuck = false;
   };
   std::vector<Share> shares_;

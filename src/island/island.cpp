@@ -62,6 +62,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
   integrator_->compile(problem_);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
+  look_whether_still(model);
 }
 
 void Island::carry_along(Model& model, MovedRings& moved) {
@@ -243,6 +244,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, Clock::time_point 
           : skip_if_asleep(model) ? solver::AdvanceReport{}
                                   : advance_awake(model, h, deadline);
   has_stepped_ = true;
+  if (idle_) look_whether_still(model);
   return last_;
 }
 

@@ -3,6 +3,7 @@
 
 #include "ingredient/ingredient_list.h"
 #include "ingredient/model.h"
+#include "ingredient/quantities.h"
 #include "solver/advance_report.h"
 
 #include <iota/solver.h>
@@ -83,9 +84,19 @@ class Island {
   void forget_factors();  ///< of its last step, with which the next one would begin
 
   /// Wakes it in the next step.
-  void wake() { to_wake_ = true; }
+  void wake() { to_wake_ = true, is_still_ = false, book_epoch_ = 0; }
   bool is_asleep(const model::Model&) const;
-  void put_to_rest(model::Model&) const;
+  void put_to_rest(model::Model&);
+  /// Whether a step would change nothing: it sleeps, or no body of it can move by itself. Known since the latest step
+  /// or change of its structure.
+  bool is_still() const { return is_still_; }
+  /// A step in which it is still.
+  void skip_step() { last_ = {}, has_stepped_ = true; }
+  /// Of its bodies while it is still: measured once in an epoch, which is not 0.
+  const ingredient::Book& still_book(const model::Model& model, std::uint64_t epoch) {
+    if (book_epoch_ != epoch) still_book_ = ingredient::calc_book(model, bodies()), book_epoch_ = epoch;
+    return still_book_;
+  }
   std::size_t body_count() const { return nodes_.bodies.size(); }
 
   /// Projects velocities, and before that positions on request, on the constraints. False if no position satisfies all
@@ -134,7 +145,8 @@ class Island {
   /// Whether it stays asleep; after `wake` it is awake.
   bool skip_if_asleep(model::Model&);
   /// Falls asleep once it has been slow for long enough, if sleep is on.
-  void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&) const;
+  void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&);
+  void look_whether_still(const model::Model&);
   model::Articulate& articulate(model::Model&) const;  ///< of its first body: has the island's state between steps
   void use_solver(const std::array<char, 32>& name);
   std::string name_of_row(const model::Model&, const solver::RowName&) const;
@@ -147,6 +159,9 @@ class Island {
   std::unique_ptr<Solver> solver_;  // replaces the integrator's own solver
   bool idle_ = false;               // no body of it can move by itself: there is nothing to solve
   bool to_wake_ = false;
+  bool is_still_ = false;
+  ingredient::Book still_book_;
+  std::uint64_t book_epoch_ = 0;  // of the book; 0: not known
   bool has_stepped_ = false;
   solver::AdvanceReport last_;  // of the last step
 };

@@ -12,6 +12,7 @@ using model::none;
 
 void Islands::forget() {
   island_of_leader_.clear(), leader_of_.clear(), next_member_.clear(), is_waiting_.clear();
+  members_.clear(), is_member_.clear();
   followed_.clear();
   free_particles_.forget();
   knows_all_ = false, order_is_old_ = true;
@@ -50,17 +51,16 @@ void Islands::set_members(std::uint32_t leader) {
   }
 }
 
-// Puts the articulates of an island's bodies into `members_`. False if they have other bodies, too, or are many.
+// Puts the articulates of an island's bodies into `members_`. False if a body is gone, or they have other bodies, too.
 bool Islands::find_members(const Island& island, const Model& model) {
-  constexpr std::size_t most = 16;
+  for (const std::uint32_t a : members_) is_member_[a] = 0;
   members_.clear();
   std::size_t expected = 0;
   for (const std::uint32_t body : island.bodies()) {
     if (!model.bodies.is_alive(body)) return false;
     const std::uint32_t a = model.bodies[body].articulate;
-    if (!members_.empty() && members_.back() == a) continue;
-    if (std::find(members_.begin(), members_.end(), a) != members_.end()) continue;
-    if (members_.size() == most) return false;
+    if (is_member_[a]) continue;
+    is_member_[a] = 1;
     members_.push_back(a);
     expected += model.articulates[a].count;
   }
@@ -73,7 +73,7 @@ bool Islands::follow(Model& model, std::uint32_t old_leader, MovedRings& moved) 
   constexpr std::size_t smallest = 64;  // points: smaller ones are built anew as quickly
   Island& island = *island_of_leader_[old_leader];
   if (island.size() < smallest || !find_members(island, model)) return false;
-  const auto is_member = [&](std::uint32_t a) { return std::binary_search(members_.begin(), members_.end(), a); };
+  const auto is_member = [&](std::uint32_t a) { return is_member_[a] != 0; };
   for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
     if (!touched_.only_locally[i] && is_member(touched_.articulates[i])) return false;
   change_.bodies.clear();
@@ -118,10 +118,10 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   const bool any_is_due =
       std::any_of(followed_.begin(), followed_.end(), [&](const Followed& f) { return is_due(f, model); });
   if (touched_.articulates.empty() && touched_.local.pulled.empty() && !any_is_due) return false;
-  order_is_old_ = true;
+  order_is_old_ = awake_is_old_ = true;
   const std::size_t slots = model.articulates.slot_count();
   island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
-  is_waiting_.resize(slots, 0);
+  is_waiting_.resize(slots, 0), is_member_.resize(slots, 0);
   node_of_ring_.resize(model.rings.slot_count(), none);
 
   follow_or_drop_touched(model, moved);
@@ -173,6 +173,7 @@ void Islands::gather_waiting(const Model& model) {
     free_particles_.set(waiting_[i], free);
     is_waiting_[waiting_[i]] = 0;
     if (!alive || free) continue;
+    for (const std::uint32_t a : members_) is_member_[a] = 0;
     members_.assign(1, waiting_[i]);
     for (std::size_t next = 0; next < members_.size(); ++next)
       model.for_each_body_of(members_[next], [&](std::uint32_t body) {
@@ -222,25 +223,104 @@ void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const 
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
     in_order_.clear();
-    total_size_ = largest_size_ = 0;
-    for (const auto& island : island_of_leader_) {
-      if (!island) continue;
-      in_order_.push_back(island.get());
-      total_size_ += island->size();
-      largest_size_ = std::max(largest_size_, island->size());
-    }
+    for (const auto& island : island_of_leader_)
+      if (island) in_order_.push_back(island.get());
     order_is_old_ = false;
   }
   return in_order_;
 }
 
-std::size_t Islands::grain(const Parallel& parallel) {
-  (void)all();
+void Islands::refresh_awake(const Model& model) {
+  awake_.clear();
+  still_book_.reset();
+  total_size_ = largest_size_ = asleep_ = still_bodies_ = 0;
+  for (Island* const island : all()) {
+    if (island->is_still()) {
+      island->skip_step();
+      still_bodies_ += static_cast<std::uint32_t>(island->body_count());
+      if (island->is_asleep(model)) asleep_ += static_cast<std::uint32_t>(island->body_count());
+      continue;
+    }
+    awake_.push_back(island);
+    total_size_ += island->size();
+    largest_size_ = std::max(largest_size_, island->size());
+  }
+  awake_is_old_ = false;
+}
+
+std::span<Island* const> Islands::awake(const Model& model) {
+  const auto is_still = [](const Island* island) { return island->is_still(); };
+  if (order_is_old_ || awake_is_old_ || std::any_of(awake_.begin(), awake_.end(), is_still)) refresh_awake(model);
+  return awake_;
+}
+
+void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
+  for (const std::uint32_t articulate : articulates) {
+    Island* const island = of_articulate(articulate);
+    if (!island)
+      free_particles_.wake(model, articulate);
+    else
+      awake_is_old_ = awake_is_old_ || island->is_still(), island->wake();
+  }
+}
+
+void Islands::wake_stirred(Model& model) {
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
+    I::visit_stirred(model, [&](std::uint32_t ring) {
+      model.for_each_in_ring(ring, [&](std::uint32_t p) {
+        const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
+        const Island* const island = of_articulate(articulate);
+        if (island ? island->is_still() : free_particles_.is_resting(model, articulate)) wake(model, {&articulate, 1});
+      });
+    });
+  });
+}
+
+void Islands::put_to_rest(Model& model, std::uint32_t articulate) {
+  if (Island* const island = of_articulate(articulate))
+    island->put_to_rest(model);
+  else
+    free_particles_.put_to_rest(model, articulate);
+}
+
+std::uint32_t Islands::resting(const Model& model) const {
+  std::uint32_t count = asleep_ + free_particles_.resting();
+  for (const Island* const island : awake_)  // fell asleep in this step
+    if (island->is_still() && island->is_asleep(model)) count += static_cast<std::uint32_t>(island->body_count());
+  return count;
+}
+
+ingredient::Book Islands::book(const Model& model) {
+  if (model.has_edits) ++book_epoch_, still_book_.reset();
+  // Body by body takes several times as long as table by table.
+  constexpr std::uint32_t share = 4;
+  const std::uint32_t still = still_bodies_ + free_particles_.still();
+  if (model.has_edits || order_is_old_ || awake_is_old_ || still < model.bodies.size() - model.bodies.size() / share)
+    return ingredient::calc_book(model);
+  if (!still_book_ || book_version_ != free_particles_.version()) {
+    still_book_.emplace();
+    auto awake = awake_.begin();
+    for (Island* const island : in_order_)
+      if (awake != awake_.end() && *awake == island)
+        ++awake;
+      else
+        still_book_->add(island->still_book(model, book_epoch_));
+    free_particles_.for_each_still(
+        [&](std::uint32_t body) { still_book_->add(ingredient::calc_book(model, {&body, 1})); });
+    book_version_ = free_particles_.version();
+  }
+  ingredient::Book book = *still_book_;
+  for (const Island* const island : awake_) book.add(ingredient::calc_book(model, island->bodies()));
+  free_particles_.for_each_awake([&](std::uint32_t body) { book.add(ingredient::calc_book(model, {&body, 1})); });
+  return book;
+}
+
+std::size_t Islands::grain(const Parallel& parallel) const {
   // A second thread takes about 20 us to start; a point takes about a quarter of a microsecond. If one island is most
   // of the work, threads do not help.
   constexpr std::size_t worthwhile = 400;  // points
-  if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return in_order_.size();
-  return std::max<std::size_t>(1, in_order_.size() * 64 / total_size_);
+  if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return awake_.size();
+  return std::max<std::size_t>(1, awake_.size() * 64 / total_size_);
 }
 
 }  // namespace iota::island

@@ -18,17 +18,14 @@ bool Island::is_asleep(const Model& model) const {
 
 bool Island::skip_if_asleep(Model& model) {
   const bool woken = std::exchange(to_wake_, false);
-  if (!woken) {
-    if (!is_asleep(model)) return false;
-    if (!any_ingredient([&](const auto& i) { return i.wakes(model, nodes_); })) return true;
-  }
+  if (!woken) return is_asleep(model);
   for (const std::uint32_t b : nodes_.bodies)
     if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
   articulate(model).slow_time = 0;
   return false;
 }
 
-void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& report) const {
+void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& report) {
   if (!(model.rest_after > 0)) return;
   const double limit = model.rest_speed * model.rest_speed;
   const auto is_slow = [&](const Vec3& v) { return dot(v, v) < limit; };
@@ -41,11 +38,17 @@ void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& r
   put_to_rest(model);
 }
 
-void Island::put_to_rest(Model& model) const {
+void Island::look_whether_still(const Model& model) {
+  is_still_ = idle_ ? !is_driven(model) : is_asleep(model) && !to_wake_;
+  book_epoch_ = 0;
+}
+
+void Island::put_to_rest(Model& model) {
   for (const std::uint32_t b : nodes_.bodies)
     if (is_free(model.bodies[b].kind)) model.bodies[b].kind = BodyKind::resting;
   for_each_ingredient([&](const auto& i) { i.put_to_rest(model, problem_); });
   nodes_.for_each_ring(model, [&](std::uint32_t ring) { model.stop_ring(ring); });
+  to_wake_ = false, is_still_ = true, book_epoch_ = 0;
 }
 
 }  // namespace iota::island

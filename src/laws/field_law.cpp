@@ -15,9 +15,9 @@ using expression::Formula;
 using expression::Node;
 using expression::Program;
 
-constexpr std::size_t variable_count = std::size(FieldLaw::variables);
+constexpr std::size_t field_variable_count = std::size(FieldLaw::variables);
 
-using List = LawList<FieldLaws>;
+using FieldLawList = LawList<FieldLaws>;
 
 FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) {
   return {{a.x[i], a.y[i], a.z[i]}, {a.vx[i], a.vy[i], a.vz[i]}, a.m[i], t, h};
@@ -26,7 +26,7 @@ FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) 
 }  // namespace
 
 FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {
-  List::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
+  FieldLawList::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
 }
 
 FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
@@ -56,7 +56,7 @@ FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) :
   for (std::uint32_t k = 0; k < 3; ++k)
     force[k] = formula.make(expression::Op::subtract, force[k], formula.derivative(energy, k));
   std::vector<bool> uniform(formula.inputs().size(), true);
-  std::fill_n(uniform.begin(), variable_count - 1, false);  // all but t
+  std::fill_n(uniform.begin(), field_variable_count - 1, false);  // all but t
   force_ = Program(formula, force, uniform);
   energy_ = Program(formula, std::array{energy}, uniform);
 }
@@ -65,15 +65,15 @@ template <class Take>
 void FieldLaw::run(const Program& program, const ParticleArrays& a, std::size_t first, std::size_t count, double t,
                    const double* parameters, Take take) const {
   static thread_local Program::Workspace workspace;
-  std::array<double, variable_count + max_field_parameters> uniforms{};
-  uniforms[variable_count - 1] = t;
-  std::copy_n(parameters, parameter_count_, uniforms.begin() + variable_count);
+  std::array<double, field_variable_count + max_field_parameters> uniforms{};
+  uniforms[field_variable_count - 1] = t;
+  std::copy_n(parameters, parameter_count_, uniforms.begin() + field_variable_count);
   constexpr std::size_t block = Program::block;
   std::array<std::array<double, block>, 3> results;
   double* const outputs[3] = {results[0].data(), results[1].data(), results[2].data()};
   for (std::size_t start = 0; start < count; start += block) {
     const std::size_t n = std::min(block, count - start), j = first + start;
-    const double* const lanes[variable_count + max_field_parameters] = {
+    const double* const lanes[field_variable_count + max_field_parameters] = {
         a.x.data() + j,  a.y.data() + j,  a.z.data() + j, a.vx.data() + j,
         a.vy.data() + j, a.vz.data() + j, a.m.data() + j};
     program.run(n, lanes, uniforms.data(), outputs, workspace);
@@ -88,7 +88,7 @@ void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t 
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < 3; ++k) out[3 * (start + i) + k] = forces[k][i];
     });
-  List::visit(number_, [&]<class Law>() {
+  FieldLawList::visit(number_, [&]<class Law>() {
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 f = Law::force(state_of(a, first + i, t, h), parameters);
       out[3 * i] = f.x, out[3 * i + 1] = f.y, out[3 * i + 2] = f.z;
@@ -107,14 +107,14 @@ double FieldLaw::energy(const ParticleArrays& a, double t, const double* paramet
       for (std::size_t i = 0; i < n; ++i) add(energies[0][i]);
     });
   else
-    List::visit(number_, [&]<class Law>() {
+    FieldLawList::visit(number_, [&]<class Law>() {
       for (std::size_t i = 0; i < a.size(); ++i) add(Law::energy(state_of(a, i, t, 0), parameters));
     });
   return sum;
 }
 
-std::uint32_t find_field_law(std::string_view name) { return List::find(name); }
-const char* field_law_name(std::uint32_t number) { return List::name(number); }
-std::span<const Parameter> field_law_parameters(std::uint32_t number) { return List::parameters(number); }
+std::uint32_t find_field_law(std::string_view name) { return FieldLawList::find(name); }
+const char* field_law_name(std::uint32_t number) { return FieldLawList::name(number); }
+std::span<const Parameter> field_law_parameters(std::uint32_t number) { return FieldLawList::parameters(number); }
 
 }  // namespace iota::laws

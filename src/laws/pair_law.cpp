@@ -36,7 +36,7 @@ Program::Workspace& workspace() {
   return space;
 }
 
-using List = LawList<PairLaws>;
+using PairLawList = LawList<PairLaws>;
 
 std::array<double, variable_count + max_parameters> inputs_of(const PairState& s, const double* parameters,
                                                               std::size_t count) {
@@ -51,7 +51,7 @@ constexpr std::size_t parameter_count = std::size(Law::parameters);
 }  // namespace
 
 PairLaw::PairLaw(std::uint32_t number) : number_(number) {
-  List::visit(number_, [&]<class Law>() {
+  PairLawList::visit(number_, [&]<class Law>() {
     has_energy_ = Law::has_energy, has_damping_ = Law::has_dashpot, has_drag_ = Law::has_drag;
     depends_on_mass_ = Law::needs_mass;
     parameter_count_ = parameter_count<Law>;
@@ -131,7 +131,7 @@ Elastic PairLaw::elastic(const PairState& state, const double* parameters) const
   Elastic result;
   if (!has_energy_) return result;
   if (number_ < pair_law_count) {
-    List::visit(number_, [&]<class Law>() { result = Law::elastic(state, parameters); });
+    PairLawList::visit(number_, [&]<class Law>() { result = Law::elastic(state, parameters); });
     return result;
   }
   double out[3];
@@ -150,7 +150,7 @@ PairLaw::Slope PairLaw::damping(const PairState& state, const double* parameters
   if (!has_damping_) return {};
   if (number_ < pair_law_count) {
     double c = 0;
-    List::visit(number_, [&]<class Law>() { c = Law::dashpot(parameters); });
+    PairLawList::visit(number_, [&]<class Law>() { c = Law::dashpot(parameters); });
     return {-c * state.v, -c};
   }
   double out[2];
@@ -162,7 +162,7 @@ double PairLaw::drag(const PairState& state, const double* parameters) const {
   double result = 0;
   if (!has_drag_) return result;
   if (number_ < pair_law_count)
-    List::visit(number_, [&]<class Law>() { result = Law::drag(parameters); });
+    PairLawList::visit(number_, [&]<class Law>() { result = Law::drag(parameters); });
   else
     drag_.run_one(inputs_of(state, parameters, parameter_count_).data(), &result, workspace());
   return result;
@@ -212,7 +212,7 @@ IOTA_WIDER void evaluate_list(const PairBatch& b, bool energies) {
 void PairLaw::evaluate(const PairBatch& b) const {
   if (b.count == 0) return;
   if (number_ < pair_law_count) {
-    List::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, false); });
+    PairLawList::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, false); });
   } else {
     std::array<double*, 5> outputs{b.force};
     std::size_t count = 1;
@@ -225,7 +225,7 @@ void PairLaw::evaluate(const PairBatch& b) const {
 void PairLaw::energies(const PairBatch& b) const {
   if (b.count == 0) return;
   if (number_ < pair_law_count)
-    List::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, true); });
+    PairLawList::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, true); });
   else
     run(bond_energies_, pair_energies_, b, &b.energy);
 }
@@ -242,12 +242,12 @@ void PairLaw::run(const Program& of_bonds, const Program& of_pairs, const PairBa
   (b.same_parameters ? of_pairs : of_bonds).run(b.count, lanes.data(), uniforms.data(), outputs, workspace());
 }
 
-std::uint32_t find_pair_law(std::string_view name) { return List::find(name); }
-const char* pair_law_name(std::uint32_t number) { return List::name(number); }
-std::span<const Parameter> pair_law_parameters(std::uint32_t number) { return List::parameters(number); }
+std::uint32_t find_pair_law(std::string_view name) { return PairLawList::find(name); }
+const char* pair_law_name(std::uint32_t number) { return PairLawList::name(number); }
+std::span<const Parameter> pair_law_parameters(std::uint32_t number) { return PairLawList::parameters(number); }
 const char* pair_law_text(std::uint32_t number) {
   const char* text = "";
-  List::visit(number, [&]<class Law>() { text = Law::text; });
+  PairLawList::visit(number, [&]<class Law>() { text = Law::text; });
   return text;
 }
 

@@ -23,7 +23,7 @@ struct Parameter {
 
 inline constexpr double distance_now = std::numeric_limits<double>::quiet_NaN();
 
-/// Of the energy U(r), J: value, slope U' (the pull along the line, N) and curvature U'' (N/m).
+/// An energy U(r), J, with its slope U' (the pull along the line, N) and its curvature U'' (N/m).
 struct Elastic {
   double energy = 0, slope = 0, curvature = 0;
 };

@@ -5,10 +5,40 @@
 
 namespace iota::model {
 
+void Structure::wake(std::uint32_t articulate) {
+  Articulate& a = articulates[articulate];
+  if (!a.to_wake && !a.velocity_dirty) flagged_.push_back(articulate);
+  a.to_wake = 1;
+}
+
+void Structure::wake_all() {
+  articulates.for_each([&](std::uint32_t slot, const Articulate&) { wake(slot); });
+}
+
+void Structure::mark_velocities(std::uint32_t articulate) {
+  wake(articulate);
+  articulates[articulate].velocity_dirty = 1;
+}
+
+void Structure::take_flagged(std::vector<std::uint32_t>& taken) {
+  taken.clear();
+  taken.swap(flagged_);
+  std::sort(taken.begin(), taken.end());
+  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+  std::erase_if(taken, [&](std::uint32_t slot) { return !articulates.is_alive(slot); });
+}
+
+void Structure::list_flagged() {
+  flagged_.clear();
+  articulates.for_each([&](std::uint32_t slot, const Articulate& a) {
+    if (a.to_wake || a.velocity_dirty) flagged_.push_back(slot);
+  });
+}
+
 void Structure::touch(std::uint32_t articulate, Touch what) {
+  wake(articulate);
   Articulate& a = articulates[articulate];
   ++a.version;
-  a.to_wake = 1;
   a.try_again();
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
   Touch& touched = touch_of_[articulate];
@@ -32,9 +62,8 @@ void Structure::touch_rows(std::uint32_t body) {
 }
 
 void Structure::touch_pull(std::uint32_t body) {
-  Articulate& a = articulates[bodies[body].articulate];
-  a.to_wake = 1;
-  a.try_again();
+  wake(bodies[body].articulate);
+  articulates[bodies[body].articulate].try_again();
   local_change_.pulled.push_back(body);
 }
 
@@ -80,7 +109,7 @@ void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   bodies[into.last].next_in_articulate = from.first;
   into.last = from.last;
   into.count += from.count;
-  into.velocity_dirty |= from.velocity_dirty;
+  if (from.velocity_dirty) mark_velocities(a);
   articulates.destroy(b);
 }
 
@@ -163,7 +192,7 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
 
   const std::uint32_t own = articulates.create({}).slot;
   const std::uint32_t whole = bodies[body_a].articulate;
-  articulates[own].velocity_dirty = articulates[whole].velocity_dirty;
+  if (articulates[whole].velocity_dirty) mark_velocities(own);
   touch(whole, locally), touch(own, locally);
   touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
   move_bodies(*this, {flood[which], end[which]}, whole, own);

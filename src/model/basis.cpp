@@ -29,7 +29,7 @@ class BasisWeights {
       for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors_[i], vectors_[j]);
     gram_ = symmetric_eigen(gram);
   }
-  /// Of the point of the basis' span nearest to `place`.
+  /// The weights of the point nearest to `place` in the span of the basis.
   std::array<double, 4> of(const Vec3& place) const {
     const Vec3 r = place - origin_;
     const Vec3 c = solve_semidefinite(gram_, {dot(vectors_[0], r), dot(vectors_[1], r), dot(vectors_[2], r)}, 1e-15);

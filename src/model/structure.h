@@ -131,6 +131,7 @@ struct Twin {
 struct Articulate {
   std::uint32_t first = none, last = none, count = 0;
   std::uint32_t version = 0;  ///< of its structure
+  // Both are set by Structure::wake and mark_velocities, which list it for the next step.
   std::uint32_t velocity_dirty =
       0;                      ///< velocities were assigned and may violate constraints: project before the next step
   std::uint32_t to_wake = 0;  ///< it was touched since the last step
@@ -139,7 +140,7 @@ struct Articulate {
   double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
   std::uint64_t unsolved_steps = 0;  ///< in a row, of which no part was solved
 
-  /// What could not be solved may be solvable now.
+  /// Ends the back-off: after a change, a conflict or a step without a solution is tried in full again.
   void try_again() { standing_gap = 0, unsolved_steps = 0; }
 };
 
@@ -196,6 +197,15 @@ class Structure {
   /// After a cut between two bodies of one articulate: searches from both at once and, when the smaller side is
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
+  /// Its island is awake in the next step.
+  void wake(std::uint32_t articulate);
+  void wake_all();
+  /// The same, and its velocities are projected at the begin of the next step.
+  void mark_velocities(std::uint32_t articulate);
+  /// Moves the articulates of the last two to `taken`, in the order of slots; their flags remain.
+  void take_flagged(std::vector<std::uint32_t>& taken);
+  /// Lists them anew by their flags, which are saved; the list is not.
+  void list_flagged();
   void touch(std::uint32_t articulate) { touch(articulate, anything); }
   void touch_body(std::uint32_t body) { scene.bodies.note(body), touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
@@ -243,7 +253,7 @@ class Structure {
   }
   /// Longest of its rigid distances, m; 0: a point.
   double extent(std::uint32_t body) const;
-  /// Of the basis points in a particle's place.
+  /// The weights of the basis points whose sum is the particle's place.
   std::array<double, 4> weights(std::uint32_t particle) const;
 
   /// Chooses a body's basis from the present places of its particles, and sets its rigid distances.
@@ -257,7 +267,7 @@ class Structure {
   double axial_inertia(std::uint32_t body) const;
   Vec3 rod_axis(std::uint32_t body) const;  ///< of a rod, unit vector
 
-  /// Of the massive particle nearest to a place.
+  /// The part that the massive particle nearest to a place belongs to.
   BodyId part_at(std::uint32_t body, const Vec3& place) const;
   /// Whether the body's massive particles span a place, which a marker needs.
   bool spans(std::uint32_t body, const Vec3& place) const;
@@ -377,6 +387,7 @@ class Structure {
   void touch(std::uint32_t articulate, Touch);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
+  std::vector<std::uint32_t> flagged_;  // articulates, since take_flagged
   std::vector<std::uint32_t> touched_;
   LocalChange local_change_;
   std::vector<Touch> touch_of_;  ///< of each articulate

@@ -47,7 +47,7 @@ class PairSum {
   std::size_t build_count() const { return builds_; }  ///< for reports
 
  private:
-  /// Where the forces and torques of a part are summed.
+  /// The arrays in which the forces and torques of a part are summed.
   struct Sums {
     double *fx, *fy, *fz, *tx, *ty, *tz;
   };
@@ -79,7 +79,7 @@ class PairSum {
   void gather(Part&, const Task&, std::size_t first, std::size_t last, Take take) const;
   static laws::PairBatch prepare(Part&, const Task&, std::size_t count);
   static void add_block(Part&, const Task&, std::size_t count, const Sums&);
-  /// What the normals of the block's pairs bring about: forces across the lines, and torques.
+  /// Adds the effects of the normals of the block's pairs: forces across the lines, and torques.
   static void add_turning(Part&, const Task&, std::size_t count, const Sums&);
   static void add_energies(Part&, const Task&, std::size_t count);
 

@@ -281,7 +281,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
 
   void encrypt() {
     stream_.encrypt(*context_.tls);
-    stream_.async_handshake(buffer_.data(), [self = shared_from_this()](error_code error, std::size_t used = 0) {
+    stream_.async_handshake(buffer_.cdata(), [self = shared_from_this()](error_code error, std::size_t used = 0) {
       if (error) return self->finish();
       self->buffer_.consume(used);
       self->read();

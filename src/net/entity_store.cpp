@@ -14,11 +14,6 @@ namespace {
 constexpr std::size_t usual_bytes = 1 << 20;
 constexpr std::size_t most_ids = 1 << 17;
 
-template <class Message>
-Frame make_frame(const Message& message) {
-  return std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message));
-}
-
 template <std::size_t... I>
 constexpr std::array<std::string_view, entity_kind_count> names_of(std::index_sequence<I...>) {
   return {std::tuple_element_t<I, protocol::EntityKinds>::kind_name...};
@@ -115,7 +110,7 @@ const std::vector<Frame>& EntityStore::frames_since(std::uint64_t version) {
     set.records.insert(set.records.end(), entry->record.begin(), entry->record.end());
   }
   finish_set();
-  // Destructions are last, in reverse order of kinds, so that no drawn entity lacks its style.
+  // Destructions are last, in reverse order of kinds, so that no drawn entity lacks its visual.
   for (std::size_t kind = entity_kind_count; kind-- > 0;) {
     const std::vector<protocol::Id>& ids = gone[kind];
     for (std::size_t from = 0; from < ids.size(); from += most_ids) {

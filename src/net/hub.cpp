@@ -21,19 +21,13 @@ constexpr std::string_view people_key = "people";
 constexpr std::size_t max_picture_bytes = 64 << 20;
 constexpr std::size_t max_kept_notices = 8;
 constexpr auto reset_pause = std::chrono::seconds(1);  // for one client
-constexpr float farthest = 1e9F;                       // m, as the engine's limit
-
-template <class Message>
-Frame make_frame(const Message& message) {
-  return std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message));
-}
 
 /// Coordinates of one place or several.
 bool is_near(std::span<const float> places) {
   return std::ranges::all_of(places, [](float x) { return std::abs(x) <= farthest; });
 }
 
-/// Of a grip or of a pointer: only the newest counts.
+/// Whether the event moves a grip or a pointer. Of several such events only the newest counts.
 bool is_move(const InputEvent& event) {
   return event.kind == InputEvent::Kind::grab_move ||
          (event.kind == InputEvent::Kind::pointer && event.pointer == protocol::PointerKind::move);

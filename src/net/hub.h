@@ -42,7 +42,7 @@ class ClientLink {
   ~ClientLink() = default;
 };
 
-/// Of a server, for all its worlds.
+/// Counts of a server, over all its worlds.
 struct Counters {
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint64_t> bytes_sent{0}, frames_sent{0}, frames_dropped{0}, frames_refused{0}, upgrades_refused{0},

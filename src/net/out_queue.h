@@ -3,6 +3,8 @@
 // unsent frame of that key; the others (notices, effects) are queued, up to a limit.
 #pragma once
 
+#include "net/frame.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -12,9 +14,6 @@
 #include <vector>
 
 namespace iota::net {
-
-/// One encoded message, shared by the queues of all clients.
-using Frame = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 class OutQueue {
  public:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/pose_encoder.h"
 
+#include "net/frame.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,8 +19,6 @@ constexpr double rotation_steps = 1023;
 constexpr double least_limit = 64;
 
 /// Above this a float has no useful resolution, and the box would leave its range, m.
-constexpr float farthest = 1e9F;
-
 bool is_finite(const float (&v)[3]) {
   return std::abs(v[0]) <= farthest && std::abs(v[1]) <= farthest && std::abs(v[2]) <= farthest;  // false for NaN
 }

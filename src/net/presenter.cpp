@@ -22,9 +22,10 @@ constexpr std::size_t most_triangles = 50'000;
 constexpr std::size_t most_record_bytes = 8 << 20;
 constexpr std::size_t max_name = 63;  // of a body, bytes
 constexpr double usual_thickness = 0.03;
-constexpr const char* every_look = "*";
+constexpr const char* every_style = "*";
 constexpr double of_body = 0.1;  // length of a look that fits its body, m: any value
-/// Of movable solids without a look: the page's paint has the color of its ground, before which they are hardly seen.
+/// The color of movable solids without a look. The page's own paint has the color of its ground, so they would hardly be
+/// seen in front of it.
 constexpr std::uint32_t slate = 0x5f88b0;
 constexpr std::array tie_names{"spring", "rope", "rod"};
 
@@ -52,7 +53,7 @@ protocol::Shape to_wire(const Shape& shape) {
   return wire;
 }
 
-/// Of the wire of a ring, or of a round shape, m: its size of that name. 0 for any other shape.
+/// The radius of a round shape, or of the tube of a torus, m, found by the name of the size. 0 for any other shape.
 double radius_of(const protocol::Shape& wire) {
   double radius = 0;
   shape::for_each_shape([&](const Shape& shape) {
@@ -71,17 +72,17 @@ protocol::Vec3 unit_axis(const Vec3& v) {
   return {round_to(finest, v.x), round_to(finest, v.y), round_to(finest, v.z)};
 }
 
-protocol::Part make_part(std::string look, protocol::Shape shape, std::string material) {
+protocol::Part make_part(std::string style, protocol::Shape shape, std::string material) {
   protocol::Part part;
-  part.look = std::move(look), part.shape = std::move(shape), part.material = std::move(material);
+  part.style = std::move(style), part.shape = std::move(shape), part.material = std::move(material);
   part.rotation = {0, 0, 0, 1};
   part.color = protocol::no_color;
   return part;
 }
 
-/// Of solids without a look.
+/// The paint of solids without a look.
 protocol::Part paint_without_look(BodyKind kind) {
-  protocol::Part part = make_part(every_look, {}, "paint");
+  protocol::Part part = make_part(every_style, {}, "paint");
   if (kind != BodyKind::static_) part.color = slate;
   return part;
 }
@@ -105,10 +106,10 @@ Vec3 rotated(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
-/// Rounded radius and color, so that many share a style.
+/// Rounded radius and color, so that many share a visual.
 protocol::Part ball(double radius, const Color& color) {
   const double step = std::pow(10, std::floor(std::log10(radius)));
-  protocol::Part part = make_part(every_look, to_wire(Sphere{std::round(radius / step) * step}), "paint");
+  protocol::Part part = make_part(every_style, to_wire(Sphere{std::round(radius / step) * step}), "paint");
   part.color = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double share = std::round(std::clamp<double>(color[i], 0, 1) * 7);
@@ -127,7 +128,7 @@ std::pair<Vec3, Box> box_around(const Mesh& mesh) {
 }
 
 /// Parts with a length are as long as a rod, on whose line they belong: with unequal masses its middle is not at its
-/// center of mass. The place is rounded, so that many rods share a style.
+/// center of mass. The place is rounded, so that many rods share a visual.
 std::vector<protocol::Part> on_line(std::vector<protocol::Part> parts, const DrawnBody& body) {
   constexpr double visible = 1e-3;  // share of the length
   if (body.particles != 2 || body.lines.size() != 1 || !body.solids.empty()) return parts;
@@ -143,12 +144,12 @@ std::vector<protocol::Part> on_line(std::vector<protocol::Part> parts, const Dra
   return parts;
 }
 
-/// The looks for which a class has parts, and the first part of each.
+/// The styles for which a visual has parts, and the first part of each.
 std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std::vector<protocol::Part>& parts) {
   std::vector<std::pair<std::string, const protocol::Part*>> first;
   for (const protocol::Part& part : parts)
-    if (std::ranges::find(first, part.look, [](const auto& known) { return known.first; }) == first.end())
-      first.emplace_back(part.look, &part);
+    if (std::ranges::find(first, part.style, [](const auto& known) { return known.first; }) == first.end())
+      first.emplace_back(part.style, &part);
   return first;
 }
 
@@ -156,13 +157,13 @@ std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std
 
 // ------------------------------------------------------------------------------------------------------- the script's
 
-void Presenter::set_class(const std::string& name, std::vector<protocol::Part> parts) {
-  const auto [place, is_new] = classes_.try_emplace(name);
-  Class& known = place->second;
+void Presenter::set_visual(const std::string& name, std::vector<protocol::Part> parts) {
+  const auto [place, is_new] = given_.try_emplace(name);
+  Given& known = place->second;
   if (!is_new && known.parts == parts) return;
   known.is_solid = std::ranges::any_of(parts, [](const protocol::Part& part) { return part.shape.kind == "solid"; });
   known.parts = std::move(parts);
-  // Bodies of a new class are not assigned to it yet.
+  // Bodies of a new visual are not assigned to it yet.
   needs_all_ = needs_all_ || !is_new || std::ranges::find(tie_names, name) != tie_names.end();
 }
 
@@ -214,9 +215,9 @@ EntityChanges Presenter::present(const SceneChanges& changes, const NameOf& name
   if (needs_all_) {
     needs_all_ = false;
     for (std::size_t kind = 0; kind < tie_names.size(); ++kind) {
-      const std::uint32_t before = tie_styles_[kind];
-      tie_styles_[kind] = use_tie_style(kind);
-      if (before != protocol::no_style) release_style(before);
+      const std::uint32_t before = tie_visuals_[kind];
+      tie_visuals_[kind] = use_tie_visual(kind);
+      if (before != protocol::no_visual) release_visual(before);
     }
   }
   assigned_.clear();
@@ -246,7 +247,7 @@ void Presenter::for_each_simple_kind(const SceneChanges& changes, Visit visit) c
   visit(changes.ties, [&](const DrawnTie& tie) {
     return protocol::TieEntity{{},
                                kind_of(tie.kind),
-                               tie_styles_[static_cast<std::size_t>(tie.kind)],
+                               tie_visuals_[static_cast<std::size_t>(tie.kind)],
                                size(std::max(tie.length, 0.0)),
                                anchored(tie.a),
                                anchored(tie.b)};
@@ -266,25 +267,25 @@ void Presenter::present_body(const DrawnBody& body, const NameOf& name_of) {
   const bool is_other = body.is_new || drawn.id != body.id;
   const auto assignment = assignments_.find(body.id);
   const bool is_assigned = assignment != assignments_.end();
-  const std::uint32_t style = style_of(body, is_assigned ? &assignment->second : nullptr);
+  const std::uint32_t visual = visual_of(body, is_assigned ? &assignment->second : nullptr);
   const double length = body.particles == 2 && body.lines.size() == 1 ? body.lines[0].length : 0;
   tell(slot,
        protocol::BodyEntity{{},
                             kind_of(body.kind),
-                            style,
+                            visual,
                             is_assigned && assignment->second.odd,
                             size(length),
                             name_of ? fit_text(name_of(body.id), max_name) : std::string()},
        is_other);
-  if (drawn.style != protocol::no_style) release_style(drawn.style);
-  drawn = {body.id, style};
+  if (drawn.visual != protocol::no_visual) release_visual(drawn.visual);
+  drawn = {body.id, visual};
 }
 
 void Presenter::forget_body(std::uint32_t slot) {
   forget<protocol::BodyEntity>(slot);
   forget<protocol::MembershipEntity>(slot);
-  if (slot >= bodies_.size() || bodies_[slot].style == protocol::no_style) return;
-  release_style(bodies_[slot].style);
+  if (slot >= bodies_.size() || bodies_[slot].visual == protocol::no_visual) return;
+  release_visual(bodies_[slot].visual);
   bodies_[slot] = {};
 }
 
@@ -310,33 +311,33 @@ protocol::Id Presenter::id_of(BodyId body) const {
   return {body.slot, told[body.slot].generation};
 }
 
-// ------------------------------------------------------------------------------------------------------------- styles
+// ------------------------------------------------------------------------------------------------------------ visuals
 
-/// All parts: the shapes of solids in the materials of the body's class, or the class's own shapes, otherwise a default
-/// look of its particles.
-std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assignment) {
-  const auto named = assignment ? classes_.find(assignment->name) : classes_.end();
-  const Class* const own = named == classes_.end() ? nullptr : &named->second;
+/// All parts: the shapes of solids in the materials of the body's visual, or the visual's own shapes, otherwise a
+/// default look of its particles.
+std::uint32_t Presenter::visual_of(const DrawnBody& body, const Assignment* assignment) {
+  const auto named = assignment ? given_.find(assignment->name) : given_.end();
+  const Given* const own = named == given_.end() ? nullptr : &named->second;
   if (!body.solids.empty() && (!assignment || body.solids.size() > 1 || (own && own->is_solid)))
-    return use_style("(solid)", parts_of_solids(body, own));
-  if (assignment && !own) return protocol::no_style;
+    return use_visual("(solid)", parts_of_solids(body, own));
+  if (assignment && !own) return protocol::no_visual;
   if (own && ((body.particles <= 2 && body.balls.empty()) || !body.solids.empty()))
-    return own->is_solid ? protocol::no_style : use_style(assignment->name, on_line(own->parts, body));
-  if (body.particles == 1) return use_style("(particle)", {part_of_particle(body)});
+    return own->is_solid ? protocol::no_visual : use_visual(assignment->name, on_line(own->parts, body));
+  if (body.particles == 1) return use_visual("(particle)", {part_of_particle(body)});
   if (body.particles == 2 && body.balls.empty())
-    return use_style("(rod)", on_line({make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel")}, body));
-  return use_style("(body)", parts_along_lines(body, own));
+    return use_visual("(rod)", on_line({make_part(every_style, to_wire(Capsule{thickness_, of_body}), "steel")}, body));
+  return use_visual("(body)", parts_along_lines(body, own));
 }
 
-std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, const Class* like) {
+std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, const Given* like) {
   const protocol::Part paint = paint_without_look(body.kind);
   std::vector<protocol::Part> parts;
-  for (const auto& [look, first] :
-       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &paint}}) {
+  for (const auto& [style, first] :
+       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_style), &paint}}) {
     for (const DrawnSolid& solid : body.solids) {
       const Mesh* const mesh = std::get_if<Mesh>(&solid.shape);
       if (mesh && mesh->triangles.empty()) continue;
-      protocol::Part& part = parts.emplace_back(make_part(look, {}, first->material));
+      protocol::Part& part = parts.emplace_back(make_part(style, {}, first->material));
       part.color = first->color;
       part.offset = rounded(solid.position);
       part.rotation = to_wire(solid.orientation);
@@ -347,7 +348,7 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
         warnings_.push_back("the page draws meshes of at most " + std::to_string(most_triangles) +
                             " triangles, that of body " + std::to_string(body.id.slot) + " has " +
                             std::to_string(mesh->triangles.size()) +
-                            ": its box is drawn instead. Make it coarser, or give the body a class with another look");
+                            ": its box is drawn instead. Make it coarser, or give the body another look");
       } else {
         part.shape = to_wire(solid.shape);
       }
@@ -356,16 +357,16 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
   return parts;
 }
 
-/// Capsules along the lines of a body, with the radius of its class's shapes.
-std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, const Class* like) const {
-  const protocol::Part plain = make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel");
+/// Capsules along the lines of a body, with the radius of its visual's shapes.
+std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, const Given* like) const {
+  const protocol::Part plain = make_part(every_style, to_wire(Capsule{thickness_, of_body}), "steel");
   std::vector<protocol::Part> parts;
-  for (const auto& [look, first] :
-       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &plain}}) {
+  for (const auto& [style, first] :
+       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_style), &plain}}) {
     const double drawn = radius_of(first->shape), radius = drawn > 0 ? drawn : thickness_;
     const std::size_t before = parts.size();
     const auto add = [&, first = first](protocol::Shape shape) -> protocol::Part& {
-      protocol::Part& part = parts.emplace_back(make_part(look, std::move(shape), first->material));
+      protocol::Part& part = parts.emplace_back(make_part(style, std::move(shape), first->material));
       part.color = first->color;
       return part;
     };
@@ -377,7 +378,7 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
     }
     for (const DrawnBall& drawn : body.balls) {
       protocol::Part& part = parts.emplace_back(ball(drawn.radius, drawn.color));
-      part.look = look;
+      part.style = style;
       part.offset = rounded(drawn.center);
     }
     if (parts.size() == before) add(to_wire(Sphere{radius}));
@@ -387,55 +388,56 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
 
 /// A ball; one with attributes has its radius and color.
 protocol::Part Presenter::part_of_particle(const DrawnBody& body) const {
-  if (!body.attributes) return make_part(every_look, to_wire(Sphere{2 * thickness_}), "brass");
+  if (!body.attributes) return make_part(every_style, to_wire(Sphere{2 * thickness_}), "brass");
   const double radius = body.attributes->radius > 0 ? body.attributes->radius : 2 * thickness_;
   return ball(radius, body.attributes->color);
 }
 
-std::uint32_t Presenter::use_tie_style(std::size_t kind) {
-  const auto own = classes_.find(tie_names[kind]);
-  if (own != classes_.end()) return use_style(tie_names[kind], own->second.parts);
+std::uint32_t Presenter::use_tie_visual(std::size_t kind) {
+  const auto own = given_.find(tie_names[kind]);
+  if (own != given_.end()) return use_visual(tie_names[kind], own->second.parts);
   switch (static_cast<DrawnTie::Kind>(kind)) {
     case DrawnTie::Kind::spring:
-      return use_style("spring", {make_part(every_look, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
+      return use_visual("spring",
+                        {make_part(every_style, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
     case DrawnTie::Kind::rope:
-      return use_style("rope", {make_part(every_look, to_wire(Cylinder{0.35 * thickness_, of_body}), "rope")});
-    default: return use_style("rod", {make_part(every_look, to_wire(Cylinder{0.4 * thickness_, of_body}), "steel")});
+      return use_visual("rope", {make_part(every_style, to_wire(Cylinder{0.35 * thickness_, of_body}), "rope")});
+    default: return use_visual("rod", {make_part(every_style, to_wire(Cylinder{0.4 * thickness_, of_body}), "steel")});
   }
 }
 
-/// Slot of the style; each use has to be released.
-std::uint32_t Presenter::use_style(std::string_view name, const std::vector<protocol::Part>& parts) {
-  protocol::StyleEntity style{{}, std::string(name), parts};
+/// Slot of the visual; each use has to be released.
+std::uint32_t Presenter::use_visual(std::string_view name, const std::vector<protocol::Part>& parts) {
+  protocol::VisualEntity visual{{}, std::string(name), parts};
   std::vector<std::uint8_t> record;
-  protocol::append_record(style, record);
+  protocol::append_record(visual, record);
   if (record.size() > most_record_bytes) {
-    warnings_.push_back("the class " + std::string(name) +
+    warnings_.push_back("the visual " + std::string(name) +
                         " has more shapes than a page can be told: nothing is drawn for it");
-    return protocol::no_style;
+    return protocol::no_visual;
   }
-  const auto [known, is_new] = styles_.try_emplace(std::move(record));
+  const auto [known, is_new] = visuals_.try_emplace(std::move(record));
   if (is_new) {
-    if (free_styles_.empty()) {
-      known->second.slot = static_cast<std::uint32_t>(styles_by_slot_.size());
-      styles_by_slot_.push_back(known);
+    if (free_visuals_.empty()) {
+      known->second.slot = static_cast<std::uint32_t>(visuals_by_slot_.size());
+      visuals_by_slot_.push_back(known);
     } else {
-      known->second.slot = free_styles_.back();
-      free_styles_.pop_back();
-      styles_by_slot_[known->second.slot] = known;
+      known->second.slot = free_visuals_.back();
+      free_visuals_.pop_back();
+      visuals_by_slot_[known->second.slot] = known;
     }
-    tell(known->second.slot, std::move(style));
+    tell(known->second.slot, std::move(visual));
   }
   ++known->second.uses;
   return known->second.slot;
 }
 
-void Presenter::release_style(std::uint32_t slot) {
-  const auto style = styles_by_slot_[slot];
-  if (--style->second.uses > 0) return;
-  forget<protocol::StyleEntity>(slot);
-  styles_.erase(style);
-  free_styles_.push_back(slot);
+void Presenter::release_visual(std::uint32_t slot) {
+  const auto visual = visuals_by_slot_[slot];
+  if (--visual->second.uses > 0) return;
+  forget<protocol::VisualEntity>(slot);
+  visuals_.erase(visual);
+  free_visuals_.push_back(slot);
 }
 
 protocol::Vec3 Presenter::rounded(const Vec3& v) const {

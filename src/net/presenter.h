@@ -22,10 +22,10 @@ namespace iota::net {
 
 class Presenter {
  public:
-  /// The parts of a class of bodies or ties in all looks. A part of kind "solid" represents the body's own shape, and
-  /// gives its material. After a change of a class all bodies have to be described again.
-  void set_class(const std::string& name, std::vector<protocol::Part> parts);
-  /// Gives a body the looks of a class; the body must be in the engine's next changes.
+  /// The parts of a visual, with which bodies or ties are drawn, in all styles. A part of kind "solid" represents the
+  /// body's own shape, and gives its material. After a change of a visual all bodies have to be described again.
+  void set_visual(const std::string& name, std::vector<protocol::Part> parts);
+  /// Draws a body with a visual; the body must be in the engine's next changes.
   void assign(BodyId body, const std::string& name, bool odd);
   /// Shapes without physics.
   void set_statics(std::vector<protocol::Part> parts);
@@ -52,7 +52,8 @@ class Presenter {
     bool is_there = false, is_listed = false;
     std::vector<std::uint8_t> record;
   };
-  struct Class {
+  /// A visual as the script gave it.
+  struct Given {
     std::vector<protocol::Part> parts;
     bool is_solid = false;
   };
@@ -62,9 +63,10 @@ class Presenter {
   };
   struct DrawnAs {
     BodyId id;
-    std::uint32_t style = protocol::no_style;
+    std::uint32_t visual = protocol::no_visual;
   };
-  struct Style {
+  /// A visual as viewers were told.
+  struct Visual {
     std::uint32_t slot = 0, uses = 0;
   };
 
@@ -79,25 +81,25 @@ class Presenter {
   }
 
   /// visit(items, entity_of), items: the changes of things that are one entity each, entity_of(item): its record. All
-  /// kinds that the engine describes, except bodies, which have styles.
+  /// kinds that the engine describes, except bodies, which have visuals.
   template <class Visit>
   void for_each_simple_kind(const SceneChanges& changes, Visit visit) const;
   void present_body(const DrawnBody& body, const NameOf& name_of);
   void forget_body(std::uint32_t slot);
   void present_statics();
 
-  std::uint32_t style_of(const DrawnBody& body, const Assignment* assignment);
-  std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Class* like);
-  std::vector<protocol::Part> parts_along_lines(const DrawnBody& body, const Class* like) const;
+  std::uint32_t visual_of(const DrawnBody& body, const Assignment* assignment);
+  std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Given* like);
+  std::vector<protocol::Part> parts_along_lines(const DrawnBody& body, const Given* like) const;
   protocol::Part part_of_particle(const DrawnBody& body) const;
-  std::uint32_t use_tie_style(std::size_t kind);
-  std::uint32_t use_style(std::string_view name, const std::vector<protocol::Part>& parts);
-  void release_style(std::uint32_t slot);
+  std::uint32_t use_tie_visual(std::size_t kind);
+  std::uint32_t use_visual(std::string_view name, const std::vector<protocol::Part>& parts);
+  void release_visual(std::uint32_t slot);
   void choose_thickness(const SceneChanges& changes);
   protocol::Vec3 rounded(const Vec3& v) const;
   protocol::Anchor anchored(const Anchor& anchor) const;
 
-  std::map<std::string, Class, std::less<>> classes_;
+  std::map<std::string, Given, std::less<>> given_;
   std::map<BodyId, Assignment> assignments_;
   std::vector<BodyId> assigned_;
   std::vector<protocol::Part> statics_;
@@ -107,10 +109,10 @@ class Presenter {
 
   std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot
   std::vector<DrawnAs> bodies_;                            ///< by slot
-  std::map<std::vector<std::uint8_t>, Style> styles_;      ///< by their records
-  std::vector<std::map<std::vector<std::uint8_t>, Style>::iterator> styles_by_slot_;
-  std::vector<std::uint32_t> free_styles_;
-  std::array<std::uint32_t, 3> tie_styles_{protocol::no_style, protocol::no_style, protocol::no_style};
+  std::map<std::vector<std::uint8_t>, Visual> visuals_;    ///< by their records
+  std::vector<std::map<std::vector<std::uint8_t>, Visual>::iterator> visuals_by_slot_;
+  std::vector<std::uint32_t> free_visuals_;
+  std::array<std::uint32_t, 3> tie_visuals_{protocol::no_visual, protocol::no_visual, protocol::no_visual};
 
   EntityChanges out_;
   std::vector<std::string> warnings_;

@@ -102,6 +102,8 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
   fail(error, "cannot listen on " + place_of(options));
 }
 
+}  // namespace
+
 /// The worlds of a server, in the order in which they were opened. From any thread.
 class Worlds {
  public:
@@ -140,8 +142,6 @@ class Worlds {
   std::mutex mutex_;
   std::vector<std::shared_ptr<Hub>> hubs_;
 };
-
-}  // namespace
 
 struct Room::Link {
   explicit Link(asio::io_context& context) : io(&context) {}

@@ -1,94 +1,113 @@
 // SPDX-License-Identifier: Apache-2.0
 // A TCP connection that may be encrypted, with a time limit: one type for http and https, so that sessions are no
 // templates. Satisfies Asio's AsyncReadStream and AsyncWriteStream, and Beast's requirements for WebSocket.
+//
+// Handlers and buffers lose their types here, so that Beast's operations on both layers are compiled once, in
+// stream.cpp, and not again for every operation of a session (which took 80 of a unit's 100 s).
 #pragma once
 
 #include "net/access.h"
 
+#include <boost/asio/any_completion_handler.hpp>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/stream_base.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
-#include <boost/beast/websocket/ssl.hpp>
-#include <boost/beast/websocket/teardown.hpp>
+#include <boost/beast/core/role.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstddef>
+#include <memory>
 #include <utility>
-#include <variant>
 
 namespace iota::net {
 
 class Stream {
-  using Plain = boost::beast::tcp_stream;
-  using Encrypted = boost::beast::ssl_stream<Plain>;
   using error_code = boost::system::error_code;
+  using Done = boost::asio::any_completion_handler<void(error_code)>;
+  using DoneSome = boost::asio::any_completion_handler<void(error_code, std::size_t)>;
+  using DoneHandshake = boost::asio::any_completion_handler<void(error_code), void(error_code, std::size_t)>;
+
+  /// The first buffers of any sequence: reading or writing "some" may leave the rest.
+  template <class Buffer>
+  class FirstBuffers {
+   public:
+    using value_type = Buffer;
+    template <class Buffers>
+    explicit FirstBuffers(const Buffers& buffers) {
+      const auto end = boost::asio::buffer_sequence_end(buffers);
+      for (auto it = boost::asio::buffer_sequence_begin(buffers); it != end && count_ < kept_.size(); ++it)
+        if (const Buffer buffer(*it); buffer.size() > 0) kept_[count_++] = buffer;
+    }
+    const Buffer* begin() const { return kept_.data(); }
+    const Buffer* end() const { return kept_.data() + count_; }
+
+   private:
+    std::array<Buffer, 8> kept_{};
+    std::size_t count_ = 0;
+  };
 
  public:
-  using executor_type = Plain::executor_type;
+  using executor_type = boost::asio::any_io_executor;
 
-  explicit Stream(boost::asio::ip::tcp::socket socket) : layer_(std::in_place_type<Plain>, std::move(socket)) {}
+  explicit Stream(boost::asio::ip::tcp::socket socket);
+  ~Stream();
+  Stream(Stream&&) noexcept;
+  Stream& operator=(Stream&&) noexcept;
 
-  Scheme scheme() const { return std::holds_alternative<Plain>(layer_) ? Scheme::http : Scheme::https; }
-  executor_type get_executor() { return lowest().get_executor(); }
-  boost::asio::ip::tcp::socket& socket() { return lowest().socket(); }
-  const boost::asio::ip::tcp::socket& socket() const { return const_cast<Stream*>(this)->lowest().socket(); }
-  void expires_after(std::chrono::steady_clock::duration time) { lowest().expires_after(time); }
-  void expires_never() { lowest().expires_never(); }
+  Scheme scheme() const;
+  executor_type get_executor();
+  boost::asio::ip::tcp::socket& socket();
+  const boost::asio::ip::tcp::socket& socket() const { return const_cast<Stream*>(this)->socket(); }
+  void expires_after(std::chrono::steady_clock::duration time);
+  void expires_never();
   /// Closes immediately, without a shutdown.
-  void close() { lowest().close(); }
+  void close();
 
   /// Encrypts from now on; a handshake has to follow.
-  void encrypt(boost::asio::ssl::context& context) {
-    Plain plain = std::move(std::get<Plain>(layer_));
-    layer_.emplace<Encrypted>(std::move(plain), context);
-  }
+  void encrypt(boost::asio::ssl::context& context);
   /// `read`: bytes read already, the start of the handshake. The handler gets the number of used ones; it must be
   /// callable without that, too, as Beast 1.81 checks by mistake.
-  template <class Buffers, class Handler>
-  void async_handshake(const Buffers& read, Handler&& handler) {
-    std::get<Encrypted>(layer_).async_handshake(boost::asio::ssl::stream_base::server, read,
-                                                std::forward<Handler>(handler));
+  template <class Handler>
+  void async_handshake(boost::asio::const_buffer read, Handler&& handler) {
+    start_handshake(read, DoneHandshake(std::forward<Handler>(handler)));
   }
 
   template <class Buffers, class Handler>
   void async_read_some(const Buffers& buffers, Handler&& handler) {
-    std::visit([&](auto& layer) { layer.async_read_some(buffers, std::forward<Handler>(handler)); }, layer_);
+    start_read(FirstBuffers<boost::asio::mutable_buffer>(buffers), DoneSome(std::forward<Handler>(handler)));
   }
   template <class Buffers, class Handler>
   void async_write_some(const Buffers& buffers, Handler&& handler) {
-    std::visit([&](auto& layer) { layer.async_write_some(buffers, std::forward<Handler>(handler)); }, layer_);
+    start_write(FirstBuffers<boost::asio::const_buffer>(buffers), DoneSome(std::forward<Handler>(handler)));
   }
 
   /// Tells the client that no more data will be sent.
   template <class Handler>
   void async_shutdown_send(Handler&& handler) {
-    if (auto* encrypted = std::get_if<Encrypted>(&layer_)) {
-      return encrypted->async_shutdown(std::forward<Handler>(handler));
-    }
-    error_code error;
-    socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
-    boost::asio::post(get_executor(), [handler = std::forward<Handler>(handler), error]() mutable { handler(error); });
+    start_shutdown_send(Done(std::forward<Handler>(handler)));
   }
 
   // Called by Beast's WebSocket, found by argument-dependent lookup.
   friend void beast_close_socket(Stream& stream) { stream.close(); }
-  friend void teardown(boost::beast::role_type role, Stream& stream, error_code& error) {
-    using boost::beast::websocket::teardown;
-    std::visit([&](auto& layer) { teardown(role, layer, error); }, stream.layer_);
-  }
+  friend void teardown(boost::beast::role_type role, Stream& stream, error_code& error) { stream.tear_down(role, error); }
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, Stream& stream, Handler&& handler) {
-    using boost::beast::websocket::async_teardown;
-    std::visit([&](auto& layer) { async_teardown(role, layer, std::forward<Handler>(handler)); }, stream.layer_);
+    stream.start_teardown(role, Done(std::forward<Handler>(handler)));
   }
 
  private:
-  Plain& lowest() {
-    return std::visit([](auto& layer) -> Plain& { return boost::beast::get_lowest_layer(layer); }, layer_);
-  }
+  class Layer;
 
-  std::variant<Plain, Encrypted> layer_;
+  void start_handshake(boost::asio::const_buffer read, DoneHandshake done);
+  void start_read(const FirstBuffers<boost::asio::mutable_buffer>& buffers, DoneSome done);
+  void start_write(const FirstBuffers<boost::asio::const_buffer>& buffers, DoneSome done);
+  void start_shutdown_send(Done done);
+  void tear_down(boost::beast::role_type role, error_code& error);
+  void start_teardown(boost::beast::role_type role, Done done);
+
+  std::unique_ptr<Layer> layer_;
 };
 
 }  // namespace iota::net

@@ -50,8 +50,9 @@ class Places {
   std::optional<Hit> nearest(const Vec3& place, Only only = {});
   /// The bodies of which a part is within a distance (m), in order of slots: those that a ball overlaps.
   std::vector<BodyId> within(const Vec3& place, double radius, Only only = {});
-  /// What a convex shape at a place would overlap: bodies in order of slots, then fixed shapes. What is not convex itself, as a
-  /// torus, counts by triangles. Throws std::invalid_argument for a shape that is endless or not convex.
+  /// Finds everything that a convex shape at a place would overlap: bodies in order of slots, then fixed shapes. A shape
+  /// that is not convex itself, as a torus, is tested by its triangles. Throws std::invalid_argument for a shape that is
+  /// endless or not convex.
   std::vector<Found> overlap(const Shape&, const Vec3& position, const Quaternion& orientation, Only only = {});
 
   /// A fixed shape without physics; returns its number. Places and turns are of the world.
@@ -62,7 +63,7 @@ class Places {
 
   /// Radius of the lines of a body, m.
   void set_thickness(BodyId, double radius);
-  /// Of bodies without one: of several particles, and of one particle.
+  /// Sets the radius, m, of bodies that have none of their own: `line` for several particles, `ball` for a single one.
   void set_usual_thickness(double line, double ball) { usual_line_ = line, usual_ball_ = ball, has_moved_ = true; }
 
  private:

@@ -28,8 +28,8 @@ struct Meridian {
     if (rho > 0) l.hessian += (by_rho / rho) * Mat3::outer(round, round);
     return l;
   }
-  /// Of the distance from a sharp edge, the circle of radius `away` at `along`. Nearer than `blunt` the curvature is
-  /// constant, so that Newton's matrix stays finite at the edge.
+  /// The level that is the distance from a sharp edge, the circle of radius `away` at `along`. Nearer than `blunt` the
+  /// curvature is constant, so that Newton's matrix stays finite at the edge.
   Level edge(double along, double away, double blunt) const {
     const double u = x - along, v = rho - away, distance = std::sqrt(u * u + v * v);
     const double a = u / distance, b = v / distance, bend = 1 / std::max(distance, blunt);

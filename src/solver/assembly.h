@@ -41,21 +41,21 @@ class Assembly {
   void follow(Problem&);
   /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
   bool place_forces(Problem&) const;
-  /// Where to add the times of forces, factors and solutions from now on; null: nowhere.
+  /// From now on adds the times of forces, factors and solutions to `times`; null: they are not measured.
   void add_times_to(StepTimes* times) { times_ = times; }
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>
   Residual residual(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
-  /// Of that residual, whether all forces that do not balance are round-off of the forces of stiff laws: their stiffness
-  /// times the round-off of the places.
+  /// Whether every unbalanced force in that residual is round-off of the forces of stiff laws, that is, at most their
+  /// stiffness times the round-off of the places.
   template <bool Midpoint>
   bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
   /// The elastic energy that compliant rows have released on the way to a solution at x. They had stored what the multipliers
   /// before this (sub-)step, N, have done on the gaps that it starts from, however long the steps then were.
   Strain strain_released(const Problem&, const Stage&, const Vec3* x, std::span<const double> multipliers_before) const;
-  /// Of the equations M a + G' lambda = f, G a + v' G' v = 0 at a = 0, lambda = 0, at the problem's positions and
-  /// velocities: their solution is minus the step of a projection's matrix, without Hessian. Rows at a bound are left out.
+  /// Loads the residual of M a + G' lambda = f, G a + v' G' v = 0 at a = 0, lambda = 0, at the problem's positions and
+  /// velocities. Their solution is minus the step of a projection's matrix, without Hessian. Rows at a bound are left out.
   void load_rates(const Problem&);
   /// The derivative of the residual.
   template <bool Midpoint>
@@ -99,7 +99,7 @@ class Assembly {
   void place_nodes(const Problem&);
   void weigh(const Problem&);
   bool has_extreme_masses() const { return row_compliance_ < 1; }
-  /// Of extreme masses a sub-step has its own: their tensions would open joints in what the whole step allows.
+  /// With extreme masses a sub-step has its own compliance: at that of the whole step, tensions would open joints.
   double row_compliance(const Stage& stage) const {
     return row_compliance_ * (has_extreme_masses() ? stage.compliance / stage.inertia : stage.row_compliance());
   }

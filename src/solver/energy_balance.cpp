@@ -14,7 +14,7 @@ constexpr double round_off_of_energy = 1e-14;
 constexpr double of_motion = 1e-9;  // of the kinetic energy: what the tolerance of a solve may make
 constexpr double finest = 1e-12;    // of a length: motion below it is round-off
 
-/// Of motions below round-off of the places, J: a body at rest has no less.
+/// The energy of motions below the round-off of places, J. A body at rest has this much.
 double jitter_energy(const Problem& problem, double reference_length, double h) {
   const double jitter = finest * reference_length / h;
   return std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
@@ -57,7 +57,7 @@ struct Solved {
   double work_of_imbalance() const;
 };
 
-// Of grips, pushes of laws, targets of points and explicit forces.
+// The work of grips, pushes of laws, targets of points and explicit forces.
 double Solved::external_work() const {
   double work = 0;
   for (const auto& f : problem.items_of<GripForce>()) {

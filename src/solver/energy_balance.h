@@ -24,9 +24,9 @@ struct StepEnergy {
   double made() const { return -missing(); }
   /// Without what is dissipated, whose round-off is large in stiff dashpots: made for sure.
   double gained() const { return total - total_before - external_work; }
-  /// Of targets that pull against rows that do not yield, or give way to them, by forces that only the compliance of the
-  /// rows limits: what is missing, or made, beyond the energy of the motion. An arm pulled beyond its reach took 5e8 J in
-  /// one step, all of it lost; a nail that stood in a conflict returned 2e9 J.
+  /// The work of moving targets on rows that do not yield. Only the compliance of the rows limits these forces, so their
+  /// work means nothing: everything that is missing, or made, beyond the energy of the motion counts as idle. An arm
+  /// pulled beyond its reach took 5e8 J in one step, all of it lost; a nail that stood in a conflict returned 2e9 J.
   double idle_work() const {
     const double motion = std::max(kinetic_before, kinetic) + std::max(0.0, impact);
     return external_work > 0 ? std::clamp(missing() - motion, 0.0, external_work)
@@ -41,7 +41,7 @@ struct EnergyBalance {
   double missing = 0;             ///< unexplained: lost, or made if negative, J
   double slack = 0;               ///< of what is made: within the tolerance of the solves, J
 
-  /// Of the state, as a new start: differences are not counted.
+  /// Measures the state as a new start: differences are not counted.
   void measure(const Problem&, double fraction);
   /// After a change of places and velocities by some external work, J; what that does not explain is missing.
   void measure_change(const Problem&, double fraction, double work = 0);

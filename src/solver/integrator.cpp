@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A step as a walk through a table of attempts (settings.h), each judged by one balance of its energy (judge.h).
-// What belongs to it: integrator_guess.cpp, where solves start; integrator_energy.cpp, the corrections at the end of a
-// (sub-)step; integrator_gaps.cpp, gaps that are open at the start; integrator_accurate.cpp, steps to a tolerance.
+// Other parts of the class: integrator_guess.cpp has the starts of solves; integrator_energy.cpp the corrections at the end
+// of a (sub-)step; integrator_gaps.cpp gaps that are open at the start; integrator_accurate.cpp steps to a tolerance.
 #include "solver/integrator.h"
 
 #include "base/slack.h"
@@ -27,9 +27,9 @@ constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<
 bool is_free_body(const Problem& problem) {
   const std::size_t n = problem.size();
   if (n < 2 || n > 4 || !problem.items_of<GyroscopicForce>().empty()) return false;
-  std::size_t rows = 0;
-  problem.for_each_constraint_pool([&](const auto& pool) { rows += pool.items.size(); });
-  const std::size_t rods = problem.items_of<DistanceConstraint>().size();
+  std::size_t rows = 0, rods = 0;
+  problem.for_each_acting(
+      [&]<class C>(const ConstraintPool<C>&, std::size_t) { ++rows, rods += std::is_same_v<C, DistanceConstraint>; });
   return rods == rows && rods == n * (n - 1) / 2;
 }
 
@@ -86,24 +86,33 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   return report;
 }
 
-// Finds out how the world outside acts on the problem during the step.
-void Integrator::look_at(const Problem& problem) {
-  has_curved_rows_ = drives_rows_ = false;
-  holds_ = {};
+// Finds out how the world outside may act on the problem during the step.
+void Integrator::look_at(Problem& problem) {
+  drives_rows_ = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (pool.items.empty()) return;  // as nearly all are: of many small problems each look at one waits for memory
-    has_curved_rows_ = has_curved_rows_ || is_curved<C>;
-    for (const C& c : pool.items) {
-      holds_.add(c);
-      drives_rows_ = drives_rows_ || c.is_moving();
-    }
+    for (const C& c : pool.items) drives_rows_ = drives_rows_ || c.is_moving();
     for (const RowLaw& law : pool.laws) drives_rows_ = drives_rows_ || (law.rate != 0 && !law.is_off());
   });
+  find_holds(problem);
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty();
   for (const Vec3& f : problem.force) is_conservative_ = is_conservative_ && f == Vec3{};
   // The push of a law has no energy: its work is not a gain.
   for (const auto& f : problem.items_of<RadialForce>()) is_conservative_ = is_conservative_ && !f.law->has_push();
+}
+
+// By the rows that act: in the last step, as long as this one is not solved, then in this one. See Problem::note_acting.
+void Integrator::find_holds(Problem& problem, const Vec3* x) {
+  has_curved_rows_ = false;
+  holds_ = {};
+  problem.note_acting(x);
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+    has_curved_rows_ = has_curved_rows_ || is_curved<C>;
+    holds_.add(pool.items[i]);
+  });
   is_free_body_ = is_free_body(problem);
+  if (acting_version_ != problem.acting_version()) may_be_in_pieces_ = true;
+  acting_version_ = problem.acting_version();
 }
 
 void Integrator::advance_part(Problem& problem, const Part& part, std::size_t first, AdvanceReport& report) {
@@ -143,6 +152,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     problem.set_multipliers(multipliers_saved_);
     return false;
   }
+  if (problem.has_laws()) find_holds(problem);
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;

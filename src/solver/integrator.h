@@ -77,7 +77,8 @@ class Integrator {
     }
   };
   void make_room(const Problem&);
-  void look_at(const Problem&);
+  void look_at(Problem&);
+  void find_holds(Problem&, const Vec3* x = nullptr);
 
   void advance_part(Problem&, const Part&, std::size_t attempt, AdvanceReport&);
   bool may_halve(const Part&, const AdvanceReport&) const;
@@ -140,16 +141,17 @@ class Integrator {
   std::vector<Vec3> candidate_;  // a solution, while its error is estimated
   std::vector<double> candidate_multipliers_;
 
-  // Of the present step.
+  // State of the present step.
   IntegratorSettings settings_;
   double least_turn_cosine_ = std::cos(settings_.max_turn);
   double step_length_ = 0;  ///< s
   EnergyBalance energy_;
   Holds holds_;
-  bool has_curved_rows_ = false;  ///< whose energy the mid-point rule does not keep
-  bool drives_rows_ = false;      ///< a target moves, or a row has a rate
-  bool is_conservative_ = true;   ///< no external work
-  bool is_free_body_ = false;     ///< one rigid thing that nothing holds
+  bool has_curved_rows_ = false;      ///< that act, whose energy the mid-point rule does not keep
+  bool drives_rows_ = false;          ///< a target moves, or a row has a rate
+  bool is_conservative_ = true;       ///< no external work
+  bool is_free_body_ = false;         ///< one rigid thing that nothing holds
+  std::uint64_t acting_version_ = 0;  ///< of the problem, when these were found
   bool holds_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();
   int resort_left_ = 0;  ///< iterations of the last resort beyond a budget
@@ -168,6 +170,7 @@ class Integrator {
   };
   std::vector<Piece> pieces_;            // of a disconnected problem; else none
   std::vector<std::uint32_t> piece_of_;  // of each node
+  DisjointSets room_for_pieces_;
 };
 
 }  // namespace iota::solver

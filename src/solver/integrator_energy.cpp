@@ -77,7 +77,7 @@ bool Integrator::change_kinetic_energy(Problem& problem, double excess, const st
   return true;
 }
 
-// Of what nothing outside holds, or one point at rest.
+// The rigid motion of a problem that nothing outside holds, or a single point at rest; otherwise nothing.
 std::optional<RigidMotion> Integrator::rigid_motion(const Problem& problem) const {
   if (holds_.are_none()) return rigid_motion_of(problem);
   if (const auto pivot = holds_.pivot()) return rigid_motion_about(problem, *pivot);
@@ -122,7 +122,7 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
   const double missing = is_made ? std::clamp(energy_.missing, -most * energy_.kinetic, most * energy_.kinetic) : taken;
   if (missing == 0) return false;
   if (std::exchange(may_be_in_pieces_, false)) {
-    const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_);
+    const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_, room_for_pieces_);
     pieces_.resize(count > 1 ? count : 0);
   }
   if (!pieces_.empty()) {
@@ -150,8 +150,9 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
 void Integrator::give_energy_back_by_piece(Problem& problem) {
   const auto earlier = newton_.velocities_before();
   for (Piece& piece : pieces_) piece = {};
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items) pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
+  problem.for_each_acting([&](const auto& pool, std::size_t i) {
+    const auto& c = pool.items[i];
+    pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
   });
   const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
     Piece& piece = pieces_[piece_of_[a]];

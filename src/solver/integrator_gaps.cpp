@@ -11,7 +11,7 @@ namespace iota::solver {
 
 namespace {
 
-// Of a gap that moves; relaxes it by 10 %: at full extension the constraint gradient is singular.
+// Bounds of moving gaps are 10 % wider than the gaps, since the constraint gradient is singular at full extension.
 constexpr double relaxation = 1.1;
 
 }  // namespace
@@ -35,7 +35,10 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   }
   energy_.measure(problem, 0);
   const double before = energy_.total;
-  if (is_open) spin().note(problem, holds_);
+  if (is_open) {
+    find_holds(problem, problem.position.data());
+    spin().note(problem, holds_);
+  }
   problem.standing_gap = 0;
   if (!project_locally(problem, is_open)) {
     if (is_open && !(stands ? project_in_one_solve(problem) : project_positions(problem))) {

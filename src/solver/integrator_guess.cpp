@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where Newton's method starts.
+// The first iterate of Newton's method.
 #include "solver/integrator.h"
 
 #include "solver/row_masses.h"
@@ -13,7 +13,7 @@ namespace iota::solver {
 std::span<const double> Integrator::lumped_masses(const Problem& problem) {
   if (problem.mass_couplings.empty()) return problem.mass;
   if (lumped_mass_.empty()) {
-    lumped_mass_ = row_masses(problem);
+    sum_row_masses(problem, lumped_mass_);
     for (std::size_t i = 0; i < lumped_mass_.size(); ++i)
       if (lumped_mass_[i] < 1e-6 * problem.mass[i]) lumped_mass_[i] = 0;
   }

@@ -27,8 +27,8 @@ struct [[nodiscard]] NewtonReport {
 
 /// Newton's method with exact geometric stiffness, globalized: a step is taken when the scaled residual or an l1 merit
 /// falls; the Hessian is clamped to positive semi-definite once full steps stop halving the residual or a pivot has the
-/// wrong sign. `docs/solver.md` gives the measurements behind each rule. Between iterations an ActiveSet moves bounded rows;
-/// at a bound a row keeps its place in the matrix, as an identity.
+/// wrong sign. `docs/measurements.md` gives the numbers behind each rule. Between iterations an ActiveSet moves bounded
+/// rows; at a bound a row keeps its place in the matrix, as an identity.
 class Newton {
  public:
   /// Allocates and analyzes the structure of the problem, or follows it: see Assembly.

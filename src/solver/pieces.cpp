@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/pieces.h"
 
-#include "base/disjoint_sets.h"
-
 #include <algorithm>
+#include <type_traits>
 
 namespace iota::solver {
 
-std::uint32_t find_pieces(const Problem& problem, Connection connection, std::vector<std::uint32_t>& piece_of) {
-  DisjointSets connected(problem.size());
+std::uint32_t find_pieces(const Problem& problem, Connection connection, std::vector<std::uint32_t>& piece_of,
+                          DisjointSets& connected) {
+  connected.reset(problem.size());
   const auto join = [&](std::uint32_t a, std::uint32_t b) {  // of two roots; the lowest of a piece is its leader
     connected.set_parent(std::max(a, b), std::min(a, b));
     return std::min(a, b);
   };
-  const auto join_all = [&](const auto& pool) {
-    for (const auto& item : pool.items) {
-      const auto nodes = pool.nodes_of(item);
-      std::uint32_t leader = connected.root(nodes.front());
-      for (const std::uint32_t node : nodes.subspan(1)) leader = join(leader, connected.root(node));
-    }
+  const auto join_nodes = [&](std::span<const std::uint32_t> nodes) {
+    std::uint32_t leader = connected.root(nodes.front());
+    for (const std::uint32_t node : nodes.subspan(1)) leader = join(leader, connected.root(node));
   };
-  if (connection == Connection::lengths)
-    join_all(problem.pool_of<DistanceConstraint>());
-  else
-    problem.for_each_constraint_pool(join_all);
-  if (connection == Connection::rows_and_forces) problem.for_each_force_pool(join_all);
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+    if (connection == Connection::lengths && !std::is_same_v<C, DistanceConstraint>) return;
+    join_nodes(pool.nodes_of(pool.items[i]));
+  });
+  if (connection == Connection::rows_and_forces)
+    problem.for_each_force_pool([&](const auto& pool) {
+      for (const auto& force : pool.items) join_nodes(pool.nodes_of(force));
+    });
   for (const auto& c : problem.mass_couplings) join(connected.root(c.a), connected.root(c.b));
   std::uint32_t count = 0;
   piece_of.resize(problem.size());

@@ -85,9 +85,36 @@ void Problem::fit_pools() {
     resize_with_slack(pool.slots, pool.items.size());
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.assign(pool.laws.size(), {});
+    pool.acting.clear();
     pool.offsets.clear();
   });
   for_each_force_pool([](auto& pool) { resize_with_slack(pool.slots, pool.items.size()); });
+}
+
+void Problem::note_acting(const Vec3* x) {
+  bool is_other = false;
+  for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) {  // all act; they may have had bounds for a conflict
+      is_other = is_other || std::find(pool.acting.begin(), pool.acting.end(), 0) != pool.acting.end();
+      pool.acting.clear();
+      return;
+    }
+    constexpr std::uint8_t unknown = 2;
+    pool.acting.resize(pool.items.size(), unknown);
+    for (std::size_t i = 0; i < pool.items.size(); ++i) {
+      const RowLaw* const law = pool.law(i);
+      std::uint8_t acts = 0;
+      for (int r = 0; r < C::rows; ++r) acts |= law[r].acts(pool.multiplier(i)[r]);
+      if (x && !acts) {
+        double g[C::rows];
+        pool.value(i, x, 0, g);
+        for (int r = 0; r < C::rows; ++r) acts |= law[r].violation(g[r]) > 0;
+      }
+      is_other = is_other || acts != pool.acting[i];
+      pool.acting[i] = acts;
+    }
+  });
+  if (is_other) ++acting_version_;
 }
 
 void Problem::remove_nodes(std::span<const std::uint32_t> removed) {

@@ -36,6 +36,8 @@ struct RowLaw {
 
   friend bool operator==(const RowLaw&, const RowLaw&) = default;
   bool is_off() const { return lower == upper; }  ///< both 0
+  /// Whether it has a force, or may take one of either sign: not a slack rope, nor a stop that is not reached.
+  bool acts(double multiplier) const { return !is_off() && (multiplier != 0 || (lower < 0 && upper > 0)); }
   bool is_compliant() const { return compliance > 0; }
   /// The bounds for positions or impulses, on which finite forces have no effect.
   double lower_impulse() const { return lower == -unbounded && !is_compliant() && !hold ? -unbounded : 0; }
@@ -79,10 +81,11 @@ struct ConstraintPool {
   };
   std::vector<C> items;
   std::vector<ItemKey> keys;
-  std::vector<double> multipliers;  ///< C::rows each, N
-  std::vector<double> offsets;      ///< C::rows each: held gaps that cannot be closed; or empty: none
-  std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
-  std::vector<RowState> states;     ///< beside laws
+  std::vector<double> multipliers;   ///< C::rows each, N
+  std::vector<double> offsets;       ///< C::rows each: held gaps that cannot be closed; or empty: none
+  std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing
+  std::vector<RowState> states;      ///< beside laws
+  std::vector<std::uint8_t> acting;  ///< of each item, if there were laws at the last Problem::note_acting
   std::vector<std::uint32_t>
       held;  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
   std::vector<Slots> slots;
@@ -96,6 +99,13 @@ struct ConstraintPool {
   }
   const RowLaw* law(std::size_t i) const { return laws.data() + i * C::rows; }
   bool has_laws() const { return !laws.empty(); }
+  /// See Problem::for_each_acting.
+  bool acts(std::size_t i) const { return laws.empty() || i >= acting.size() || acting[i] != 0; }
+  /// Whether any row of item i takes impulses in the latest projection of velocities.
+  bool takes_impulses(std::size_t i) const {
+    const auto first = states.begin() + static_cast<std::ptrdiff_t>(laws.empty() ? 0 : i * C::rows);
+    return laws.empty() || std::any_of(first, first + C::rows, [](const RowState& state) { return state.side == 0; });
+  }
   void reserve(std::size_t size) { items.reserve(size), keys.reserve(size); }
   static std::span<const std::uint32_t> nodes_of(const C& item) {
     return {item.nodes.data(), static_cast<std::size_t>(item.node_count())};
@@ -229,6 +239,21 @@ struct Problem {
   }
   ///@}
 
+  /// visit(pool, i): each constraint that acts. The others (slack ropes, stops that are not reached, what is switched
+  /// off) have their places in the matrix, and no effect on how a problem moves: they do not hold it, join its pieces or
+  /// bend its energy.
+  template <class Visit>
+  void for_each_acting(Visit visit) const {
+    for_each_constraint_pool([&](const auto& pool) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        if (pool.acts(i)) visit(pool, i);
+    });
+  }
+  /// Finds out which constraints act: by the multipliers of the latest solution; where positions are given, what these
+  /// violate does, too. Another set than that of the last call has another `acting_version`.
+  void note_acting(const Vec3* x = nullptr);
+  std::uint64_t acting_version() const { return acting_version_; }
+
   bool has_laws() const {
     bool any = false;
     for_each_constraint_pool([&](const auto& pool) { any = any || pool.has_laws(); });
@@ -259,11 +284,12 @@ struct Problem {
     for_each_constraint_pool([](auto& pool) { pool.offsets.clear(); });
   }
 
-  /// Whether no constraint is connected to the world, so that momentum is kept.
+  /// Whether no constraint that takes impulses is connected to the world, so that a projection keeps momentum.
   bool is_isolated() const {
     bool internal = true;
     for_each_constraint_pool([&](const auto& pool) {
-      for (const auto& c : pool.items) internal = internal && c.is_internal();
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        internal = internal && (pool.items[i].is_internal() || !pool.takes_impulses(i));
     });
     return internal;
   }
@@ -316,6 +342,7 @@ struct Problem {
 
   std::uint32_t used_ = 0;  // a bit for each pool that ever had an item
   GraphChange changes_;
+  std::uint64_t acting_version_ = 0;
   std::vector<std::uint8_t> is_open_;  // of each node, while the structure changes; else empty
   ConstraintPools<ConstraintPool> constraints_;
   ForcePools<ForcePool> forces_;

@@ -32,7 +32,7 @@ void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
   motion.turning = solve_semidefinite(motion.inertia, motion.angular_momentum, 1e-12);
 }
 
-/// Of what pushes at the points from outside, about the center, N m. Gravity does not turn what is free.
+/// The torque of forces from outside on the points, about the center, N m. Gravity does not turn a free problem.
 Vec3 torque_on(const Problem& problem, const RigidMotion& motion, bool is_free) {
   Vec3 torque;
   for (std::size_t i = 0; i < problem.force.size(); ++i)

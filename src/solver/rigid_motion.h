@@ -11,8 +11,8 @@
 namespace iota::solver {
 
 /// The part of a problem's motion that no internal constraint notices: that of a rigid body with the same momentum and
-/// angular momentum; of a problem that hangs on one point, with the same angular momentum about that. In the mass norm it is
-/// orthogonal to the rest of the motion, so that kinetic energies add up.
+/// angular momentum. If the problem hangs on one point, the angular momentum is the one about this point. In the mass
+/// norm it is orthogonal to the rest of the motion, so that kinetic energies add up.
 struct RigidMotion {
   double mass = 0;
   Vec3 center;            ///< of mass, or the point that it hangs on, m
@@ -25,16 +25,16 @@ struct RigidMotion {
   double kinetic_energy() const { return 0.5 * (mass * dot(velocity, velocity) + dot(turning, inertia * turning)); }
 };
 
-/// Of the points' masses only, without the spins of rods. `piece_of`: only of the nodes of one piece.
+/// The rigid motion of the points' masses, without the spins of rods. With `piece_of` only the nodes of one piece count.
 RigidMotion rigid_motion_of(const Problem&, std::span<const std::uint32_t> piece_of = {}, std::uint32_t piece = 0);
-/// About the point that all hangs on.
+/// The same for a problem that hangs on one point, about that point.
 RigidMotion rigid_motion_about(const Problem&, const Vec3& pivot, std::span<const std::uint32_t> piece_of = {},
                                std::uint32_t piece = 0);
 
 /// Turns an isolated problem, places and velocities, about its center by the least angle that adds some energy (J, of either
 /// sign) while its momentum and angular momentum stay: a free body that has lost energy at the same angular
-/// momentum has turned its axes off the way they go. `pivot`: or one that hangs on a point, about that; gravity counts.
-/// So do forces that are held over the step. Does nothing where that would take more than a small angle.
+/// momentum has a wrong attitude. With `pivot` the problem hangs on this point, and turns about it; its energy then
+/// includes that of gravity and of forces that are held over the step. If the angle is not small, nothing is changed.
 void turn_for_energy(Problem&, double energy, const std::optional<Vec3>& pivot = {});
 
 }  // namespace iota::solver

@@ -9,10 +9,9 @@ namespace iota::solver {
 
 /// The sums of the rows of the mass matrix, kg: of each node what it would weigh if all moved alike. Zero where couplings
 /// of the other sign cancel it, as at the rim of a balanced wheel.
-inline std::vector<double> row_masses(const Problem& problem) {
-  std::vector<double> sum(problem.mass);
+inline void sum_row_masses(const Problem& problem, std::vector<double>& sum) {
+  sum.assign(problem.mass.begin(), problem.mass.end());
   for (const auto& c : problem.mass_couplings) sum[c.a] += c.mass, sum[c.b] += c.mass;
-  return sum;
 }
 
 }  // namespace iota::solver

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 // The limits by which the solver decides, each relative to lengths, masses, energies or times of the problem itself.
-// `docs/solver.md` gives the measurements behind them.
+// `docs/measurements.md` gives the measurements behind them.
 
 namespace iota::solver {
 
@@ -67,7 +67,7 @@ struct IntegratorSettings {
   }
 };
 
-/// Of Newton's method; residuals are scaled to displacements in link lengths.
+/// Settings of Newton's method. Residuals are scaled to displacements in link lengths.
 struct NewtonSettings {
   static constexpr int max_halvings = 12;          ///< of a Newton step
   static constexpr int max_doublings = 12;         ///< of one with a clamped Hessian

@@ -26,7 +26,7 @@ void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::ui
   }
 }
 
-/// Of an inertia; of points on a line zero along that.
+/// The pseudoinverse of an inertia. For points on a line it is zero along the line.
 Mat3 pseudoinverse(const Mat3& inertia) {
   const SymmetricEigen eigen = symmetric_eigen(inertia);
   Mat3 inverse;
@@ -39,16 +39,22 @@ Mat3 pseudoinverse(const Mat3& inertia) {
 
 }  // namespace
 
-// The parts are found once for a structure. What holds them is updated in each step, since nails move.
+void Spin::begin(const Problem& problem) {
+  if (acting_version_ != problem.acting_version()) forget();
+  acting_version_ = problem.acting_version();
+}
+
+// The parts are found once for a structure and the rows that act. What holds them is updated in each step, since nails move.
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
   auto& [parts, part_of] = all_parts;
-  if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of));
+  if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of, room_for_pieces_));
   for (Part& part : parts) part.holds = {};
   if (parts.size() == 1)
     parts.front().holds = all;
   else
-    problem.for_each_constraint_pool([&](const auto& pool) {
-      for (const auto& c : pool.items) parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
+    problem.for_each_acting([&](const auto& pool, std::size_t i) {
+      const auto& c = pool.items[i];
+      parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
     });
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
 }
@@ -57,26 +63,27 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
 bool Spin::find_members(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
   std::size_t rows_of_joints = 0;
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (!std::is_same_v<C, DistanceConstraint>) rows_of_joints += pool.items.size() * C::rows;
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>&, std::size_t) {
+    if constexpr (!std::is_same_v<C, DistanceConstraint>) rows_of_joints += C::rows;
   });
   if (rows_of_joints < fewest_rows) return false;
   auto& [members, member_of] = members_;
   if (member_of.size() != problem.size()) {
-    members.resize(find_pieces(problem, Connection::lengths, member_of));
+    members.resize(find_pieces(problem, Connection::lengths, member_of, room_for_pieces_));
     piece_of_.resize(members.size());
-    std::vector<std::uint32_t> nodes(members.size()), rows(members.size());
+    nodes_of_.assign(members.size(), 0), rows_of_.assign(members.size(), 0);
     for (std::uint32_t i = 0; i < problem.size(); ++i) {
       piece_of_[member_of[i]] = pieces_.part_of[i];
-      ++nodes[member_of[i]];
+      ++nodes_of_[member_of[i]];
     }
-    problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
       if constexpr (!std::is_same_v<C, DistanceConstraint>)
-        for (const C& item : pool.items)
-          for_each_once(pool.nodes_of(item), member_of, [&](std::uint32_t member) { rows[member] += C::rows; });
+        for_each_once(pool.nodes_of(pool.items[i]), member_of,
+                      [&](std::uint32_t member) { rows_of_[member] += C::rows; });
     });
     may_turn_.resize(members.size());
-    for (std::size_t k = 0; k < members.size(); ++k) may_turn_[k] = nodes[k] <= most_nodes && rows[k] >= fewest_rows;
+    for (std::size_t k = 0; k < members.size(); ++k)
+      may_turn_[k] = nodes_of_[k] <= most_nodes && rows_of_[k] >= fewest_rows;
   }
   bool any = false;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -246,6 +253,7 @@ Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
 
 bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                      bool is_rigid) {
+  begin(problem);
   find_parts(problem, Connection::rows, all, pieces_);
   const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
   const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
@@ -350,7 +358,8 @@ double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion,
   return std::min(gain, most_gain);
 }
 
-// Of pieces that are due: mass, center, momentum and angular momentum, with the spins of rods, about the origin or the pivot.
+// Adds up mass, center, momentum and angular momentum of each piece. The angular momentum includes the spins of rods,
+// and is about the pivot or, without one, the origin. Pieces that nothing or one point at rest holds are due.
 void Spin::add_momenta(const Problem& problem) {
   for (Part& piece : pieces_.parts) {
     piece.is_due = piece.is_kept;
@@ -370,6 +379,7 @@ void Spin::add_momenta(const Problem& problem) {
 }
 
 void Spin::note(const Problem& problem, const Holds& all) {
+  begin(problem);
   find_parts(problem, Connection::rows, all, pieces_);
   add_momenta(problem);
   for (Part& piece : pieces_.parts) piece.wanted_momentum = piece.momentum, piece.wanted_angular = piece.angular;

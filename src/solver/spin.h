@@ -73,7 +73,8 @@ class Spin {
     int count = 0;
     Mat3 by_inertia;  ///< inverse of the member's inertia, 1/(kg m^2)
   };
-  static void find_parts(const Problem&, Connection, const Holds& all, Parts&);
+  void begin(const Problem&);
+  void find_parts(const Problem&, Connection, const Holds& all, Parts&);
   bool find_members(const Problem&);
   void find_supports(const Problem&);
   double turn_members(Problem&, double most_gain);
@@ -85,12 +86,14 @@ class Spin {
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
   void add_momenta(const Problem&);
 
+  std::uint64_t acting_version_ = 0;  // of the problem, when the parts were found
   Parts pieces_, clusters_, members_;
   Wheels wheels_;
-  // Of each member.
+  // One entry for each member.
   std::vector<Support> supports_;
-  std::vector<std::uint32_t> piece_of_;
+  std::vector<std::uint32_t> piece_of_, nodes_of_, rows_of_;
   std::vector<std::uint8_t> may_turn_;
+  DisjointSets room_for_pieces_;
 };
 
 }  // namespace iota::solver

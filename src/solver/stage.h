@@ -28,7 +28,7 @@ struct Stage {
   bool is_held = false;
 
   bool is_projection() const { return h == 0; }
-  /// Of rows: multiplies sum |G|^2 / m.
+  /// The compliance of a row is this times sum |G|^2 / m.
   double row_compliance() const { return compliance / (inertia * part * part); }
   static Stage end_point(double h, double from, double to) {
     return {.h = h, .inertia = 1 / (h * h), .fraction = to, .fraction_start = from};

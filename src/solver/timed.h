@@ -7,7 +7,7 @@
 
 namespace iota::solver {
 
-/// Where steps of this thread add their times, see TimedSteps; null: nowhere.
+/// The times to which steps of this thread add theirs, see TimedSteps; null: they are not measured.
 StepTimes* times_of_thread();
 
 /// Moves the time of its scope from one part of a step to another. Without times no clock is read.

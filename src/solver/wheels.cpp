@@ -9,23 +9,21 @@
 
 namespace iota::solver {
 
-namespace {
-
 /// The nodes that rows connect with each node, while they are few.
-class Neighbors {
+class Wheels::Neighbors {
  public:
   static constexpr std::uint8_t most = 8;
 
-  explicit Neighbors(const Problem& problem) : lists_(problem.size()) {
-    problem.for_each_constraint_pool([&](const auto& pool) {
-      for (const auto& c : pool.items) {
-        const auto nodes = pool.nodes_of(c);
-        const bool is_held = !c.is_internal() || holds_direction(c);
-        for (const std::uint32_t i : nodes) {
-          lists_[i].is_held = lists_[i].is_held || is_held;
-          for (const std::uint32_t j : nodes)
-            if (i != j) lists_[i].add(j);
-        }
+  void find(const Problem& problem) {
+    lists_.assign(problem.size(), {});
+    problem.for_each_acting([&](const auto& pool, std::size_t item) {
+      const auto& c = pool.items[item];
+      const auto nodes = pool.nodes_of(c);
+      const bool is_held = !c.is_internal() || holds_direction(c);
+      for (const std::uint32_t i : nodes) {
+        lists_[i].is_held = lists_[i].is_held || is_held;
+        for (const std::uint32_t j : nodes)
+          if (i != j) lists_[i].add(j);
       }
     });
     for (const auto& c : problem.mass_couplings) lists_[c.a].add(c.b), lists_[c.b].add(c.a);
@@ -52,23 +50,25 @@ class Neighbors {
   std::vector<List> lists_;
 };
 
+Wheels::Wheels() = default;
+Wheels::~Wheels() = default;
+
 /// Whether any node may be a wheel's own point: it has two other own points beside it, or a mass that is balanced by those of
 /// the points on the axis. Of chains none is, which costs less than to find neighbors.
-bool may_have_wheels(const Problem& problem) {
-  std::vector<std::uint8_t> rows(problem.size());
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items)
-      for (const std::uint32_t i : pool.nodes_of(c)) rows[i] = std::min(rows[i] + 1, 3);
+bool Wheels::may_have_wheels(const Problem& problem) {
+  std::vector<std::uint8_t>& rows = is_own_;  // not yet needed
+  rows.assign(problem.size(), 0);
+  problem.for_each_acting([&](const auto& pool, std::size_t item) {
+    for (const std::uint32_t i : pool.nodes_of(pool.items[item])) rows[i] = std::min(rows[i] + 1, 3);
   });
   if (std::any_of(rows.begin(), rows.end(), [](std::uint8_t count) { return count >= 3; })) return true;
   if (problem.mass_couplings.empty()) return false;
-  const std::vector<double> sum = row_masses(problem);
+  std::vector<double>& sum = row_masses_;
+  sum_row_masses(problem, sum);
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (rows[i] == 2 && sum[i] <= 1e-6 * problem.mass[i]) return true;
   return false;
 }
-
-}  // namespace
 
 double largest_share(double first, double second, double limit) {
   if (!(first + second > limit)) return 1;
@@ -78,11 +78,14 @@ double largest_share(double first, double second, double limit) {
 
 // The nodes of a body that shares two are all neighbors of any own one that carries it.
 void Wheels::find(const Problem& problem) {
-  wheels_.clear();
+  wheels_.clear(), couplings_.clear();
   is_known_ = true;
   if (!may_have_wheels(problem)) return;
-  const Neighbors neighbors(problem);
-  std::vector<std::uint8_t> is_own(problem.size());
+  if (!neighbors_) neighbors_ = std::make_unique<Neighbors>();
+  Neighbors& neighbors = *neighbors_;
+  neighbors.find(problem);
+  std::vector<std::uint8_t>& is_own = is_own_;
+  is_own.assign(problem.size(), 0);
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
     if (is_own[node] || !neighbors.are_few(node) || neighbors.is_held(node)) continue;
     std::array<std::uint32_t, Neighbors::most + 1> body;
@@ -105,13 +108,20 @@ void Wheels::find(const Problem& problem) {
     wheels_.push_back(wheel);
   }
   if (wheels_.empty()) return;
-  std::vector<std::uint32_t> wheel_of(problem.size(), static_cast<std::uint32_t>(wheels_.size()));
+  wheel_of_.assign(problem.size(), static_cast<std::uint32_t>(wheels_.size()));
   for (std::uint32_t k = 0; k < wheels_.size(); ++k)
-    for (const std::uint32_t i : wheels_[k].points()) wheel_of[i] = k;
+    for (const std::uint32_t i : wheels_[k].points()) wheel_of_[i] = k;
   for (std::uint32_t k = 0; k < problem.mass_couplings.size(); ++k) {
     const auto& c = problem.mass_couplings[k];
-    const std::uint32_t wheel = std::min(wheel_of[c.a], wheel_of[c.b]);
-    if (wheel < wheels_.size()) wheels_[wheel].couplings.push_back(k);
+    const std::uint32_t wheel = std::min(wheel_of_[c.a], wheel_of_[c.b]);
+    if (wheel < wheels_.size()) couplings_.push_back({wheel, k});
+  }
+  std::sort(couplings_.begin(), couplings_.end());
+  auto next = couplings_.begin();
+  for (std::uint32_t k = 0; k < wheels_.size(); ++k) {
+    const auto first = next;
+    while (next != couplings_.end() && next->first == k) ++next;
+    wheels_[k].couplings = {first, next};
   }
 }
 
@@ -119,7 +129,7 @@ void Wheels::find(const Problem& problem) {
 template <class Visit>
 void Wheels::for_each_mass(const Problem& problem, const Wheel& wheel, Visit visit) {
   for (std::size_t i = 0; i < wheel.own_count; ++i) visit(problem.mass[wheel.own[i]], i, wheel.own[i]);
-  for (const std::uint32_t k : wheel.couplings) {
+  for (const auto& [_, k] : wheel.couplings) {
     const auto& c = problem.mass_couplings[k];
     if (const std::size_t i = wheel.place_of(c.a); i < wheel.own_count) visit(c.mass, i, c.b);
     if (const std::size_t i = wheel.place_of(c.b); i < wheel.own_count) visit(c.mass, i, c.a);

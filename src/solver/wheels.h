@@ -20,12 +20,15 @@ double largest_share(double first, double second, double limit);
 /// only by the moment of forces, as the center of mass is on the line.
 class Wheels {
  public:
-  /// After a change of structure.
+  Wheels();
+  ~Wheels();
+
+  /// After a change of structure, or of what acts.
   void forget() { is_known_ = false; }
 
-  /// What a step of the end-point rule has taken from p, as Spin::give_back. The rule takes moments where the step ends,
-  /// sum M_ij (v1 - v0)_j . e1_i = h moment, and so loses sum M_ij (v1 - v0)_j . (e1 - e0)_i. Velocities are those after
-  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. Returns whether any wheel has lost something.
+  /// Calculates how much of p a step of the end-point rule has lost, for Spin::give_back. The rule evaluates moments at the
+  /// end of the step, sum M_ij (v1 - v0)_j . e1_i = h moment, and so loses sum M_ij (v1 - v0)_j . (e1 - e0)_i. Velocities
+  /// are those after the step, v1 = (x1 - x0)/h = v0 + displacement/h. Returns whether any wheel has lost something.
   bool find_losses(const Problem&, std::span<const Vec3> displacement, double h);
 
   /// Returns it to the wheels with is_due(own points), and calls given(own points, angular momentum) for each. The energy
@@ -39,11 +42,11 @@ class Wheels {
     std::array<std::uint32_t, 2> axis;
     std::array<std::uint32_t, most_nodes> own;
     std::uint32_t own_count = 0;
-    std::vector<std::uint32_t> couplings;  // of its own points' masses
-    std::array<Vec3, most_nodes> turning;  // e at the end of the step
-    double lost = 0;                       // kg m^2/s
-    double inertia = 0;                    // kg m^2
-    double turn = 0;                       // rad/s
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> couplings;  // of its own points' masses, the second
+    std::array<Vec3, most_nodes> turning;                                // e at the end of the step
+    double lost = 0;                                                     // kg m^2/s
+    double inertia = 0;                                                  // kg m^2
+    double turn = 0;                                                     // rad/s
 
     std::span<const std::uint32_t> points() const { return {own.data(), own_count}; }
     /// Among its own points; `own_count` or more if it is another one.
@@ -51,12 +54,20 @@ class Wheels {
       return static_cast<std::size_t>(std::find(own.begin(), own.begin() + own_count, node) - own.begin());
     }
   };
+  class Neighbors;
   void find(const Problem&);
+  bool may_have_wheels(const Problem&);
   template <class Visit>
   static void for_each_mass(const Problem&, const Wheel&, Visit);
 
   bool is_known_ = false;
   std::vector<Wheel> wheels_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings_;  // wheel, place of the coupling; in order
+  // Room to find them.
+  std::unique_ptr<Neighbors> neighbors_;
+  std::vector<std::uint8_t> is_own_;
+  std::vector<std::uint32_t> wheel_of_;
+  std::vector<double> row_masses_;
 };
 
 }  // namespace iota::solver

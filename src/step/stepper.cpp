@@ -5,10 +5,7 @@
 #include "base/text.h"
 #include "ingredient/quantities.h"
 #include "solver/timed.h"
-#include "step/breaking.h"
-#include "step/closings.h"
-#include "step/contacts.h"
-#include "step/lifetimes.h"
+#include "step/edits.h"
 
 #include <algorithm>
 
@@ -46,22 +43,20 @@ void Stepper::take_held_forces(StepReport& report) {
 void Stepper::update_islands() {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
+  model.take_flagged(flagged_);
   dirty_.clear(), woken_.clear();
-  model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
+  for (const std::uint32_t slot : flagged_) {
+    model::Articulate& a = model.articulates[slot];
     if (a.velocity_dirty) dirty_.push_back(slot);
     if (a.to_wake) woken_.push_back(slot);
     a.velocity_dirty = a.to_wake = 0;
-  });
+  }
   {
     const Timed timed(times_of_thread(), &StepTimes::analyze);
     if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
   }
-  for (const std::uint32_t articulate : woken_) {
-    if (island::Island* const island = islands.of_articulate(articulate))
-      island->wake();
-    else
-      island::FreeParticles::wake(model, articulate);
-  }
+  islands.wake(model, woken_);
+  islands.wake_stirred(model);
   islands.replace_by_leaders(dirty_);
   for (const std::uint32_t leader : dirty_) (void)islands.of_articulate(leader)->project(model, false);
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
@@ -107,27 +102,23 @@ void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t gra
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
-  const auto all = islands.all();
-  advanced_.resize(all.size()), resting_.resize(all.size());
-  const auto advance = [&](std::size_t i) {
-    advanced_[i] = all[i]->advance(model, report.dt, deadline_);
-    resting_[i] = all[i]->is_asleep(model) ? all[i]->body_count() : 0;
-  };
+  const auto awake = islands.awake(model);
+  advanced_.resize(awake.size());
+  const auto advance = [&](std::size_t i) { advanced_[i] = awake[i]->advance(model, report.dt, deadline_); };
   if (StepTimes* const times = times_of_thread())
-    for_each_timed(editor_.parallel, all.size(), islands.grain(editor_.parallel), *times, advance);
+    for_each_timed(editor_.parallel, awake.size(), islands.grain(editor_.parallel), *times, advance);
   else
-    editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel), advance);
+    editor_.parallel.for_each(awake.size(), islands.grain(editor_.parallel), advance);
   if (model.corrections.lacks_room()) {
     model.corrections.make_room(model.rings.slot_count());
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (resting_[i] == 0) all[i]->store_corrections(model);
+    for (const island::Island* const island : awake)
+      if (!island->is_asleep(model)) island->store_corrections(model);
   }
-  tell_cut_short(model, all, advanced_, report);
+  tell_cut_short(model, awake, advanced_, report);
   int solves = 0, iterations = 0, handed_back = 0;
   double spin_lost = 0;
-  for (const std::size_t bodies : resting_) report.resting += static_cast<std::uint32_t>(bodies);
   advanced_.push_back(islands.free_particles().advance(model, report.dt, editor_.parallel));
-  report.resting += islands.free_particles().resting();
+  report.resting = islands.resting(model);
   for (const solver::AdvanceReport& r : advanced_) {
     solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
     report.iterations_max = std::max(report.iterations_max, r.iterations_max);
@@ -150,35 +141,17 @@ void Stepper::advance_islands(StepReport& report) {
     report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back, " of ",
                                    solves, " solves; the built-in one took over"));
   report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
-  turn_particles(model, report.dt);
+  ingredient::end_step(model, report.dt);
   model.time += report.dt, model.last_dt = report.dt;
   ++model.step;
 }
 
-namespace {
-
-/// Forces act for one step, also on points that cannot move: otherwise they would act when such a body becomes dynamic.
-void drop_forces_on_pinned_points(model::Model& model) {
-  model.pushes.for_each([&](std::uint32_t ring, const ingredient::Push& push) {
-    if (push.force == Vec3{}) return;
-    bool is_free = true;
-    model.for_each_in_ring(ring, [&](std::uint32_t p) {
-      is_free = is_free && model::is_free(model.bodies[model.particles[p].body].kind);
-    });
-    if (!is_free) model.pushes.at(ring).force = {};
-  });
-}
-
-}  // namespace
-
-// 4. Edits: failures, breaks and particles that have met; then the requests of the step, in order.
+// 4. What the step has led to, and its edits: failures, deaths, births, breaks and particles that have met; then the
+// requests of the step, in order.
 void Stepper::apply_edits(StepReport& report) {
-  drop_forces_on_pinned_points(editor_.model);
   editor_.held.end_step();
-  switch_off_failed_surfaces(editor_, report);
-  update_lifetimes(editor_, report);
-  break_overloaded(editor_, report);
-  finish_closings(editor_, report);
+  ingredient::tell(editor_.model, outcome_);
+  make_edits(editor_, outcome_, report);
   door_.apply_queue(report);
   if (editor_.model.has_edits) editor_.held.note_change(), editor_.held.book_edits();
 }
@@ -187,7 +160,7 @@ void Stepper::apply_edits(StepReport& report) {
 void Stepper::fill(StepReport& report) {
   model::Model& model = editor_.model;
   constexpr double worth_telling = 1e-4;  // of the kinetic energy
-  const ingredient::Energies energies = ingredient::calc_energies(model);
+  const auto [energies, worst_gap] = editor_.islands.book(model);
   double made = 0;
   for (const solver::AdvanceReport& r : advanced_) made += r.made;
   if (made > worth_telling * energies.kinetic)
@@ -196,9 +169,8 @@ void Stepper::fill(StepReport& report) {
   model.notes.clear();
   report.step = model.step;
   report.time = model.time;
-  report.worst_gap = ingredient::worst_gap(model);
+  report.worst_gap = worst_gap;
   ingredient::book_edits(model, energies.total());
-  tell_contacts(model, report);
   report.energy = {.kinetic = energies.kinetic,
                    .potential = energies.potential + editor_.held.energy(),
                    .dissipated = model.dissipated,

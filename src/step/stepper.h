@@ -2,6 +2,7 @@
 #pragma once
 
 #include "edit/door.h"
+#include "ingredient/outcome.h"
 
 namespace iota::step {
 
@@ -24,10 +25,10 @@ class Stepper {
   edit::Editor& editor_;
   edit::Door& door_;
   // Scratch of the present step, kept for its capacity.
-  std::vector<solver::AdvanceReport> advanced_;  // of each island
-  std::vector<std::size_t> resting_;             // bodies of each island that are at rest
+  std::vector<solver::AdvanceReport> advanced_;  // of each island that is awake
   island::Island::Clock::time_point deadline_;
-  std::vector<std::uint32_t> dirty_, woken_;  // articulates: velocities to project, sleepers to wake
+  ingredient::Outcome outcome_;
+  std::vector<std::uint32_t> flagged_, dirty_, woken_;  // articulates: both, velocities to project, sleepers to wake
 };
 
 }  // namespace iota::step

@@ -10,7 +10,7 @@ double Bonds::break_force(BondId id) const { return core_.model.bonds[core_.slot
 
 bool Bonds::is_broken(BondId id) const { return core_.model.bonds[core_.slot(id)].broken; }
 
-Vec3 Bonds::force(BondId id) const { return core_.held.force(core_.slot(id)); }
+Vec3 Bonds::force(BondId id) const { return ingredient::Bonds::force_on_first(core_.model, core_.slot(id)); }
 
 BondId Bonds::create(ParticleId p, ParticleId q, BondLaw body) {
   const auto law_id = [&](std::uint32_t slot) { return core_.model.laws.id(slot); };

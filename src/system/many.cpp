@@ -107,7 +107,7 @@ void Many::read(Quantity quantity, std::span<const BondId> ids, std::span<double
   write_rows(core_, quantity, ids, out, [&](std::uint32_t slot, double* row) {
     const auto& bond = m.bonds[slot];
     switch (quantity) {
-      case Quantity::force: return put(core_.held.force(slot), row);
+      case Quantity::force: return put(ingredient::Bonds::force_on_first(core_.model, slot), row);
       case Quantity::length: *row = norm(m.position(bond.q) - m.position(bond.p)); return;
       default: refuse("bonds");
     }

@@ -72,13 +72,13 @@ Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
 // Unknowns p and gap g; with n = grad A / |grad A| at p, q = p + g n, m = grad B / |grad B| at q (all in A's frame):
 //   A(p) = 0,  B(q) = 0,  two tangents . (n + m) = 0.
 // For flat faces the tangential place is undefined; a small damping keeps it near its former place.
-SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
+SurfacePairConstraint::Nearest SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
   const Relative relative(e);
   const double size = std::min(surface_a->scale(), surface_b->scale());
   Vec3 p = near, start = near, dp;
   double gap = 0, start_gap = 0, dgap = 0, best = infinity, part = 1;
   bool first = true;
-  Contact contact{};
+  Nearest nearest{};
   for (int iteration = 0; iteration < 60; ++iteration) {
     const shape::Level a = smooth_at(*surface_a, p);
     const double a_size = norm(a.gradient) + 1e-300;
@@ -100,7 +100,7 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
       continue;
     }
     best = residual, part = 1;
-    contact = {p, q, n, gap + surface_a->skin() + surface_b->skin(), place, b.gradient};
+    nearest = {p, q, n, gap + surface_a->skin() + surface_b->skin(), place, b.gradient};
 
     const Mat3 dn = unit_derivative(n, a_size, a.hessian);
     const Mat3 dm = unit_derivative(m, b_size, product(relative.turn, product(b.hessian, relative.turn.transposed())));
@@ -126,7 +126,7 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
     p += dp, gap += dgap;
     if (!(length > 1e-15 * (size + norm(p))) && !(std::abs(step[3]) > 1e-15 * size)) break;
   }
-  return contact;
+  return nearest;
 }
 
 void SurfacePairConstraint::start(const Vec3* x, double fraction) {
@@ -140,23 +140,23 @@ void SurfacePairConstraint::start(const Vec3* x, double fraction) {
     const double slope2 = dot(a.gradient, a.gradient);
     if (slope2 > 0) p -= (a.value / slope2) * a.gradient;
   }
-  contact = find(e, p).p;
+  nearest = find(e, p).p;
 }
 
 void SurfacePairConstraint::track(const Vec3* x, double fraction) {
   Vec3 e[7];
   for (int a = 0; a < 7; ++a) e[a] = arm(a, x, fraction);
-  contact = find(e, contact).p;
+  nearest = find(e, nearest).p;
 }
 
 void SurfacePairConstraint::calc_value(const Vec3* e, double /*fraction*/, double* g) const {
-  g[0] = find(e, contact).gap;
+  g[0] = find(e, nearest).gap;
   if (is_nowhere()) g[0] = 0;
 }
 
 // With t_j = a_j.d and R_jk = a_j.b_k the gap's derivatives are n_j and grad B_k (q - t)_j / |R grad B|.
 void SurfacePairConstraint::calc_gradient(const Vec3* e, Vec3 (*d)[7]) const {
-  const Contact c = find(e, contact);
+  const Nearest c = find(e, nearest);
   std::fill(d[0], d[0] + 7, Vec3{});
   if (is_nowhere()) return;
   const Relative relative(e);

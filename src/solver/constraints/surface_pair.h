@@ -8,23 +8,23 @@ namespace iota::solver {
 
 /// Two surfaces, each fixed in a body or in the world, touch, or, with a one-sided multiplier, do not overlap.
 ///   constraint  g = signed distance along the common normal n   (m): positive apart, negative overlapping
-/// gradient +-n at the two contact points, as points of the bodies (envelope theorem: the motion of the contact points
-/// does not matter); no Hessian: Newton's method does not need this second-order part The contact points p on A and q =
+/// gradient +-n at the two nearest points, as points of the bodies (envelope theorem: the motion of these points
+/// does not matter); no Hessian: Newton's method does not need this second-order part. The nearest points p on A and q =
 /// p + g n on B solve phi_A(p) = 0, phi_B(q) = 0, grad phi_A || -grad phi_B, by Newton's method from those of the last
 /// `track`: unlike the least distance, this stays regular while the surfaces touch. A surface with sharp edges, which
 /// have no normals, is replaced by another surface of constant phi, farther out by its skin and rounded; the gap is
 /// then measured to that and the skin added, which is exact for convex shapes. Arms: 0: d = origin of B - origin of A;
 /// 1 ... 3: axes of A; 4 ... 6: axes of B (orthonormal). The multiplier is the normal force, N, positive if it pulls
-/// the bodies together: one-sided contact has upper = 0.
+/// the bodies together: a one-sided pair has upper = 0.
 struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
   static constexpr bool has_curvature = false;
 
   const shape::Surface *surface_a = nullptr, *surface_b = nullptr;
-  Vec3 contact;  ///< p at the last `track`, in A's frame
+  Vec3 nearest;  ///< p at the last `track`, in A's frame
   double reference = 1;
 
   double reference_length() const { return reference; }
-  /// Searches the contact without a guess.
+  /// Searches the nearest points without a guess.
   void start(const Vec3* x, double fraction);
   void track(const Vec3* x, double fraction);
 
@@ -32,12 +32,12 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
   void calc_gradient(const Vec3* e, Vec3 (*d)[7]) const;
 
  private:
-  struct Contact {
+  struct Nearest {
     Vec3 p, q, normal;     // of A, in A's frame
     double gap;            // between the surfaces, without skins
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
-  Contact find(const Vec3* e, const Vec3& near) const;
+  Nearest find(const Vec3* e, const Vec3& near) const;
   bool is_nowhere() const { return !surface_a->failure().empty() || !surface_b->failure().empty(); }
 };
 

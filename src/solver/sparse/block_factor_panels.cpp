@@ -155,11 +155,6 @@ void BlockFactor::update_later(const BlockPattern::Panel& panel) {
 
 namespace {
 
-/// Neighboring entries of at most six columns together.
-struct Group {
-  std::uint32_t first, end, row, columns;
-};
-
 /// Subtracts `rows` rows of strips with `columns` columns, of which p points to the first that is wanted, from row-major ones.
 inline void subtract_rows(double* to, std::uint32_t to_stride, const double* p, std::uint32_t row,
                           std::uint32_t columns, int width, std::uint32_t rows) {
@@ -188,6 +183,9 @@ void BlockFactor::update_columns(const BlockPattern::Panel& panel, const BlockPa
   };
   const int depth = static_cast<int>(panel.columns);
 
+  struct Group {  // neighboring entries of at most six columns together
+    std::uint32_t first, end, row, columns;
+  };
   std::array<Group, most_groups> groups;
   std::array<const BlockPattern::Entry*, most_groups> targets{},
       reached{};  // of each entry, in these strips and the next
@@ -211,7 +209,8 @@ void BlockFactor::update_columns(const BlockPattern::Panel& panel, const BlockPa
     while (first_entry + 1 < all && row_at(first_entry + 1) <= s * strip_rows) ++first_entry;
     for (const Group& g : std::span(groups).first(count)) {
       const std::uint32_t strip = std::max(s, g.row / strip_rows), row = strip * strip_rows;
-      // Of rows and columns of the panel, to blocks of the triangle `values`, and to diagonal blocks on request.
+      // Multiplies rows with columns of the panel, and subtracts the products from blocks of the triangle `values`, and
+      // from diagonal blocks on request.
       const auto multiply_and_subtract = [&](const double* x, const double* y, double* values, double* diagonals) {
         multiply_strips(product, x + strip * stride_, static_cast<int>(strips_in(rows_end) - strip), y, g.row,
                         static_cast<int>(g.columns), depth, stride_);

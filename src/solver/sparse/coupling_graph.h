@@ -10,8 +10,8 @@
 
 namespace iota::solver {
 
-/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 to 3
-/// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
+/// Which nodes and rows are coupled, before any order is known. A node has three unknowns (its position); a
+/// constraint has 1 to 3 rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
 struct CouplingGraph {
   static constexpr std::uint32_t no_unknown = 0xffffffff;
   struct Constraint {
@@ -23,8 +23,8 @@ struct CouplingGraph {
     std::uint8_t first_side = 0;
     bool always_behind_first_side = false;  ///< the gradient of the other side may vanish as a whole
     std::uint32_t first_node = 0;           ///< in `nodes`
-    /// Of its first multiplier: an answer of the pattern. `BlockPattern::follow` is given the latest answer, and
-    /// `no_unknown` for a constraint that is new or has other nodes.
+    /// The index of its first multiplier among the unknowns, which the pattern chooses. `BlockPattern::follow` gets the
+    /// latest index, and `no_unknown` for a constraint that is new or has other nodes.
     std::uint32_t unknown = no_unknown;
   };
   std::uint32_t node_count = 0;

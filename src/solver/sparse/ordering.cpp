@@ -42,7 +42,7 @@ struct Adjacency {
 // cleaned of eliminated neighbors only when they are read, so that a hub with a thousand leaves costs O(1) a leaf; the
 // degree itself is counted exactly.
 //
-// Of n nodes those from `own` on, the surroundings of a part, are not eliminated. Gives up, and returns nothing, if
+// The nodes from `own` to n - 1, the surroundings of a part, are not eliminated. Gives up, and returns nothing, if
 // eliminations couple more than `most_pairs` pairs of neighbors.
 std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t own, std::span<const Edge> edges,
                                                 std::size_t most_pairs) {

@@ -17,7 +17,7 @@ constexpr int strip_rows = 8;
 void multiply_strips(double* t, const double* x, int strips, const double* y, std::size_t row, int columns, int depth,
                      std::size_t stride);
 
-/// Where a panel has element (row, column).
+/// The index of element (row, column) in the array of a panel.
 constexpr std::size_t place_in_strips(std::size_t row, std::size_t column, std::size_t stride) {
   return row / strip_rows * stride + column * strip_rows + row % strip_rows;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/bodies.h"
 #include "tests/cpp/refused.h"
+#include "vectors.h"
 
 #include <iota/system.h>
 
@@ -11,10 +12,6 @@
 
 namespace iota {
 namespace {
-
-Vec3 cross_of(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 TEST(Solid, is_created_with_its_mass_pose_and_motion) {
   System system;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/body_forces.h"
+#include "vectors.h"
 
 #include <iota/system.h>
 
@@ -12,10 +13,6 @@
 
 namespace iota {
 namespace {
-
-Vec3 cross_of(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 struct FreeBox {
   System system{SystemOptions{.gravity = {}}};

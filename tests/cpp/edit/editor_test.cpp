@@ -46,7 +46,7 @@ void use(System& system) {
 
 /// A value that a table should not hold at a random place: any bits, a slot far out, a list that runs in a ring, a kind that is
 /// none, a number beyond all numbers.
-void damage(std::vector<std::byte>& content, std::mt19937_64& random) {
+void damage_content(std::vector<std::byte>& content, std::mt19937_64& random) {
   const auto put = [&](const auto& value) {
     const std::size_t at = random() % (content.size() - sizeof value) / 4 * 4;
     std::memcpy(content.data() + at, &value, sizeof value);
@@ -81,7 +81,7 @@ TEST(Restore, refuses_hostile_tables_under_a_right_checksum_or_makes_a_valid_wor
   int refused = 0, taken = 0;
   for (int i = 0; i < count; ++i) {
     std::vector<std::byte> hostile = content;
-    for (std::uint64_t n = 1 + random() % 3; n > 0; --n) damage(hostile, random);
+    for (std::uint64_t n = 1 + random() % 3; n > 0; --n) damage_content(hostile, random);
     System system;
     system.particles().create(system.bodies().create(), {1, 2, 3});
     const std::uint64_t before = system.state_hash();

@@ -2,15 +2,17 @@
 // How many damaged snapshots and recordings are tried: `make hostile` sets both numbers.
 #pragma once
 
+#include "tests/cpp/amount.h"
+
 #include <cstdint>
 #include <cstdlib>
 
 namespace iota {
 
-/// IOTA_HOSTILE_COUNT, or else `standard`.
-inline int hostile_count(int standard) {
+/// IOTA_HOSTILE_COUNT, or else `sampled(all)`.
+inline int hostile_count(int all) {
   const char* const count = std::getenv("IOTA_HOSTILE_COUNT");
-  return count ? std::atoi(count) : standard;
+  return count ? std::atoi(count) : sampled(all);
 }
 
 /// IOTA_HOSTILE_SEED, or else 1.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies that fall into pieces, the parts they were combined from, and the forces on all of these.
+#include "vectors.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -11,12 +13,6 @@
 
 namespace iota {
 namespace {
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
 
 /// A rigid chain of particles with cosmetic bonds, spinning as it flies.
 struct Molecule {

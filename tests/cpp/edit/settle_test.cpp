@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What random scenes have found: edits that left the energy book, momentum or a body's shape behind.
+#include "energy_book.h"
 #include "scenes/chain.h"
 
 #include <gtest/gtest.h>
@@ -12,11 +13,6 @@
 
 namespace iota {
 namespace {
-
-double book(const System& system) {
-  const Energy e = system.energy();
-  return e.balance();
-}
 
 struct Plate {
   System system{SystemOptions{.gravity = {}}};

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forces that are held have potential energy like those that are solved for, and the energy book closes with them.
+#include "energy_book.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -9,8 +11,6 @@
 
 namespace iota {
 namespace {
-
-double book(const Energy& e) { return e.balance(); }
 
 void expect_same(const Energy& a, const Energy& b) {
   EXPECT_EQ(a.kinetic, b.kinetic);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/angle_springs.h"
+#include "modes.h"
 
 #include <iota/system.h>
 
@@ -14,8 +15,6 @@ namespace iota {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
-                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
 
 /// Three single particles without gravity: the middle one at the origin, the last one along x.
 struct Bent {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/bonds.h"
+#include "modes.h"
 
 #include <iota/system.h>
 
@@ -11,8 +12,6 @@
 namespace iota {
 namespace {
 
-constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
-                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
 constexpr double gram = 1e-3, weight = 9.81 * gram, h = 1.0 / 60;
 
 struct Hung {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A new ingredient takes part in every fold as soon as it is in the list.
 #include "ingredient/model.h"
+#include "ingredient/outcome.h"
 #include "ingredient/quantities.h"
 #include "model/restructure.h"
 
@@ -30,6 +31,8 @@ struct Wind : NoAnswers {
         reader.take({.particle = p, .force = blow, .part = step.model.particles[p].part});
       });
   }
+  static void end_step(Model& model, double h) { model.external_work += h; }
+  static void tell(Model&, Outcome& outcome) { outcome.warnings.push_back("it blows"); }
 };
 
 using WithWind = decltype(std::tuple_cat(Ingredients{}, std::tuple<Wind>{}));
@@ -51,6 +54,15 @@ struct TwoRods {
     (void)model::combine_particles(model, left_end, right_end, report);
   }
 };
+
+TEST(IngredientList, a_further_ingredient_ends_its_step_and_is_asked_what_it_led_to) {
+  TwoRods rods;
+  end_step<WithWind>(rods.model, 0.25);
+  EXPECT_EQ(rods.model.external_work, 0.25);
+  Outcome outcome;
+  tell<WithWind>(rods.model, outcome);
+  EXPECT_EQ(outcome.warnings, std::vector<std::string>{"it blows"});
+}
 
 TEST(IngredientList, a_further_ingredient_counts_in_energies_and_momenta) {
   const TwoRods rods;

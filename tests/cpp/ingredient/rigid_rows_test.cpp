@@ -21,9 +21,9 @@ TEST(RigidRows, their_gap_is_of_bodies_that_can_move) {
   model::SmallModel m;
   const std::uint32_t rod = m.body({{0, 0, 0}, {2, 0, 0}});
   m.model.rings[m.model.particles[m.particle(rod, 1)].ring].position = {2.5, 0, 0};
-  EXPECT_EQ(RigidRows::worst_gap(m.model), 0.5);
+  EXPECT_EQ(RigidRows::worst_gap(Scope(m.model)), 0.5);
   m.model.bodies[rod].kind = BodyKind::static_;
-  EXPECT_EQ(RigidRows::worst_gap(m.model), 0);
+  EXPECT_EQ(RigidRows::worst_gap(Scope(m.model)), 0);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rods that spin about themselves: two points and one more number, against what tops do.
+#include "vectors.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -14,12 +16,6 @@ namespace {
 constexpr double mass = 2, radius = 0.1, length = 0.8;
 constexpr double axial = mass * radius * radius / 2;
 constexpr double transverse = mass * (3 * radius * radius + length * length) / 12;
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
 
 struct Rod {
   System system;

@@ -33,7 +33,7 @@ TEST(Ties, share_their_force_with_the_basis_by_its_weights) {
 TEST(Ties, their_gap_is_the_distance_from_the_place_in_the_body) {
   Bar bar;
   bar.m.model.rings[bar.m.model.particles[bar.middle].ring].position = {1, 0.25, 0};
-  EXPECT_NEAR(Ties::worst_gap(bar.m.model), 0.25, 1e-12);
+  EXPECT_NEAR(Ties::worst_gap(Scope(bar.m.model)), 0.25, 1e-12);
 }
 
 }  // namespace

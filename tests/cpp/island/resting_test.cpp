@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies that rest and wake; bodies, particles and articulates that are switched off and on.
+#include "energy_book.h"
 #include "scenes/chain.h"
 
 #include <iota/system.h>
@@ -10,11 +11,6 @@
 
 namespace iota {
 namespace {
-
-double book(const System& system) {
-  const Energy e = system.energy();
-  return e.balance();
-}
 
 /// A damped chain that hangs still soon.
 struct Sleeper {
@@ -273,6 +269,98 @@ TEST(Scripted, what_the_script_has_moved_is_free_once_it_is_dynamic_and_its_nail
       EXPECT_NEAR(system.particles().position(first).y, nailed ? 2.6 : 2.6 - fallen, 1e-9);
       EXPECT_TRUE(system.validate().empty());
     }
+}
+
+/// Many chains that sleep, with a ball that flies past them.
+struct Crowd {
+  System system{{.damping = 4, .rest = {.after = 0.5, .speed = 0.01}}};
+  std::vector<scenes::Chain> chains;
+  ParticleId ball;
+
+  Crowd() {
+    for (int i = 0; i < 12; ++i)
+      chains.push_back(
+          scenes::make_chain(system, {.links = 3, .top = {1.0 * i, 0.1 * i, 0}, .direction = {0.6, -0.8, 0}}));
+    for (int i = 0; i < 4000 && system.step(0.01).resting < 36; ++i) {
+    }
+    ball = system.particles().create(system.bodies().create(), {0, 5, 1}, 2, {1, 0, 0});
+  }
+  void expect_the_same_book(const StepReport& report) const {
+    const Energy now = system.energy();  // measured table by table
+    EXPECT_NEAR(report.energy.kinetic, now.kinetic, 1e-12 * (1 + now.kinetic));
+    EXPECT_NEAR(report.energy.potential, now.potential, 1e-12 * std::abs(now.potential));
+    EXPECT_EQ(report.worst_gap, system.worst_gap());
+    EXPECT_NEAR(report.energy.balance(), now.balance(), 1e-9);
+  }
+};
+
+TEST(Still, bodies_have_the_energies_and_gaps_that_all_have_when_measured) {
+  Crowd c;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = c.system.step(0.01);
+    EXPECT_EQ(report.resting, 36u);
+    c.expect_the_same_book(report);
+  }
+  c.system.particles().apply_force(c.chains[4].lower[1], {3, 0, 0});
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = c.system.step(0.01);
+    EXPECT_EQ(report.resting, 33u);
+    c.expect_the_same_book(report);
+  }
+  c.system.particles().set_mass(c.chains[7].lower[2], 5);  // an edit of a sleeper
+  c.expect_the_same_book(c.system.step(0.01));
+  c.system.set_gravity({0, -5, 0});
+  const StepReport woken = c.system.step(0.01);
+  EXPECT_EQ(woken.resting, 0u);
+  c.expect_the_same_book(woken);
+}
+
+TEST(Still, bodies_are_the_same_bits_after_a_snapshot) {
+  Crowd c;
+  System other;
+  other.restore(c.system.snapshot());
+  for (int i = 0; i < 50; ++i) {
+    if (i == 20) {
+      c.system.particles().apply_force(c.chains[4].lower[1], {3, 0, 0});
+      other.particles().apply_force(c.chains[4].lower[1], {3, 0, 0});
+    }
+    const StepReport a = c.system.step(0.01), b = other.step(0.01);
+    ASSERT_EQ(c.system.state_hash(), other.state_hash()) << "step " << i;
+    EXPECT_EQ(a.resting, b.resting);
+  }
+}
+
+TEST(Still, particles_are_moved_by_what_wakes_them) {
+  System system({.gravity = {}, .rest = {.after = 0.1, .speed = 0.01}});
+  std::vector<ParticleId> particles;
+  for (int i = 0; i < 8; ++i) particles.push_back(system.particles().create(system.bodies().create(), {1.0 * i, 0, 0}));
+  for (int i = 0; i < 20; ++i) (void)system.step(0.01);
+  EXPECT_EQ(system.step(0.01).resting, 8u);
+  system.particles().apply_force(particles[2], {5, 0, 0});
+  system.particles().set_velocity(particles[5], {0, 1, 0});
+  system.bodies().set_kind(system.particles().body(particles[6]), BodyKind::dynamic);
+  EXPECT_EQ(system.step(0.01).resting, 5u);
+  EXPECT_GT(system.particles().position(particles[2]).x, 2);
+  EXPECT_GT(system.particles().position(particles[5]).y, 0);
+  for (int i = 0; i < 30; ++i) (void)system.step(0.01);
+  EXPECT_EQ(system.step(0.01).resting, 6u) << "the one that was only woken sleeps again";
+}
+
+TEST(Still, scripted_bodies_move_what_hangs_on_them_when_they_begin_to_move) {
+  System system({.damping = 4, .rest = {.after = 0.5, .speed = 0.01}});
+  const BodyId hand = system.bodies().create(Sphere{0.1}, {.attachments = {{0, 0, 0}}, .kind = BodyKind::scripted});
+  const ParticleId grip = system.bodies().attachments(hand)[0];
+  const BodyId rod = system.bodies().create();
+  const ParticleId top = system.particles().create(rod, {0, 0, 0}), end = system.particles().create(rod, {0, -1, 0});
+  (void)system.edits().combine(grip, top);
+  for (int i = 0; i < 200; ++i) (void)system.step(0.01);
+  ASSERT_EQ(system.bodies().kind(rod), BodyKind::resting);
+  system.particles().set_position(grip, {0.2, 0, 0});
+  for (int i = 0; i < 3; ++i) (void)system.step(0.01);
+  EXPECT_EQ(system.bodies().kind(rod), BodyKind::dynamic);
+  EXPECT_NEAR(system.particles().position(top).x, 0.2, 1e-9);
+  for (int i = 0; i < 2000 && system.bodies().kind(rod) != BodyKind::resting; ++i) (void)system.step(0.01);
+  EXPECT_NEAR(system.particles().position(end).x, 0.2, 5e-3);
 }
 
 }  // namespace

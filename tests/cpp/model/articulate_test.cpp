@@ -12,7 +12,7 @@
 namespace iota::model {
 namespace {
 
-const std::vector<std::string> whole;
+const std::vector<std::string> sound;
 
 TEST(Articulates, that_join_keep_the_slot_of_the_larger_one) {
   SmallModel m;
@@ -23,7 +23,7 @@ TEST(Articulates, that_join_keep_the_slot_of_the_larger_one) {
   for (const std::uint32_t body : small) EXPECT_EQ(m.model.bodies[body].articulate, kept);
   EXPECT_EQ(m.model.articulates[kept].count, 7u);
   EXPECT_TRUE(m.model.articulates[kept].velocity_dirty) << "what was to be projected still is";
-  EXPECT_EQ(ingredient::validate(m.model), whole);
+  EXPECT_EQ(ingredient::validate(m.model), sound);
 }
 
 TEST(Articulates, that_are_cut_give_the_smaller_piece_a_new_one) {
@@ -33,7 +33,7 @@ TEST(Articulates, that_are_cut_give_the_smaller_piece_a_new_one) {
   m.leave_ring(m.particle(chain[5], 0));
   EXPECT_TRUE(m.model.split_articulate(chain[4], chain[5]));
   for (int i = 0; i < 7; ++i) EXPECT_EQ(m.model.bodies[chain[i]].articulate == old, i < 5) << i;
-  EXPECT_EQ(ingredient::validate(m.model), whole);
+  EXPECT_EQ(ingredient::validate(m.model), sound);
 }
 
 TEST(Articulates, that_hang_together_otherwise_are_not_split) {
@@ -47,7 +47,7 @@ TEST(Articulates, that_hang_together_otherwise_are_not_split) {
   ingredient::Closings::add(m.model, closing);
   m.leave_ring(m.particle(b, 0));
   EXPECT_FALSE(m.model.split_articulate(a, b)) << "two bodies on their way to each other are one problem";
-  EXPECT_EQ(ingredient::validate(m.model), whole);
+  EXPECT_EQ(ingredient::validate(m.model), sound);
 }
 
 TEST(Articulates, agree_with_a_search_through_the_graph_after_random_hinges_and_cuts) {
@@ -75,7 +75,7 @@ TEST(Articulates, agree_with_a_search_through_the_graph_after_random_hinges_and_
         owners.erase(m.model.particles[p].body);
         (void)m.model.split_articulate(m.model.particles[p].body, *owners.begin());
       }
-      ASSERT_EQ(ingredient::validate(m.model), whole) << "round " << round << " edit " << edit;
+      ASSERT_EQ(ingredient::validate(m.model), sound) << "round " << round << " edit " << edit;
     }
   }
 }

@@ -154,7 +154,7 @@ const std::vector<Damage> damages{
     {"is in no list",
      [](Everything& e) { e.model.first_twin.erase(e.model.twins[first_alive(e.model.twins)].particle); }},
     {"holds no living body", [](Everything& e) { e.model.grips[e.grip].body = nowhere; }},
-    {"hangs on a stranger", [](Everything& e) { e.model.grips[e.grip].points[0] = e.loner; }},
+    {"refers to a particle of another body", [](Everything& e) { e.model.grips[e.grip].points[0] = e.loner; }},
 };
 
 TEST(Validate, finds_nothing_wrong_with_a_system_that_holds_one_of_everything) {

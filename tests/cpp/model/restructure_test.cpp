@@ -10,7 +10,7 @@
 namespace iota::model {
 namespace {
 
-const std::vector<std::string> whole;
+const std::vector<std::string> no_faults;
 
 struct Edited : testing::Test {
   SmallModel m;
@@ -18,7 +18,7 @@ struct Edited : testing::Test {
   RestructureReport report;
 
   Vec3& velocity(std::uint32_t p) { return model.rings[model.particles[p].ring].velocity; }
-  void TearDown() override { EXPECT_EQ(ingredient::validate(model), whole); }
+  void TearDown() override { EXPECT_EQ(ingredient::validate(model), no_faults); }
 };
 
 using RestructureCombine = Edited;
@@ -133,7 +133,7 @@ TEST_F(RestructureClosing, ends_without_a_trace_when_it_is_called_off) {
   model.join_articulates(model.bodies[model.particles[p].body].articulate,
                          model.bodies[model.particles[q].body].articulate);
   const std::uint32_t slot = ingredient::Closings::add(model, closing);
-  EXPECT_EQ(ingredient::validate(model), whole);
+  EXPECT_EQ(ingredient::validate(model), no_faults);
   EXPECT_EQ(ingredient::Closings::between(model, p, q), slot);
   EXPECT_EQ(ingredient::Closings::between(model, q, p), slot);
   ingredient::Closings::end(model, slot);

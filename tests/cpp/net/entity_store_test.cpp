@@ -11,7 +11,7 @@ namespace iota::net {
 namespace {
 
 constexpr std::uint8_t label = entity_kind<protocol::LabelEntity>();
-constexpr std::uint8_t style = entity_kind<protocol::StyleEntity>();
+constexpr std::uint8_t visual = entity_kind<protocol::VisualEntity>();
 
 EntityChanges set(std::uint8_t kind, protocol::Id id, std::vector<std::uint8_t> record) {
   EntityChanges changes;
@@ -76,16 +76,16 @@ TEST(EntityStore, a_slot_that_is_used_again_has_the_newer_generation) {
 TEST(EntityStore, referred_entities_are_created_first_and_destroyed_last) {
   EntityStore store;
   store.apply(set(label, {0, 1}, {1}));
-  store.apply(set(style, {0, 1}, {2}));
+  store.apply(set(visual, {0, 1}, {2}));
   auto messages = messages_since(store, 0);
   ASSERT_EQ(messages.size(), 2u);
-  EXPECT_EQ(std::get<protocol::EntitiesSet>(messages[0]).kind, "style");
+  EXPECT_EQ(std::get<protocol::EntitiesSet>(messages[0]).kind, "visual");
   const std::uint64_t known = store.version();
-  store.apply(destroyed(style, {0, 1}));
+  store.apply(destroyed(visual, {0, 1}));
   store.apply(destroyed(label, {0, 1}));
   messages = messages_since(store, known);
   ASSERT_EQ(messages.size(), 2u);
-  EXPECT_EQ(std::get<protocol::EntitiesDestroyed>(messages[1]).kind, "style");
+  EXPECT_EQ(std::get<protocol::EntitiesDestroyed>(messages[1]).kind, "visual");
 }
 
 TEST(EntityStore, many_records_travel_in_several_messages) {

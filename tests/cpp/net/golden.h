@@ -2,6 +2,8 @@
 // Golden frames of protocol/golden/.
 #pragma once
 
+#include "source_folder.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +12,7 @@
 
 namespace iota::test {
 
-inline std::filesystem::path golden_folder() { return std::filesystem::path(IOTA_SOURCE_DIR) / "protocol" / "golden"; }
+inline std::filesystem::path golden_folder() { return source_folder() / "protocol" / "golden"; }
 
 inline std::vector<std::uint8_t> read_hex(const std::filesystem::path& file) {
   std::ifstream in(file);

@@ -2,6 +2,7 @@
 // The generated protocol against golden bytes that an independent encoder made (protocol/make_golden.py), and their
 // values in iota_protocol_vectors.h.
 #include "net/golden.h"
+#include "tests/cpp/amount.h"
 
 #include <gtest/gtest.h>
 #include <iota_protocol_vectors.h>
@@ -59,7 +60,7 @@ TEST(Protocol, golden_records_of_entities_are_decoded_to_their_values_and_encode
 
 TEST(Protocol, a_record_that_cannot_be_written_leaves_the_others_as_they_are) {
   std::vector<std::uint8_t> records{1, 2, 3};
-  EXPECT_THROW(append_record(StyleEntity{{}, std::string(129, 'x'), {}}, records), std::length_error);
+  EXPECT_THROW(append_record(VisualEntity{{}, std::string(129, 'x'), {}}, records), std::length_error);
   EXPECT_EQ(records, (std::vector<std::uint8_t>{1, 2, 3}));
 }
 
@@ -145,7 +146,7 @@ void expect_error_or_same(const std::vector<std::uint8_t>& bytes, Decode decode,
   ASSERT_EQ(encode_any(*decoded.value), bytes);
 }
 
-TEST(Protocol, two_hundred_thousand_damaged_frames_give_an_error_or_a_valid_message) {
+TEST(Protocol, damaged_frames_give_an_error_or_a_valid_message) {
   std::mt19937 random(20240101);
   std::vector<std::vector<std::uint8_t>> seeds;
   for (const auto& entry : std::filesystem::directory_iterator(test::golden_folder())) {
@@ -154,7 +155,8 @@ TEST(Protocol, two_hundred_thousand_damaged_frames_give_an_error_or_a_valid_mess
   ASSERT_GT(seeds.size(), 30U);
   std::size_t valid = 0;
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (int round = 0; round < 200000; ++round) {
+  const int rounds = sampled(200000);
+  for (int round = 0; round < rounds; ++round) {
     std::vector<std::uint8_t> bytes;
     if (round % 4 == 0) {  // noise behind a type that exists
       bytes.resize(1 + below(100));
@@ -174,7 +176,7 @@ TEST(Protocol, two_hundred_thousand_damaged_frames_give_an_error_or_a_valid_mess
     expect_error_or_same(bytes, decode_server_message, valid);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(valid, 1000U);
+  EXPECT_GT(valid, static_cast<std::size_t>(rounds) / 200);
 }
 
 }  // namespace

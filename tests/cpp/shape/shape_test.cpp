@@ -4,6 +4,7 @@
 
 #include "shape/shape_list.h"
 #include "shape/surface.h"
+#include "source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -284,7 +285,7 @@ TEST(Shape, of_edges_rounded_away_is_a_ball_or_a_capsule) {
 }
 
 TEST(Shape, has_the_sizes_that_the_protocol_lists) {
-  std::ifstream file(IOTA_SOURCE_DIR "/protocol/shapes.json");
+  std::ifstream file(source_folder() / "protocol/shapes.json");
   std::stringstream text;
   text << file.rdbuf();
   std::string listed;

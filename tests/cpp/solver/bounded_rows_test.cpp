@@ -12,8 +12,6 @@
 namespace iota::solver {
 namespace {
 
-constexpr double g = 9.81;
-
 class Rows : public testing::TestWithParam<Scheme> {
  protected:
   Problem problem;

@@ -2,6 +2,8 @@
 // Problems of a few points, made by hand.
 #pragma once
 
+#include "gravity.h"
+
 #include "solver/problem.h"
 
 #include <tuple>

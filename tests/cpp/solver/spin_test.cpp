@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Angular momentum of what nothing outside holds, or only one nail.
+#include "modes.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -16,9 +18,6 @@
 namespace iota {
 namespace {
 
-constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
-                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
-constexpr IntegrationMode end_point_modes[] = {IntegrationMode::plausible, IntegrationMode::robust};
 
 BodyId add_bar(System& system, const Vec3& from, const Vec3& to) {
   const BodyId body = system.bodies().create();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Balanced bodies that share two points with the rest and turn about the line through these.
+#include "modes.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -12,7 +14,6 @@
 namespace iota {
 namespace {
 
-constexpr IntegrationMode end_point_modes[] = {IntegrationMode::plausible, IntegrationMode::robust};
 const Vec3 axis{0, 1, 0};
 
 enum class Rim { of_points, of_a_cylinder };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces whose function fails within a step: the step goes on without them, as if they had not been there.
+#include "energy_book.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -20,8 +22,6 @@ struct Floor {
     return std::nan("");
   }};
 };
-
-double book(const Energy& e) { return e.balance(); }
 
 class FailingSurface : public testing::TestWithParam<std::tuple<IntegrationMode, int>> {};
 

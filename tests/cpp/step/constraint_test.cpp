@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every kind of constraint against what a textbook says of it.
+#include "gravity.h"
 #include "math/mat3.h"
 #include "scenes/chain.h"
 
@@ -13,8 +14,6 @@ namespace iota {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double g = 9.81;
-
 /// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its center.
 BodyId make_block(System& system, const Vec3& center, const Vec3& size, double mass, const Vec3& velocity = {}) {
   const BodyId body = system.bodies().create();
@@ -525,30 +524,30 @@ TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
   const BodyId lower = ball(0.6), upper = ball(1.7);
   const ConstraintId floor = system.joints().create(SurfacePairSpec{
       .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {HalfSpace{}, {}, {}}});
-  const ConstraintId contact = system.joints().create(SurfacePairSpec{.a = upper,
-                                                                      .b = lower,
-                                                                      .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
-                                                                      .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
+  const ConstraintId pair = system.joints().create(SurfacePairSpec{.a = upper,
+                                                                   .b = lower,
+                                                                   .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
+                                                                   .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
   run(system, 4, 1.0 / 120);
   EXPECT_NEAR(system.bodies().center_of_mass(lower).y, 0.5, 1e-6);
   EXPECT_NEAR(system.bodies().center_of_mass(upper).y, 1.5, 1e-6);
   EXPECT_NEAR(system.joints().state(floor).force.y, 2 * g, 1e-4);
-  EXPECT_NEAR(system.joints().state(contact).force.y, g, 1e-4);
+  EXPECT_NEAR(system.joints().state(pair).force.y, g, 1e-4);
 }
 
 TEST(SurfacePair, a_ball_held_to_a_slope_slides_down_it) {
   System system;
   const BodyId ball = make_block(system, {0, 0.5, 0}, {0.3, 0.3, 0.3}, 1);
   const double slope = 0.4;
-  const ConstraintId contact = system.joints().create(
+  const ConstraintId pair = system.joints().create(
       SurfacePairSpec{.kind = ConstraintKind::touching,
                       .a = ball,
                       .b = {},
                       .surface_a = {Sphere{0.5}, {0, 0.5, 0}, {}},
                       .surface_b = {HalfSpace{{std::sin(slope), std::cos(slope), 0}}, {0, 0, 0}, {}}});
-  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.joints().state(contact).gap, 1e-8); });
+  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.joints().state(pair).gap, 1e-8); });
   EXPECT_NEAR(norm(system.momentum()), g * std::sin(slope), 0.01);
-  EXPECT_NEAR(norm(system.joints().state(contact).force), g * std::cos(slope), 1e-3);
+  EXPECT_NEAR(norm(system.joints().state(pair).force), g * std::cos(slope), 1e-3);
 }
 
 TEST(Markers, of_a_joint_that_were_put_to_use_outlive_it) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where energy goes: dissipated by laws, lost or made by the scheme, each counted by itself.
+#include "modes.h"
 #include "scenes/chain.h"
 
 #include <iota/system.h>
@@ -15,8 +16,6 @@
 namespace iota {
 namespace {
 
-constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
-                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
 
 /// Two particles on a damped spring in empty space. The stretch is s(t) = s0 e^(-ct) (cos wt + c/w sin wt) with c = d / (2 mu);
 /// the dashpot has taken what the oscillator has no more.

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles that are born, age, turn and die.
+#include "energy_book.h"
+#include "vectors.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -9,17 +12,6 @@
 
 namespace iota {
 namespace {
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
-
-double book(const System& system) {
-  const Energy e = system.energy();
-  return e.balance();
-}
 
 const EmitterOptions fountain{.rate = 200,
                               .position = {0, 1, 0},

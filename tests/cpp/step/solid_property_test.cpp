@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random edits of worlds of solids: the structure stays whole, momenta are kept, the energy book adds up.
+#include "energy_book.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -132,11 +134,6 @@ class Playground {
  private:
   std::mt19937 random_;
 };
-
-double book(const System& system) {
-  const Energy e = system.energy();
-  return e.balance();
-}
 
 TEST(SolidProperty, random_edits_keep_the_structure_whole_and_momenta_where_they_say_so) {
   int kept = 0, edits = 0;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies given by shape: mass properties, attachments, motion.
+#include "vectors.h"
+
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -24,12 +26,6 @@ void expect_diagonal(const Matrix3& m, const Vec3& diagonal, double tolerance) {
       const double wanted = i != j ? 0 : i == 0 ? diagonal.x : i == 1 ? diagonal.y : diagonal.z;
       EXPECT_NEAR(at(m, i, j), wanted, tolerance) << i << ", " << j;
     }
-}
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
 /// A torus, capsule ... as a mesh: a surface of revolution about z through points (radius, height), closed or ending on

@@ -429,7 +429,7 @@ TEST_P(Step, throws_nothing_leaves_the_system_whole_and_allocates_nothing_when_w
     const bool is_listed = std::find(at.begin(), at.end(), step % scene().period) != at.end();
     const bool is_foreign = scene().may_allocate == solver_is_foreign;
     const bool may = (scene().may_allocate != nullptr && (quiet_after_event < 2 || is_listed || is_foreign)) ||
-                     !report.contacts.empty();  // the report lists them
+                     !report.stops.empty();  // the report lists them
     if (!may) {
       EXPECT_EQ(allocated, 0);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dial from plausible to accurate, any time step, and what no step may do.
+#include "gravity.h"
 #include "scenes/chain.h"
 #include "scenes/net.h"
 
@@ -11,8 +12,6 @@
 
 namespace iota {
 namespace {
-
-constexpr double g = 9.81;
 
 /// Two point masses on massless rods of unit length, the angles from straight down: state (a, b, da, db), by
 /// Runge-Kutta in steps of 1e-4 s.
