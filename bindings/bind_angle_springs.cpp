@@ -10,9 +10,9 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc = "A spring on the angle that three particles span; made by `System.angle_spring`.";
+constexpr const char* angle_spring_doc = "A spring on the angle that three particles span; made by `System.angle_spring`.";
 
-constexpr const char* make_doc =
+constexpr const char* make_angle_spring_doc =
     "A spring on the angle between the legs from `middle` to p and to q: the bending stiffness of ropes and beams, the\n"
     "angle terms of molecules. Its forces add up to zero, and so do their moments.\n\n"
     "stiffness: N m/rad, at the rest angle; damping: N m s/rad; rest: its angle without a moment, rad, 0.01 to pi (straight), None:\n"
@@ -40,7 +40,7 @@ void def_option(nb::class_<AngleSpringHandle>& type, const char* name, const cha
 }  // namespace
 
 void bind_angle_springs(nb::module_& module) {
-  nb::class_<AngleSpringHandle> type(module, "AngleSpring", doc, nb::type_slots(handle_slots<AngleSpringHandle>),
+  nb::class_<AngleSpringHandle> type(module, "AngleSpring", angle_spring_doc, nb::type_slots(handle_slots<AngleSpringHandle>),
                                      nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def(
@@ -57,7 +57,7 @@ void bind_angle_springs(nb::module_& module) {
             System& engine = self.use_between_steps("angle_spring(...)");
             return sibling(p, engine.angle_springs().create(p.id, middle.id, q.id, options));
           },
-          "p"_a, "middle"_a, "q"_a, "stiffness"_a, "damping"_a = 0.0, "rest"_a = nb::none(), make_doc)
+          "p"_a, "middle"_a, "q"_a, "stiffness"_a, "damping"_a = 0.0, "rest"_a = nb::none(), make_angle_spring_doc)
       .def_prop_ro("angle_springs",
                    all_of<AngleSpringHandle>([](System& engine) { return engine.angle_springs().ids(); }),
                    "In order of slots.");

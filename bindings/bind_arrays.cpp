@@ -400,7 +400,7 @@ nb::object make_array_of(nb::handle_t<SystemObject> self, const nb::iterable& ha
   throw nb::type_error(("array takes particles, bodies, bonds or joints, not " + describe(items[0])).c_str());
 }
 
-void bind_makers(nb::class_<SystemObject>& system) {
+void bind_array_makers(nb::class_<SystemObject>& system) {
   system.def("array", &make_array_of, "handles"_a,
              nb::sig("def array(self, handles: collections.abc.Iterable[Particle] | collections.abc.Iterable[Body] | "
                      "collections.abc.Iterable[Bond] | collections.abc.Iterable[Constraint]) -> typing.Any"),
@@ -469,7 +469,7 @@ void bind_arrays(nb::module_& module) {
   bind_bond_array(module);
   bind_joint_array(module);
   auto system = nb::borrow<nb::class_<SystemObject>>(module.attr("System"));
-  bind_makers(system);
+  bind_array_makers(system);
 }
 
 }  // namespace iota::bindings

@@ -5,7 +5,7 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc =
+constexpr const char* articulate_doc =
     "A group of bodies connected by hinges, at present: an edit may make it larger or smaller. Two are\n"
     "equal while their bodies are connected.\n\n"
     "    if hook.body.articulate != eye.body.articulate:\n"
@@ -39,7 +39,7 @@ std::vector<ArticulateView> all(nb::handle_t<SystemObject> self) {
 }  // namespace
 
 void bind_articulates(nb::module_& module) {
-  nb::class_<ArticulateView> type(module, "Articulate", doc, nb::type_slots(handle_slots<ArticulateView>));
+  nb::class_<ArticulateView> type(module, "Articulate", articulate_doc, nb::type_slots(handle_slots<ArticulateView>));
   type.def_prop_ro("bodies", &ArticulateView::bodies, "In order of slots.")
       .def("__contains__", &ArticulateView::contains, "body"_a)
       .def("__len__", [](const ArticulateView& self) { return self.bodies().size(); })

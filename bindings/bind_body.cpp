@@ -8,11 +8,11 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc =
+constexpr const char* body_doc =
     "A rigid set of particles in a system; made by `System.body`.\n\n"
     "Two handles of the same body are equal. A handle whose body was destroyed or absorbed raises StaleIdError.";
 
-constexpr const char* make_doc =
+constexpr const char* make_body_doc =
     "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
     "shape: any shape, of density (kg/m^3, default 1000) or mass (kg), with its origin at position\n"
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses represent it, with exactly\n"
@@ -35,7 +35,7 @@ nb::object to_array(const Matrix3& rows) {
 
 nb::tuple to_tuple(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q.w); }
 
-std::string repr(const BodyHandle& self) {
+std::string repr_body(const BodyHandle& self) {
   if (!self.is_alive()) return stale_repr("Body", self);
   const System& engine = self.system->engine;
   return "<Body " + std::to_string(self.id.slot) + ": " + to_word(kind_words, engine.bodies().kind(self.id)) + ", " +
@@ -103,13 +103,13 @@ void bind_making(nb::class_<SystemObject>& system) {
           "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> Body"),
-      make_doc);
+      make_body_doc);
 }
 
 }  // namespace
 
 void bind_body(nb::module_& module) {
-  nb::class_<BodyHandle> type(module, "Body", doc, nb::type_slots(handle_slots<BodyHandle>),
+  nb::class_<BodyHandle> type(module, "Body", body_doc, nb::type_slots(handle_slots<BodyHandle>),
                               nb::is_weak_referenceable());
   auto system = nb::borrow<nb::class_<SystemObject>>(module.attr("System"));
   bind_making(system);
@@ -269,7 +269,7 @@ void bind_body(nb::module_& module) {
       .def(
           "destroy", [](const BodyHandle& self) { self.use().bodies().destroy(self.id); },
           "Removes it with its particles and their bonds.")
-      .def("__repr__", &repr);
+      .def("__repr__", &repr_body);
 }
 
 }  // namespace iota::bindings

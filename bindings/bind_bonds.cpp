@@ -108,7 +108,7 @@ void set_parameters(const BondHandle& self, const nb::kwargs& keywords) {
   }
 }
 
-std::string repr(const BondHandle& self) {
+std::string repr_bond(const BondHandle& self) {
   if (!self.is_alive()) return stale_repr("Bond", self);
   const auto [p, q] = self.system->engine.bonds().ends(self.id);
   return "<Bond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
@@ -167,7 +167,7 @@ void bind_bond(nb::module_& module) {
            "Changes parameters of its law; None is the present distance.\n\n    bond.set(stiffness=500, length=None)")
       .def(
           "destroy", [](const BondHandle& self) { self.use().bonds().destroy(self.id); }, "Removes it.")
-      .def("__repr__", &repr);
+      .def("__repr__", &repr_bond);
 }
 
 void bind_bond_state(nb::module_& module) {

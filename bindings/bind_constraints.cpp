@@ -15,7 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr const char* doc =
+constexpr const char* constraint_doc =
     "A constraint between two bodies, or a body and the world; made by System.revolute, ball, rope ...\n\n"
     "It stays through `combine` and `separate`, and ends when its two bodies become one rigid body or one of them\n"
     "is destroyed. Forces and coordinates are those of body a against b.";
@@ -204,7 +204,7 @@ std::variant<Shape, SurfaceFunction> to_surface_shape(SystemObject& self, nb::ha
       [&self, function = std::move(function)](const Vec3& r) { return self.call_surface(function, r); }, size};
 }
 
-Quaternion to_quaternion(nb::handle value) {
+Quaternion to_surface_orientation(nb::handle value) {
   std::vector<double> q;
   if (!nb::try_cast(value, q) || q.size() != 4)
     throw nb::type_error(("orientation must be four numbers x y z w, not " + describe(value)).c_str());
@@ -220,7 +220,7 @@ Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::hand
   else if (body)
     surface.position = body->use().bodies().center_of_mass(body->id);
   if (!orientation.is_none())
-    surface.orientation = to_quaternion(orientation);
+    surface.orientation = to_surface_orientation(orientation);
   else if (body)
     surface.orientation = body->use().bodies().orientation(body->id);
   return surface;
@@ -406,7 +406,7 @@ System& between_steps(const ConstraintHandle& self, const char* what) {
   return self.system->use_between_steps(what);
 }
 
-std::string repr(const ConstraintHandle& self) {
+std::string repr_constraint(const ConstraintHandle& self) {
   if (!self.is_alive()) return stale_repr("Constraint", self);
   const ConstraintState state = self.system->engine.joints().state(self.id);
   return "<Constraint " + std::to_string(self.id.slot) + ": " + word_of(state.kind) + " of body " +
@@ -417,8 +417,8 @@ std::string repr(const ConstraintHandle& self) {
 }
 
 void bind_handle(nb::module_& module) {
-  nb::class_<ConstraintHandle> type(module, "Constraint", doc, nb::type_slots(handle_slots<ConstraintHandle>),
-                                    nb::is_weak_referenceable());
+  nb::class_<ConstraintHandle> type(module, "Constraint", constraint_doc,
+                                    nb::type_slots(handle_slots<ConstraintHandle>), nb::is_weak_referenceable());
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const ConstraintHandle& self) { return self.is_alive(); },
@@ -504,7 +504,7 @@ void bind_handle(nb::module_& module) {
           "N m; inf: never.")
       .def(
           "destroy", [](const ConstraintHandle& self) { self.use().joints().destroy(self.id); }, "Removes it.")
-      .def("__repr__", &repr);
+      .def("__repr__", &repr_constraint);
 }
 
 // --- breaking ---------------------------------------------------------------------------------------------------------
@@ -552,47 +552,48 @@ void bind_broken(nb::module_& module) {
       });
 }
 
-// --- meeting and parting ----------------------------------------------------------------------------------------------
+// --- reaching and leaving stops ---------------------------------------------------------------------------------------
 
-struct ContactView {
+struct StopView {
   nb::object system_object;
   SystemObject* system;
-  ContactEvent event;
+  StopEvent event;
 };
 
-void bind_contact(nb::module_& module) {
-  nb::class_<ContactView>(
-      module, "ContactEvent",
+void bind_stop(nb::module_& module) {
+  nb::class_<StopView>(
+      module, "StopEvent",
       "A one-sided constraint began or ceased to carry a load: surfaces met or parted, a rope became taut or slack, a\n"
       "coordinate reached or left a stop.",
-      nb::type_slots(handle_slots<ContactView>))
+      nb::type_slots(handle_slots<StopView>))
       .def_prop_ro(
-          "met", [](const ContactView& self) { return self.event.kind == ContactEvent::Kind::met; },
+          "met", [](const StopView& self) { return self.event.kind == StopEvent::Kind::met; },
           "True if it began, False if it ceased.")
       .def_prop_ro(
-          "constraint", [](const ContactView& self) { return sibling(self, self.event.constraint); }, "What carries.")
+          "constraint", [](const StopView& self) { return sibling(self, self.event.constraint); }, "What carries.")
       .def_prop_ro(
-          "stop",
-          [](const ContactView& self) -> std::optional<std::string> {
-            if (!self.event.stop) return std::nullopt;
-            return coordinate_names[static_cast<std::size_t>(*self.event.stop)];
+          "coordinate",
+          [](const StopView& self) -> std::optional<std::string> {
+            if (!self.event.coordinate) return std::nullopt;
+            return coordinate_names[static_cast<std::size_t>(*self.event.coordinate)];
           },
-          "'angle', 'slide' or 'second_angle' for a stop; None for the constraint itself.")
+          "Whose stop it is: 'angle', 'slide' or 'second_angle'; None for the constraint itself.")
       .def_prop_ro(
-          "position", [](const ContactView& self) { return self.event.position; }, "Where it acts on a, m.")
-      .def("__repr__", [](const ContactView& self) {
-        const ContactEvent& e = self.event;
+          "position", [](const StopView& self) { return self.event.position; }, "Where it acts on a, m.")
+      .def("__repr__", [](const StopView& self) {
+        const StopEvent& e = self.event;
         const std::string what =
-            e.stop ? std::string(" a stop of its ") + coordinate_names[static_cast<std::size_t>(*e.stop)] : "";
-        const bool met = e.kind == ContactEvent::Kind::met;
-        return "<ContactEvent: " + name_of(e.constraint) +
-               (e.stop ? (met ? " reached" : " left") : (met ? " met" : " parted")) + what + ">";
+            e.coordinate ? std::string(" a stop of its ") + coordinate_names[static_cast<std::size_t>(*e.coordinate)]
+                         : "";
+        const bool met = e.kind == StopEvent::Kind::met;
+        return "<StopEvent: " + name_of(e.constraint) +
+               (e.coordinate ? (met ? " reached" : " left") : (met ? " met" : " parted")) + what + ">";
       });
 }
 
 // --- making -----------------------------------------------------------------------------------------------------------
 
-void bind_makers(nb::class_<SystemObject>& type) {
+void bind_constraint_makers(nb::class_<SystemObject>& type) {
   const auto simple = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
@@ -873,15 +874,15 @@ void bind_makers(nb::class_<SystemObject>& type) {
       },
       nb::sig("def constraints(self) -> list[Constraint]"), "In order of slots.");
   type.def_prop_ro(
-      "contacts",
+      "stops",
       [](nb::handle_t<SystemObject> self) {
         SystemObject* object = nb::inst_ptr<SystemObject>(self);
         object->use();
-        std::vector<ContactView> out;
-        for (const ContactEvent& event : object->contacts) out.push_back({nb::borrow(self), object, event});
+        std::vector<StopView> out;
+        for (const StopEvent& event : object->stops) out.push_back({nb::borrow(self), object, event});
         return out;
       },
-      nb::sig("def contacts(self) -> list[ContactEvent]"),
+      nb::sig("def stops(self) -> list[StopEvent]"),
       "The one-sided constraints that began or ceased to carry a load in the last step.");
   type.def_prop_ro(
       "broken",
@@ -901,10 +902,10 @@ void bind_constraints(nb::module_& module) {
   bind_coordinate(module);
   bind_handle(module);
   bind_broken(module);
-  bind_contact(module);
+  bind_stop(module);
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
-  bind_makers(type);
+  bind_constraint_makers(type);
 }
 
 }  // namespace iota::bindings

@@ -8,9 +8,9 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc = "A source of particles; made by `System.emitter`.";
+constexpr const char* emitter_doc = "A source of particles; made by `System.emitter`.";
 
-constexpr const char* make_doc =
+constexpr const char* make_emitter_doc =
     "A new source of particles; each is a body of its own, and is destroyed at the end of its lifetime.\n\n"
     "rate: births a second. source: any shape but a Mesh or HalfSpace; places of birth are uniform within it.\n"
     "position (m), orientation (quaternion x y z w): of the source. velocity: in its frame, m/s, plus a random\n"
@@ -60,7 +60,7 @@ EmitterHandle make_emitter(nb::handle_t<SystemObject> self, double rate, nb::obj
 
 void bind_emitter(nb::module_& module) {
   const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
-  nb::class_<EmitterHandle> type(module, "Emitter", doc, nb::type_slots(handle_slots<EmitterHandle>),
+  nb::class_<EmitterHandle> type(module, "Emitter", emitter_doc, nb::type_slots(handle_slots<EmitterHandle>),
                                  nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def(
@@ -76,7 +76,7 @@ void bind_emitter(nb::module_& module) {
               "lifetime_spread: float = 0.0, mass: float = 0.001, damping: float = 0.0, max_count: int = 1000, curve: "
               "collections.abc.Iterable[tuple[float, float, collections.abc.Sequence[float]]] = (), seed: int = 1) -> "
               "Emitter"),
-          make_doc);
+          make_emitter_doc);
   def_identity(type);
   const auto checked = [](const EmitterHandle& self, const char* what) -> System& {
     System& engine = self.use();

@@ -45,7 +45,7 @@ constexpr const char* make_pair_force_doc =
     "there; for laws that have an energy and do not depend on masses.\n\n"
     "    system.pair_force('lennard_jones', cutoff=2.5, shifted=True, depth=1, size=1)";
 
-constexpr const char* batch_doc =
+constexpr const char* particle_batch_doc =
     "The argument of a field's function: arrays with a row for each particle, in the order of `particles`. Valid\n"
     "only until the function returns; the arrays are copies and may be kept.";
 
@@ -53,8 +53,8 @@ struct ParticlesView : BatchView<ParticleBatch> {
   const ParticleBatch& use() const { return BatchView::use("ParticleBatch"); }
 };
 
-void bind_batch(nb::module_& module) {
-  nb::class_<ParticlesView>(module, "ParticleBatch", batch_doc)
+void bind_particle_batch(nb::module_& module) {
+  nb::class_<ParticlesView>(module, "ParticleBatch", particle_batch_doc)
       .def("__len__", [](const ParticlesView& self) { return self.use().count; })
       .def_prop_ro(
           "position", [](const ParticlesView& self) { return copy_rows(self.use().position, self.use().count); },
@@ -372,7 +372,7 @@ void def_fields(nb::class_<SystemObject>& system) {
 }
 
 void bind_fields(nb::module_& module) {
-  bind_batch(module);
+  bind_particle_batch(module);
   bind_group(module);
   bind_field(module);
   bind_pair_force(module);

@@ -5,9 +5,9 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc = "A user's grip on a body; made by `System.grip`.";
+constexpr const char* grip_doc = "A user's grip on a body; made by `System.grip`.";
 
-constexpr const char* make_doc =
+constexpr const char* make_grip_doc =
     "Grips a body: a critically damped spring of limited force from a point of the body to a target.\n\n"
     "local_point: in the body's drawn frame, m; it is moved to the nearest place that the body's particles span.\n"
     "target: world, m, None: the center of mass. client, hold: whose grip; carried to the viewers. frequency: Hz.\n"
@@ -16,7 +16,7 @@ constexpr const char* make_doc =
 }  // namespace
 
 void bind_grip(nb::module_& module) {
-  nb::class_<GripHandle> type(module, "Grip", doc, nb::type_slots(handle_slots<GripHandle>),
+  nb::class_<GripHandle> type(module, "Grip", grip_doc, nb::type_slots(handle_slots<GripHandle>),
                               nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def(
@@ -35,7 +35,7 @@ void bind_grip(nb::module_& module) {
           },
           "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a.none() = nb::none(), nb::kw_only(),
           "client"_a = 0, "hold"_a = 0, "frequency"_a = GripOptions{}.frequency,
-          "max_acceleration"_a = GripOptions{}.max_acceleration, make_doc);
+          "max_acceleration"_a = GripOptions{}.max_acceleration, make_grip_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const GripHandle& self) { return self.is_alive(); },

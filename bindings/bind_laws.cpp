@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* law_doc = "A law of force for any number of bonds; made by `System.law`.";
 
-constexpr const char* make_doc =
+constexpr const char* make_law_doc =
     "A new law of force for any number of bonds. Parameters are keywords with their default\n"
     "values; None is the distance of the two ends when a bond is made.\n\n"
     "law is one of\n"
@@ -27,7 +27,7 @@ constexpr const char* make_doc =
     "    law = system.law('energy = 0.5*k*(r - r0)^2; force = -c*v', k=100, r0=None, c=1)\n"
     "    bond = system.bond(p, q, law, k=200)";
 
-constexpr const char* batch_doc =
+constexpr const char* bond_batch_doc =
     "The argument of a law's function: arrays with a row for each bond, in the order of `bonds`. Valid only until\n"
     "the function returns; the arrays are copies and may be kept.";
 
@@ -42,8 +42,8 @@ double distance_of(const BondBatch& b, std::size_t i) {
   return norm(Vec3{q[0] - p[0], q[1] - p[1], q[2] - p[2]});
 }
 
-void bind_batch(nb::module_& module) {
-  nb::class_<BondsView> type(module, "BondBatch", batch_doc);
+void bind_bond_batch(nb::module_& module) {
+  nb::class_<BondsView> type(module, "BondBatch", bond_batch_doc);
   const auto def_rows = [&](const char* name, const double* BondBatch::* rows, const char* text) {
     type.def_prop_ro(
         name, [rows](const BondsView& self) { return copy_rows(self.use().*rows, self.use().count); },
@@ -214,7 +214,7 @@ LawId law_of_text(SystemObject& system, const std::string& text, const std::vect
 }
 
 void bind_laws(nb::module_& module) {
-  bind_batch(module);
+  bind_bond_batch(module);
   nb::class_<LawHandle> type(module, "Law", law_doc, nb::type_slots(handle_slots<LawHandle>),
                              nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
@@ -222,7 +222,7 @@ void bind_laws(nb::module_& module) {
            nb::sig("def law(self, law: str | int | collections.abc.Callable[[BondBatch], "
                    "numpy.typing.ArrayLike] | object, *, name: str = '', signature: str = 'radial', "
                    "**parameters: float | None) -> Law"),
-           make_doc);
+           make_law_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const LawHandle& self) { return self.is_alive(); }, "False once it was destroyed.")

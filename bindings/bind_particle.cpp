@@ -7,11 +7,11 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc =
+constexpr const char* particle_doc =
     "A point with mass, in one body; made by `Body.particle`. Particles of different bodies that were combined share one\n"
     "place: a hinge.";
 
-constexpr const char* make_doc =
+constexpr const char* make_particle_doc =
     "A new particle of the body.\n\n"
     "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0. mass=0 makes a\n"
     "marker: a massless particle fixed to the massive ones of the body, within the line, plane or space that they\n"
@@ -20,7 +20,7 @@ constexpr const char* make_doc =
     "    p = body.particle((0, 1, 0), mass=0.2)\n"
     "    p.velocity = (1, 0, 0)";
 
-std::string repr(const ParticleHandle& self) {
+std::string repr_particle(const ParticleHandle& self) {
   if (!self.is_alive()) return stale_repr("Particle", self);
   const System& engine = self.system->engine;
   return "<Particle " + std::to_string(self.id.slot) + " of body " +
@@ -94,7 +94,7 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
 }  // namespace
 
 void bind_particle(nb::module_& module) {
-  nb::class_<ParticleHandle> type(module, "Particle", doc, nb::type_slots(handle_slots<ParticleHandle>),
+  nb::class_<ParticleHandle> type(module, "Particle", particle_doc, nb::type_slots(handle_slots<ParticleHandle>),
                                   nb::is_weak_referenceable());
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
       .def(
@@ -117,7 +117,7 @@ void bind_particle(nb::module_& module) {
           },
           "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
           nb::kw_only(), "lifetime"_a = nb::none(), "radius"_a = nb::none(), "color"_a = nb::none(), "nailed"_a = false,
-          make_doc);
+          make_particle_doc);
   module.def(
       "make_bodies", &make_bodies, "system"_a, "counts"_a, "position"_a, "mass"_a, "velocity"_a,
       "For iota.builder: a body of counts[i] particles for each i. position, velocity: (n, 3), m and m/s. mass: (n,), kg.");
@@ -165,7 +165,7 @@ void bind_particle(nb::module_& module) {
       .def(
           "destroy", [](const ParticleHandle& self) { self.use().particles().destroy(self.id); },
           "Removes it with its bonds; its body too if it was the last one.")
-      .def("__repr__", &repr);
+      .def("__repr__", &repr_particle);
 }
 
 }  // namespace iota::bindings

@@ -56,7 +56,7 @@ Recording load(nb::handle source) {
 
 nb::bytes as_bytes(const std::vector<std::byte>& bytes) { return nb::bytes(bytes.data(), bytes.size()); }
 
-constexpr const char* doc =
+constexpr const char* recording_doc =
     "A snapshot and all later commands. `System.replay` repeats it and compares the state after every step.\n\n"
     "    system.start_recording()\n"
     "    ...\n"
@@ -67,7 +67,7 @@ constexpr const char* doc =
 }  // namespace
 
 void bind_recording(nb::module_& module) {
-  nb::class_<Recording>(module, "Recording", doc)
+  nb::class_<Recording>(module, "Recording", recording_doc)
       .def_prop_ro(
           "start", [](const Recording& r) { return as_bytes(r.start.bytes); }, "The snapshot it starts from.")
       .def_prop_ro(

@@ -33,12 +33,12 @@ protocol::Quat narrow(const Quat4& q) {
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
 }
 
-protocol::Part make_part(const std::string& kind, const std::vector<float>& sizes, const std::string& look,
+protocol::Part make_part(const std::string& kind, const std::vector<float>& sizes, const std::string& style,
                          const std::string& material, std::optional<std::uint32_t> color, const Vec3& offset,
                          const Quat4& rotation, double turn, const std::vector<float>& vertices,
                          const std::vector<std::uint32_t>& triangles) {
   protocol::Part part;
-  part.look = look;
+  part.style = style;
   part.shape = {kind, sizes, vertices, triangles};
   part.offset = narrow(offset);
   part.rotation = narrow(rotation);
@@ -48,11 +48,11 @@ protocol::Part make_part(const std::string& kind, const std::vector<float>& size
   return part;
 }
 
-void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& looks,
-                  const std::string& look, const std::optional<std::pair<Vec3, Vec3>>& camera,
+void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& styles,
+                  const std::string& style, const std::optional<std::pair<Vec3, Vec3>>& camera,
                   std::optional<double> ground, const std::vector<std::string>& modules, std::uint32_t client) {
   const auto& [position, target] = camera.value_or(std::pair<Vec3, Vec3>{});
-  self.use().set(protocol::WorldSettings{title, looks, look, camera.has_value(), narrow(position), narrow(target),
+  self.use().set(protocol::WorldSettings{title, styles, style, camera.has_value(), narrow(position), narrow(target),
                                          ground.has_value(), static_cast<float>(ground.value_or(0)), modules},
                  client);
 }
@@ -233,14 +233,14 @@ void bind_room(nb::module_& module) {
   nb::class_<protocol::Part>(module, "DrawnPart", "A shape at its place on a body, as sent to pages.")
       .def(
           "__init__",
-          [](protocol::Part* self, const std::string& kind, const std::vector<float>& sizes, const std::string& look,
+          [](protocol::Part* self, const std::string& kind, const std::vector<float>& sizes, const std::string& style,
              const std::string& material, std::optional<std::uint32_t> color, VectorArgument offset,
              const Quat4& rotation, double turn, const std::vector<float>& vertices,
              const std::vector<std::uint32_t>& triangles) {
-            new (self) protocol::Part(make_part(kind, sizes, look, material, color, to_vec3(offset, "offset"), rotation,
-                                                turn, vertices, triangles));
+            new (self) protocol::Part(make_part(kind, sizes, style, material, color, to_vec3(offset, "offset"),
+                                                rotation, turn, vertices, triangles));
           },
-          "kind"_a, "sizes"_a, nb::kw_only(), "look"_a = "*", "material"_a = "paint", "color"_a = nb::none(),
+          "kind"_a, "sizes"_a, nb::kw_only(), "style"_a = "*", "material"_a = "paint", "color"_a = nb::none(),
           "offset"_a = nb::make_tuple(0, 0, 0), "rotation"_a = Quat4{0, 0, 0, 1}, "turn"_a = 0.0,
           "vertices"_a = std::vector<float>{}, "triangles"_a = std::vector<std::uint32_t>{});
 
@@ -270,24 +270,24 @@ void bind_room(nb::module_& module) {
             if (nb::try_cast(system, object) && object) object->use().viewer().stop_watching_scene();
           },
           "system"_a, "Tells its pages that the world has ended, and stops logging changes of its system.")
-      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
+      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "styles"_a, "style"_a, "camera"_a.none(),
            "ground"_a.none(), "modules"_a, "client"_a = 0,
            "client: for this one alone, until the next settings for all (client 0).")
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")
       .def(
-          "set_class",
+          "set_visual",
           [](RoomObject& self, const std::string& name, std::vector<protocol::Part> parts) {
-            self.presenter.set_class(name, std::move(parts));
+            self.presenter.set_visual(name, std::move(parts));
           },
-          "name"_a, "parts"_a, "Sets the looks of a class of bodies or ties.")
+          "name"_a, "parts"_a, "Sets the parts of a visual, with which bodies or ties are drawn.")
       .def(
           "assign",
           [](RoomObject& self, const BodyHandle& body, const std::string& name, bool odd) {
             self.presenter.assign(body.id, name, odd);
           },
-          "body"_a, "name"_a, "odd"_a, "Gives a body the looks of a class.")
+          "body"_a, "name"_a, "odd"_a, "Draws a body with a visual.")
       .def(
           "assign_slot",
           [](RoomObject& self, std::uint32_t slot, std::uint32_t generation, const std::string& name, bool odd) {

@@ -18,7 +18,7 @@ PyType_Slot system_slots[] = {
      })},
     {0, nullptr}};
 
-constexpr const char* doc =
+constexpr const char* system_doc =
     "A world of particles, bodies and bonds that is advanced step by step. SI units, right-handed, y up.\n\n"
     "gravity: m/s^2. mode: from plausible to accurate. 'plausible' and 'robust' (backward Euler; never fails, never\n"
     "gains energy, dissipates), 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' if a step\n"
@@ -320,7 +320,7 @@ void bind_time(nb::class_<SystemObject>& type) {
 
 void bind_system(nb::module_& module) {
   bind_islands(module);
-  nb::class_<SystemObject> type(module, "System", doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
+  nb::class_<SystemObject> type(module, "System", system_doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
   type.def(
       "__init__",
       [](SystemObject* self, VectorArgument gravity, const ModeWord& mode, double damping, int threads) {

@@ -27,7 +27,7 @@ double component(const Vec3& v, Py_ssize_t index) {
 
 std::string number(double value) { return nb::repr(nb::float_(value)).c_str(); }
 
-constexpr const char* doc =
+constexpr const char* vector_doc =
     "Three numbers: a place (m), a velocity (m/s), a force (N) ... in the world frame, y up.\n\n"
     "It is immutable; assign a new one: `particle.position += (0, 1, 0)`. Adds to and compares with tuples, lists\n"
     "and arrays of 2 or 3 numbers, and converts to an array with `numpy.asarray(v)`, float64 of shape (3,).";
@@ -41,7 +41,7 @@ Vector3Array make_vector3_array(std::vector<double> numbers) {
 }
 
 void bind_vector(nb::module_& module) {
-  nb::class_<Vec3>(module, "Vec3", doc)
+  nb::class_<Vec3>(module, "Vec3", vector_doc)
       .def(
           "__init__", [](Vec3* self, double x, double y, double z) { new (self) Vec3{x, y, z}; }, "x"_a = 0.0,
           "y"_a = 0.0, "z"_a = 0.0)

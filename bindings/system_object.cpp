@@ -180,7 +180,7 @@ StepReport SystemObject::step(double dt, int count) {
     };
     for (int i = 1; i < count && !has_failed(); ++i) add_step(report, system.step(dt));
   }
-  contacts = report.contacts;
+  stops = report.stops;
   step_edits = report.edits;
   broken = report.broken;
   // Functions that the engine has dropped: ours is the only remaining reference.

@@ -96,7 +96,7 @@ class SystemObject {
   std::map<std::string, LawId> written_laws;                  ///< expressions of bonds, by text and parameters
   std::optional<RestructureReport> step_edits;                ///< requested during the last step
   std::vector<Broken> broken;                                 ///< in the last step
-  std::vector<ContactEvent> contacts;                         ///< in the last step
+  std::vector<StopEvent> stops;                               ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();

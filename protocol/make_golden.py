@@ -313,8 +313,8 @@ SERVER: list[Vector] = [
         + text("modules/halo.js"),
         {
             "title": "K\u00e4tte",
-            "looks": ["rope", "chain"],
-            "look": "rope",
+            "styles": ["rope", "chain"],
+            "style": "rope",
             "has_camera": True,
             "camera_position": [2.5, 1.5, 3.5],
             "camera_target": [0.0, 1.25, 0.0],
@@ -357,7 +357,7 @@ SERVER: list[Vector] = [
 ]
 
 PART = {
-    "look": "*",
+    "style": "*",
     "shape": {"kind": "torus", "sizes": [0.5, 0.125], "vertices": [], "triangles": []},
     "offset": [0.0, 0.25, 0.0],
     "rotation": [0.5, 0.5, 0.5, 0.5],
@@ -366,7 +366,7 @@ PART = {
     "color": NO_COLOR,
 }
 MESH = {
-    "look": "chain",
+    "style": "chain",
     "shape": {
         "kind": "mesh",
         "sizes": [],
@@ -384,7 +384,7 @@ MESH = {
 def part(value: dict[str, Any]) -> bytes:
     shape = value["shape"]
     return (
-        text(value["look"])
+        text(value["style"])
         + text(shape["kind"])
         + array("f", shape["sizes"])
         + array("f", shape["vertices"])
@@ -409,20 +409,20 @@ def anchor(value: dict[str, Any]) -> bytes:
 # kind, its record, values
 ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
     (
-        "style",
+        "visual",
         text("link") + pack("<I", 2) + part(PART) + part(MESH),
         {"name": "link", "parts": [PART, MESH]},
     ),
     (
         "body",
         b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125) + text("left \u00e4rm"),
-        {"kind": 2, "style": 9, "odd": True, "length": 0.125, "name": "left \u00e4rm"},
+        {"kind": 2, "visual": 9, "odd": True, "length": 0.125, "name": "left \u00e4rm"},
     ),
     ("membership", pack("<I", 40000), {"articulate": 40000}),
     (
         "tie",
         b"\x01" + pack("<If", 3, 0.75) + anchor(A) + anchor(B),
-        {"kind": 1, "style": 3, "length": 0.75, "a": A, "b": B},
+        {"kind": 1, "visual": 3, "length": 0.75, "a": A, "b": B},
     ),
     (
         "joint",

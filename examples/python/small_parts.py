@@ -80,7 +80,7 @@ jelly = iota.builder.soft_block(size=(0.4, 0.4, 0.4), cells=(3, 3, 3), position=
 for point in jelly.points:
     if point.position.y > 1.39:
         point.nail()
-world.skin(jelly.points, radius=0.13, color="#4c9a52")
+world.drawings.skin(jelly.points, radius=0.13, color="#4c9a52")
 
 world.camera = iota.Camera(position=(0.3, 1.6, 5.2), target=(0, 1.55, 0))
 world.run()

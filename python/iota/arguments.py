@@ -82,8 +82,9 @@ def explain_assignment(kind: type, name: str) -> str | None:
     return f"{kind.__name__}.{name} can be read but not assigned{instead}"
 
 
-def refuse_unknown(thing: object, name: str) -> None:
-    """Raises AttributeError for a public attribute that the class of a thing does not have, or that cannot be assigned."""
+def refuse_unknown(thing: object, name: str, elsewhere: Mapping[str, str] = MappingProxyType({})) -> None:
+    """Raises AttributeError for a public attribute that the class of a thing does not have, or that cannot be assigned.
+    elsewhere: as of `refuse_reading`."""
     kind = type(thing)
     known: set[str] | None = kind.__dict__.get("_assigned")
     if known is None:
@@ -95,7 +96,8 @@ def refuse_unknown(thing: object, name: str) -> None:
         member = inspect.getattr_static(kind, name, None)
         if member is None:
             settable = [n for n in dir(kind) if is_settable(kind, n)]
-            raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{suggestion(name, settable)}")
+            near = near_attribute(name, settable, elsewhere)
+            raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{near}")
         if isinstance(member, property) and member.fset is None:
             raise AttributeError(f"{kind.__name__}.{name} can be read but not assigned")
         if isinstance(member, FunctionType):
@@ -105,16 +107,19 @@ def refuse_unknown(thing: object, name: str) -> None:
 
 def refuse_reading(thing: object, name: str, elsewhere: Mapping[str, str] = MappingProxyType({})) -> NoReturn:
     """For `__getattr__`: raises AttributeError for what a thing does not have, with a near name. elsewhere: what to use
-    instead of names of other libraries."""
+    instead of names of its parts and of other libraries."""
     kind = type(thing)
     if inspect.getattr_static(kind, name, None) is not None:
         object.__getattribute__(thing, name)  # raises the error that came from inside of a property
-    near = f"; use {elsewhere[name]}" if name in elsewhere else near_attribute(kind, name)
+    near = near_attribute(name, [n for n in dir(kind) if not n.startswith("_")], elsewhere)
     raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{near}")
 
 
-def near_attribute(kind: type, name: str) -> str:
-    return "" if name[:1] == "_" else suggestion(name, [n for n in dir(kind) if not n.startswith("_")])
+def near_attribute(name: str, names: Iterable[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Where an attribute is, or a near one."""
+    if name in elsewhere:
+        return f": it is {elsewhere[name]}"
+    return "" if name[:1] == "_" else suggestion(name, list(names), elsewhere)
 
 
 class Signature:
@@ -548,11 +553,12 @@ MEANT = {
 }
 
 
-def suggestion(word: str, words: Sequence[str]) -> str:
-    """For a misspelled word, another library's, or the beginning of one."""
+def suggestion(word: str, words: Sequence[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:
+    """For a misspelled word, another library's, or the beginning of one. elsewhere: more words, and where they are."""
+    words = [*words, *elsewhere]
     near = difflib.get_close_matches(word, words, n=1)
     near += [
         meant for meant, others in MEANT.items() if meant in words and difflib.get_close_matches(word, others, 1, 0.8)
     ]
     near += [each for each in words if len(word) > 2 and each.startswith(word)]
-    return f"; did you mean '{near[0]}'?" if near else ""
+    return f"; did you mean '{elsewhere.get(near[0], near[0])}'?" if near else ""

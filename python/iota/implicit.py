@@ -21,7 +21,7 @@ def skin(positions: Any, radius: float, cell: float | None = None) -> tuple[NDAr
     grid of samples, m; None: a third of the radius. Returns points (m, 3) and triangles (k, 3), closed
     and turned outwards. Raises ValueError where the grid would be too large.
 
-    `World.skin` draws it.
+    `Drawings.skin` draws it.
 
         points, triangles = effects.skin(system.positions, 0.1)
     """
@@ -59,7 +59,7 @@ def _field(places: NDArray[np.float64], reach: float, size: NDArray[Any]) -> NDA
 
 
 def _surface_net(field: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Where a field on a grid is 0 (S. Gibson 1998): a point in each cell that the surface passes, in the middle of where it cuts
+    """The surface on which a field on a grid is 0 (S. Gibson 1998): a point in each cell that the surface passes, in the middle of where it cuts
     the cell's edges, and a square across each such edge. The field is below 0 at the sides of the grid."""
     cells = tuple(n - 1 for n in field.shape)
     sums, counts = np.zeros((*cells, 3)), np.zeros(cells)

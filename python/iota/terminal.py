@@ -76,8 +76,8 @@ class TerminalView(View):
             for line in drawn:
                 picture.draw(line, is_marked=body == self._selected)
         self._said_for -= 1
-        actions = "   ".join(f"{action.key}: {action.label}" for action in world.actions if action.key)
-        state = f"{world.title}   {world.system.time:.1f} s{'   paused' if world.paused else ''}   {actions}"
+        actions = "   ".join(f"{action.key}: {action.label}" for action in world.controls.actions if action.key)
+        state = f"{world.title}   {world.system.time:.1f} s{'   paused' if world.clock.paused else ''}   {actions}"
         below = (state, KEYS, self._said if self._said_for > 0 else "")
         text = "\r\n".join([*picture.rows(), *(line[:columns].ljust(columns) for line in below)])
         with suppress(BlockingIOError):  # a slow terminal misses a picture
@@ -95,13 +95,13 @@ class TerminalView(View):
             yield key
 
     def _act(self, world: World, key: str) -> None:
-        action = next((action for action in world.actions if action.key == key), None)
+        action = next((action for action in world.controls.actions if action.key == key), None)
         if action is not None:
-            world.act(action.name, self._selected if action.on == "body" else None)
+            world.controls.act(action.name, self._selected if action.on == "body" else None)
         elif key == "q":
             world.stop()
         elif key == " ":
-            world.paused = not world.paused
+            world.clock.paused = not world.clock.paused
         elif key == "r":
             world.reset()
             self._let_go()
@@ -190,7 +190,7 @@ def view_axes() -> tuple[Points, Points, Points]:
 
 
 def lines_of(body: Body) -> Iterator[Points]:
-    """What a body looks like: the outlines of its solids, else a line through its particles. World, m."""
+    """The outline of a body: the outlines of its solids, or else a line through its particles. World, m."""
     if body.solids:
         for solid in body.solids:
             yield from outline(solid)

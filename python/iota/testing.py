@@ -56,7 +56,7 @@ class Headset:
         with iota.testing.Headset(world) as visitor:
             visitor.point("right", at=ball)
             visitor.press("right", "trigger")
-            visitor.wait_for(lambda: world.held() == ball)
+            visitor.wait_for(lambda: world.users.held() == ball)
             visitor.move("right", (0, 1.6, 0.3))
             visitor.release("right", "trigger")
     """
@@ -66,12 +66,12 @@ class Headset:
         self._open = ExitStack()
 
     def __enter__(self) -> Headset:
-        if self._world.url is None:
+        if self._world.pages.url is None:
             raise Failed("the world is on no page. Try: world.start(port=0)")
         with ExitStack() as opened:
             browser = opened.enter_context(open_browser("headsets for tests"))
             self._page = browser.new_page(viewport=SIZE)
-            self._page.goto(f"{self._world.url}&emulate=quest3")
+            self._page.goto(f"{self._world.pages.url}&emulate=quest3")
             self._until("globalThis.iotaXR !== undefined && iota.connected")
             self._page.evaluate("iotaXR.enter()")
             self._until("iotaXR.presenting && iotaXR.inputs().length === 2")
@@ -136,7 +136,7 @@ class Headset:
         return found
 
     def picture(self, file: str | Path) -> None:
-        """What both eyes see, side by side, as a PNG file."""
+        """The views of both eyes, side by side, as a PNG file."""
         data = self._page.screenshot()
         with replacing(Path(file)) as fresh:
             fresh.write_bytes(data)

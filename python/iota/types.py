@@ -9,7 +9,6 @@ from iota._core import (
     BondBatch,
     BondState,
     Broken,
-    ContactEvent,
     Diagnosis,
     Edit,
     Energy,
@@ -23,6 +22,7 @@ from iota._core import (
     Solid,
     StepReport,
     StepTimes,
+    StopEvent,
 )
 from iota.profiling import ForceCost, ForceProfile
 from iota.solvers import Solution
@@ -34,7 +34,6 @@ __all__ = [
     "BondState",
     "Broken",
     "Client",
-    "ContactEvent",
     "Diagnosis",
     "Edit",
     "Energy",
@@ -53,4 +52,5 @@ __all__ = [
     "Solution",
     "StepReport",
     "StepTimes",
+    "StopEvent",
 ]

@@ -16,6 +16,8 @@ TOOLS = Path(__file__).resolve().parents[2] / "tools"
 def load_tool(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
     """Makes a module of its own of a script in tools/, by its name."""
 
+    monkeypatch.syspath_prepend(TOOLS)  # where they find each other
+
     def load(name: str) -> ModuleType:
         spec = importlib.util.spec_from_file_location(f"{name}_under_test", TOOLS / f"{name}.py")
         assert spec and spec.loader

@@ -137,7 +137,7 @@ def test_an_extra_can_be_asked_for_where_iota_was_built() -> None:
     extras = re.findall(
         r"^(\w+) = \[", project.partition("[project.optional-dependencies]")[2].partition("\n[")[0], re.M
     )
-    found = distribution("iota")
+    found = distribution("iota-worlds")
     assert extras and found.metadata.get_all("Provides-Extra") == extras
     assert any(need.startswith("mujoco") and "shapelib" in need for need in found.requires or [])
 

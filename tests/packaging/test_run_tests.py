@@ -2,7 +2,11 @@
 """The test runner counts what the suites' own runners say, and is not fooled by a suite that says nothing."""
 
 import json
+import os
+import signal
 import sys
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -18,6 +22,9 @@ def runner(load_tool: Callable[[str], ModuleType], tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "RESULTS", tmp_path / "results")
     monkeypatch.setattr(module, "LOGS", tmp_path / "logs")
+    monkeypatch.setattr(module, "STAMPS", tmp_path / "stamps")
+    monkeypatch.setattr(module, "CORES", 2)
+    monkeypatch.delenv("IOTA_TEST_ALL", raising=False)  # as `make test-all` sets it
     return module
 
 
@@ -124,7 +131,7 @@ def test_a_file_that_fails_once_is_repeated_and_named(runner: ModuleType, capsys
     runner.SUITES = [made]
     assert runner.main([]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[-2] == "  failed once, passed when repeated: made-up: b.test.ts: draws"
+    assert "  failed once, passed when repeated: made-up: b.test.ts: draws" in lines
     assert lines[-1] == "2 passed, 1 only when repeated, 0 failed"
 
 
@@ -146,3 +153,125 @@ def test_a_repetition_that_runs_nothing_changes_nothing(runner: ModuleType, caps
 def test_an_unknown_suite_is_named(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     assert runner.main(["no-such-suite"]) == 2
     assert "no-such-suite" in capsys.readouterr().err
+
+
+def sleeper(runner: ModuleType, name: str, folder: Path, **more: object) -> object:
+    """A suite of half a second, which keeps its begin and end."""
+    times = f"import time; began = time.monotonic(); time.sleep(0.5); ended = time.monotonic(); {writes(gtest(PASSED))}"
+    script = f"{times}; open({str(folder / name)!r}, 'w').write(f'{{began}} {{ended}}')"
+    return runner.Suite(name, [sys.executable, "-c", script], 60, runner.read_gtest, ROOT, **more)
+
+
+def spans(folder: Path, *names: str) -> list[list[float]]:
+    return [[float(word) for word in (folder / name).read_text().split()] for name in names]
+
+
+def test_two_suites_run_beside_each_other_on_two_cores(runner: ModuleType, tmp_path: Path) -> None:
+    runner.SUITES = [sleeper(runner, name, tmp_path) for name in ("a", "b")]
+    assert runner.main([]) == 0
+    (a_began, a_ended), (b_began, b_ended) = spans(tmp_path, "a", "b")
+    assert a_began < b_ended and b_began < a_ended
+
+
+def test_suites_that_draw_or_need_all_cores_run_alone(runner: ModuleType, tmp_path: Path) -> None:
+    for more in ({"draws": True}, {"cores": 2}):
+        runner.SUITES = [sleeper(runner, name, tmp_path, **more) for name in ("a", "b")]
+        assert runner.main([]) == 0
+        (a_began, a_ended), (b_began, b_ended) = spans(tmp_path, "a", "b")
+        assert a_ended <= b_began or b_ended <= a_began, more
+
+
+def test_the_longest_suite_begins_first(runner: ModuleType, tmp_path: Path) -> None:
+    seconds = {"short": 1, "long": 9, "middle": 5}
+    runner.SUITES = [sleeper(runner, name, tmp_path, cores=2, about_s=about) for name, about in seconds.items()]
+    assert runner.main([]) == 0
+    began = {name: spans(tmp_path, name)[0][0] for name in seconds}
+    assert sorted(began, key=began.__getitem__) == ["long", "middle", "short"]
+
+
+def test_a_suite_in_shards_runs_each_test_once(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    tests = [{"name": f"hangs_{number}", "result": "COMPLETED", "time": f"{number}s"} for number in range(5)]
+    result = json.dumps({"testsuites": [{"name": "Chain", "testsuite": tests}]})
+    script = (
+        f"import json, os; result = json.loads({result!r}); (suite,) = result['testsuites']; "
+        "total, index = int(os.environ['GTEST_TOTAL_SHARDS']), int(os.environ['GTEST_SHARD_INDEX']); "
+        "suite['testsuite'] = suite['testsuite'][index::total]; json.dump(result, open('{result}', 'w'))"
+    )
+    runner.SUITES = [runner.Suite("cpp", [sys.executable, "-c", script], 60, runner.read_gtest, ROOT, shards=2)]
+    assert runner.main(["cpp"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert {line.split()[0]: line.split()[1] for line in lines if line.startswith("cpp-")} == {
+        "cpp-1": "3",
+        "cpp-2": "2",
+    }
+    assert lines[-1] == "5 passed, 0 failed"
+
+
+def test_the_slowest_tests_and_the_time_of_all_are_told(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    tests = [{"name": f"hangs_{number}", "result": "COMPLETED", "time": f"{number}.5s"} for number in range(12)]
+    assert closing_line(runner, suite(runner, writes(gtest(*tests)), runner.read_gtest), capsys)[0] == 0
+    runner.main([])
+    lines = capsys.readouterr().out.splitlines()
+    told = lines[lines.index("slowest:") + 1 : -2]
+    assert [line.split() for line in told] == [[f"{n}.5", "s", f"Chain.hangs_{n}"] for n in range(11, 1, -1)]
+    assert lines[-2].startswith("all together: ")
+
+
+def stamped(runner: ModuleType, tmp_path: Path, script: str) -> Path:
+    """A suite that depends on a file only, beside one that runs always. Returns that file."""
+    needs = tmp_path / "input"
+    needs.write_text("one")
+    always = suite(runner, writes(gtest(PASSED)), runner.read_gtest)
+    command = [sys.executable, "-c", script]
+    runner.SUITES = [always, runner.Suite("seldom", command, 60, runner.read_gtest, ROOT, inputs=lambda: [needs])]
+    return needs
+
+
+def test_a_suite_runs_when_its_inputs_have_changed(
+    runner: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    needs = stamped(runner, tmp_path, writes(gtest(PASSED, PASSED)))
+
+    def ran(*arguments: str) -> str:
+        assert runner.main(list(arguments)) == 0
+        return capsys.readouterr().out
+
+    assert ran().endswith("\n3 passed, 0 failed\n"), "there is no stamp yet"
+    again = ran()
+    assert again.endswith("\n1 passed, 0 failed\n")
+    assert "seldom       passed before, and nothing it depends on has changed\n" in again
+    assert ran("seldom").endswith("\n2 passed, 0 failed\n"), "a named suite runs"
+    assert ran("--all").endswith("\n3 passed, 0 failed\n")
+    assert ran().endswith("\n1 passed, 0 failed\n")
+    needs.write_text("two")
+    assert ran().endswith("\n3 passed, 0 failed\n")
+
+
+def test_a_failed_suite_runs_again(runner: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stamped(runner, tmp_path, writes(gtest(PASSED, FAILED)))
+    for _ in range(2):
+        assert runner.main([]) == 1
+        assert capsys.readouterr().out.endswith("\n2 passed, 1 failed\n")
+
+
+def test_only_the_run_of_all_asks_for_all_samples(runner: ModuleType) -> None:
+    runner.SUITES = [suite(runner, "import os; assert os.environ['IOTA_TEST_ALL'] == '1'")]
+    assert runner.main([]) == 1
+    assert runner.main(["--all"]) == 0
+
+
+def test_an_interrupted_run_ends_its_suites(runner: ModuleType, tmp_path: Path) -> None:
+    script = f"import os, time; open({str(tmp_path / 'leader')!r}, 'w').write(str(os.getpid())); time.sleep(100)"
+    runner.SUITES = [suite(runner, script)]
+    leader = tmp_path / "leader"
+
+    def interrupt() -> None:
+        while not (leader.exists() and leader.read_text()):
+            time.sleep(0.02)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt).start()
+    with pytest.raises(KeyboardInterrupt):
+        runner.main([])
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(leader.read_text()), 0)

@@ -69,6 +69,55 @@ def test_every_link_between_pages_leads_somewhere() -> None:
     assert not broken
 
 
+def test_only_one_source_tells_how_to_install_an_extra() -> None:
+    """PyPI's `iota` is another project; a checkout and a wheel need different commands: iota/extras.py knows both."""
+    told = [
+        path for path in (ROOT / "python").rglob("*.py") if re.search(r"pip install|requirements-", path.read_text())
+    ]
+    assert [path.name for path in told] == ["extras.py"]
+    wrong = re.compile(r"pip install '?iota[\[\s']")
+    assert not [path for path in files() if path.suffix in {".md", ".py"} and wrong.search(path.read_text())]
+
+
+# A comment, a docstring or the doc of a field that begins with one of these words has no subject: "Of a user, m".
+NO_SUBJECT = re.compile(r'^\s*(?://+<?|/\*+|\*|#|"""|.*"doc": ")\s*(?:Of|What|Where|Those)\b')
+COMMENT = re.compile(r"^\s*(?://|/\*|\*|#)")
+CLOSED_SENTENCE = re.compile(r"""[.:]["']?\s*$""")
+# Older ones. The list may only become shorter.
+WITHOUT_SUBJECTS = {
+    "python/iota/world/floor.py", "src/island/island.cpp", "src/island/island.h", "src/solver/pieces.h",
+    "src/solver/problem.h",
+}  # fmt: skip
+
+
+def begins_without_a_subject(line: str, before: str) -> bool:
+    """False for the middle of a sentence that happens to break before such a word."""
+    is_open = COMMENT.match(before) and not LICENSE.search(before) and not CLOSED_SENTENCE.search(before)
+    return bool(NO_SUBJECT.match(line)) and not is_open
+
+
+def test_a_comment_begins_with_a_subject() -> None:
+    assert begins_without_a_subject("/// Of each, m.", "") and begins_without_a_subject(
+        '  """What it is."""', "def f():"
+    )
+    assert begins_without_a_subject("// Where it is.", "// It is drawn.")
+    assert begins_without_a_subject("// What it is.", "// SPDX-License-Identifier: Apache-2.0")
+    assert not begins_without_a_subject("// Of the others.", "// It is one")
+    found = []
+    for path in files():
+        name = path.relative_to(ROOT).as_posix()
+        if name in WITHOUT_SUBJECTS or path.suffix not in {".h", ".cpp", ".ts", ".py", ".json"}:
+            continue
+        if not name.startswith(("include/", "src/", "bindings/", "web/src/", "python/iota/", "protocol/")):
+            continue
+        before = ""
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if begins_without_a_subject(line, before):
+                found.append(f"{name}:{number}: {line.strip()[:60]}")
+            before = line
+    assert found == [], "a subject and a verb, please"
+
+
 CPP_TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\s*(\w+),\s*(\w+)\)", re.MULTILINE)
 
 

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def wheel() -> Path:
-    wheels = list((ROOT / "build" / "wheel").glob("iota-*.whl"))
+    wheels = list((ROOT / "build" / "wheel").glob("iota_worlds-*.whl"))
     assert len(wheels) == 1, "make wheel leaves exactly one"
     return wheels[0]
 
@@ -59,7 +59,7 @@ def test_the_wheel_holds_engine_page_stub_and_types_once_each(wheel: Path) -> No
         assert wanted in names
     assert sum(re.fullmatch(r"iota/_core\..*so", name) is not None for name in names) == 1
     assert any(re.fullmatch(r"iota/page/assets/.*\.js", name) for name in names)
-    assert not [name for name in names if not re.match(r"iota(/|-[\d.]+\.dist-info/)", name)]
+    assert not [name for name in names if not re.match(r"(iota|iota_worlds-[\d.]+\.dist-info)/", name)]
     assert any(name.endswith("LICENSE") for name in names)
 
 
@@ -125,6 +125,14 @@ def test_the_wheel_runs_the_chain_headless(environment: Path, tmp_path: Path) ->
     result = json.loads(done.stdout)
     assert result["simulated_s"] == pytest.approx(1, abs=2 * result["dt_s"])
     assert result["worst_gap_m"] <= 1e-9
+
+
+def test_the_wheel_tells_how_to_get_what_is_missing(environment: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [environment / "bin" / "iota", "verify", "--list"], cwd=tmp_path, env=bare_environment(HOME=str(tmp_path)),
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 1 and done.stderr.endswith("Try: pip install 'iota-worlds[verify]'\n"), done.stderr
 
 
 @pytest.fixture

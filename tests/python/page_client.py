@@ -172,9 +172,9 @@ class PageClient:
         identity: tuple[int, int] = self.wait_for(lambda: self.entities["body"].get(slot))["id"]
         return identity
 
-    def style_of(self, slot: int) -> dict[str, Any]:
+    def visual_of(self, slot: int) -> dict[str, Any]:
         """How the body in a slot is drawn."""
-        return self.entities["style"][self.entities["body"][slot]["style"]]
+        return self.entities["visual"][self.entities["body"][slot]["visual"]]
 
     def _read(self) -> None:
         try:

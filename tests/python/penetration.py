@@ -12,7 +12,8 @@ import numpy as np
 import iota
 from iota import looks
 from iota.world.frames import axes_of, turn_from_x
-from iota.world.scene import Static, listed
+from iota.world.scene import Static
+from iota.world.visuals import listed
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -76,7 +77,7 @@ class Drawn:
         self._known: dict[Any, Array] = {}
         self._fixed = [
             Piece(fixed, fixed.look.shape, np.array(tuple(fixed.position)), axes_of(fixed.rotation))
-            for fixed in world._state.statics if fixed.look.shape is not None
+            for fixed in world.scene.statics if fixed.look.shape is not None
         ]  # fmt: skip
 
     def overlaps(self, least: float) -> list[Overlap]:
@@ -94,8 +95,8 @@ class Drawn:
                 found.append(Overlap(a, b, depth, depth / size, world.system.time))
 
         for k, a in enumerate(pieces[:moving]):
-            if world._state.ground is not None and a.owner not in rooted:
-                add(a.owner, GROUND, world._state.ground - boxes[k, 0, 1], a.size)
+            if world.scene.ground is not None and a.owner not in rooted:
+                add(a.owner, GROUND, world.scene.ground - boxes[k, 0, 1], a.size)
             near = (boxes[:, 0] < boxes[k, 1]).all(axis=1) & (boxes[:, 1] > boxes[k, 0]).all(axis=1)
             near[: k + 1] = False
             for n in np.flatnonzero(near):
@@ -144,7 +145,7 @@ class Drawn:
                 Piece(body, solid.shape, np.array(tuple(solid.position)), axes_of(solid.orientation))
                 for solid in body.solids
             ]
-            known = self._styled(self.world.look_of(body))
+            known = self._styled(self.world.scene.look_of(body))
             if not known:
                 yield from solids
             place, turn = np.array(tuple(body.position)), axes_of(body.orientation)
@@ -163,7 +164,7 @@ class Drawn:
 
     def _of_springs(self) -> Iterator[Piece]:
         """Those that are drawn as a stick."""
-        for look in self._styled(self.world._state.scene.classes.get("spring")):
+        for look in self._styled(self.world._state.visuals.looks.get("spring")):
             for bond in self.world.system.bonds if look.fits else []:
                 if bond.active and bond.law.name == "spring":
                     p, q = (end.position for end in bond.ends)

@@ -11,18 +11,18 @@ from page_client import PageClient
 
 import iota
 from iota import _core
-from iota.world.scene import Scene
+from iota.world.visuals import Visuals
 
 
 class Shown:
     """A system, what the script says of its looks, and a page that shows it."""
 
-    def __init__(self, system: iota.System, room: _core.Room, scene: Scene) -> None:
-        self.system, self.room, self.scene = system, room, scene
+    def __init__(self, system: iota.System, room: _core.Room, visuals: Visuals) -> None:
+        self.system, self.room, self.visuals = system, room, visuals
         self.page: PageClient = None  # type: ignore[assignment]
 
     def publish(self) -> None:
-        self.scene.tell(self.room)
+        self.visuals.tell(self.room)
         self.room.publish(self.system)
 
     def look(self) -> int:
@@ -37,15 +37,15 @@ class Shown:
         return self.page.entities["body"]
 
     def parts(self, body: iota.Body) -> list[dict[str, Any]]:
-        """Of a body, in all looks."""
-        parts: list[dict[str, Any]] = self.page.style_of(body.slot)["parts"]
+        """Of a body, in all styles."""
+        parts: list[dict[str, Any]] = self.page.visual_of(body.slot)["parts"]
         return parts
 
 
 @contextmanager
-def show(system: iota.System, scene: Scene | None = None) -> Iterator[Shown]:
+def show(system: iota.System, visuals: Visuals | None = None) -> Iterator[Shown]:
     server = _core.Server(port=0, token="token")
-    shown = Shown(system, server.open("default"), scene or Scene())
+    shown = Shown(system, server.open("default"), visuals or Visuals())
     try:
         shown.publish()
         with PageClient(server.url) as page:

@@ -267,7 +267,7 @@ def calls(c: Scene) -> dict[str, Call]:
             {"links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
         ),
         "World": (iota.World, {"system": s, "title": "t", "dt": 1 / 60}),
-        "speed": (lambda value: assign(iota.World(s), "speed", value), {"value": 1.0}),
+        "speed": (lambda value: assign(iota.World(s).clock, "speed", value), {"value": 1.0}),
         "at": (lambda time: iota.World(s).at(time)(print), {"time": 1.0}),
         "every": (lambda period: iota.World(s).every(period)(print), {"period": 1.0}),
     }  # fmt: skip

@@ -188,4 +188,4 @@ def test_an_array_is_a_sequence_of_its_members() -> None:
     assert list(rods) == system.bodies and list(rods.particles) == system.particles
     world = iota.World(system)
     world.draw(rods, iota.looks.cylinder(0.02, "steel"))
-    assert all(world.look_of(rod) is not None for rod in system.bodies)
+    assert all(world.scene.look_of(rod) is not None for rod in system.bodies)

@@ -73,7 +73,7 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
         "direction must not be zero",
     ),
     "world dt": (lambda s: iota.World(s, dt=0), "dt must be above 0"),
-    "world speed": (lambda s: setattr(iota.World(s), "speed", NAN), "speed"),
+    "world speed": (lambda s: setattr(iota.World(s).clock, "speed", NAN), "speed"),
     "event time": (lambda s: iota.World(s).at(NAN)(print), "time"),
     "event period": (lambda s: iota.World(s).every(0)(print), "period"),
 }
@@ -179,5 +179,5 @@ def test_a_callback_that_is_registered_twice_for_the_same_events_is_refused() ->
     world.on_drag(ball)(game.hit)
     world.on_key("k", release=True)(game.hit)
     world.on_click(ball)(Game().hit)
-    assert world.forget(game.hit) and not world.forget(game.hit)
+    assert world.events.forget(game.hit) and not world.events.forget(game.hit)
     world.on_click(ball)(game.hit)

@@ -82,7 +82,7 @@ def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System)
 def test_a_structure_is_drawn_in_its_looks(system: iota.System) -> None:
     world = iota.World(system)
     made = swing().realize(system, world)
-    drawn = world._state.scene.classes
+    drawn = world._state.visuals.looks
     assert list(drawn.values()) == [{"*": iota.looks.cylinder(0.01)}, {"*": iota.looks.solid("wood")}]
     assert made["board"].solids
 

@@ -37,7 +37,7 @@ def test_a_module_of_the_script_draws_in_the_page(tmp_path: Path) -> None:
     pytest.importorskip("playwright.sync_api")
     (tmp_path / "halo.js").write_text(HALO)
     world, _ = make_world()
-    world.client_module(tmp_path / "halo.js")
+    world.pages.client_module(tmp_path / "halo.js")
     url = world.start(port=0)
     try:
         with open_browser("tests") as chromium:
@@ -63,9 +63,9 @@ def test_only_clients_learn_where_the_named_modules_are_and_they_are_gone_afterw
     for name in ("halo.js", "secret.js", "other ö.mjs"):
         (tmp_path / name).write_text(HALO)
     world, _ = make_world()
-    world.client_module(tmp_path / "halo.js")
-    world.client_module(tmp_path / "other ö.mjs")
-    world.client_module(tmp_path / "halo.js")
+    world.pages.client_module(tmp_path / "halo.js")
+    world.pages.client_module(tmp_path / "other ö.mjs")
+    world.pages.client_module(tmp_path / "halo.js")
     url = world.start(port=0)
     base = url.split("?")[0]
     try:
@@ -85,7 +85,7 @@ def test_only_clients_learn_where_the_named_modules_are_and_they_are_gone_afterw
             with pytest.raises(urllib.error.HTTPError, match="404"):
                 urllib.request.urlopen(f"{base}modules/{name}")
         with pytest.raises(RuntimeError, match="before"):
-            world.client_module(tmp_path / "secret.js")
+            world.pages.client_module(tmp_path / "secret.js")
         assert len(list(temporary.iterdir())) == 1
     finally:
         world.stop()
@@ -100,14 +100,14 @@ def test_a_file_that_is_no_module_is_refused_where_it_is_named(tmp_path: Path) -
     (tmp_path / "deep").mkdir()
     (tmp_path / "deep" / "same.js").write_text("")
     with pytest.raises(ValueError, match=r"\.js or \.mjs"):
-        world.client_module(tmp_path / "a.py")
+        world.pages.client_module(tmp_path / "a.py")
     with pytest.raises(FileNotFoundError, match=r"none\.js"):
-        world.client_module("none.js")
+        world.pages.client_module("none.js")
     with pytest.raises(ValueError, match="4 MiB"):
-        world.client_module(tmp_path / "huge.js")
-    world.client_module(tmp_path / "same.js")
+        world.pages.client_module(tmp_path / "huge.js")
+    world.pages.client_module(tmp_path / "same.js")
     with pytest.raises(ValueError, match="already"):
-        world.client_module(tmp_path / "deep" / "same.js")
+        world.pages.client_module(tmp_path / "deep" / "same.js")
     server = iota.Server(port=0)
     with pytest.raises(ValueError, match="server of its own"):
         world.serve(server=server)

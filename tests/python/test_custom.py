@@ -22,8 +22,8 @@ def test_an_object_has_its_values_and_follows_its_anchor(run_world: Runner) -> N
     system = iota.System(gravity=(0, 0, 0))
     ball = system.body().particle((0, 1, 0)).body
     world = iota.World(system, ground=None)
-    flower = world.custom("flower", at=ball, values={"petals": 7, "names": ["a", None]})
-    world.custom("flower", at=(1, 2, 3))
+    flower = world.drawings.custom("flower", at=ball, values={"petals": 7, "names": ["a", None]})
+    world.drawings.custom("flower", at=(1, 2, 3))
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["custom"]) == 2)
         told, still = page.entities["custom"][0], page.entities["custom"][1]
@@ -43,8 +43,8 @@ def test_an_object_has_its_values_and_follows_its_anchor(run_world: Runner) -> N
 def test_values_that_cannot_be_sent_are_refused(values: Any) -> None:
     world = iota.World(iota.System())
     with pytest.raises(ValueError, match=r"^values: (must be a dictionary|may have 65536 bytes)"):
-        world.custom("flower", values=values)
-    assert world.things == []
+        world.drawings.custom("flower", values=values)
+    assert world.drawings.things == []
 
 
 CLASS = """
@@ -69,9 +69,9 @@ def test_a_class_of_a_module_draws_is_framed_met_and_selected(tmp_path: Path) ->
     ball = system.body(shape=iota.Sphere(0.05), mass=1.0, position=(0, 1, 0))
     world = iota.World(system, ground=None)
     world.draw(ball, [])
-    world.client_module(tmp_path / "plate.js")
-    plate = world.custom("plate", at=ball, values={"color": "#00ff00"})
-    world.custom("broken", at=ball)
+    world.pages.client_module(tmp_path / "plate.js")
+    plate = world.drawings.custom("plate", at=ball, values={"color": "#00ff00"})
+    world.drawings.custom("broken", at=ball)
     url = world.start(port=0)
     try:
         with open_browser("tests") as chromium:

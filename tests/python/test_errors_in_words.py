@@ -18,7 +18,8 @@ import sweep
 import iota
 from iota import _core, arguments, builder, looks
 from iota.world.callbacks import one_line
-from iota.world.world import ELSEWHERE
+from iota.world.pages import Pages
+from iota.world.world import ELSEWHERE, PARTS
 
 # What nanobind, C++ and Python's object system say, and scripts do not.
 RAW = re.compile(
@@ -190,6 +191,9 @@ RUN = {
 }
 
 
+OF_A_WORLD = {part.__name__.lower(): part for part in PARTS if part is not Pages}  # its functions open files
+
+
 def public_functions(thing: Any) -> Iterator[tuple[str, Callable[..., Any]]]:
     for name in getattr(thing, "__all__", None) or dir(thing):
         member = getattr(thing, name)
@@ -217,7 +221,7 @@ def given_wrongly(function: Callable[..., Any], rest: dict[str, Any]) -> Iterato
     yield from (lambda v=value: function(v) for value in WRONG)
 
 
-@pytest.mark.parametrize("of", ["world", "looks", "builder", "iota"])
+@pytest.mark.parametrize("of", ["world", *OF_A_WORLD, "looks", "builder", "iota"])
 @pytest.mark.filterwarnings("ignore::numpy.exceptions.VisibleDeprecationWarning", "ignore::RuntimeWarning")
 def test_no_call_of_the_script_layer_is_refused_with_a_raw_text(of: str) -> None:
     scene = sweep.Scene()
@@ -229,12 +233,12 @@ def test_no_call_of_the_script_layer_is_refused_with_a_raw_text(of: str) -> None
         "kind": "spring", "start": (0, 0, 0), "end": (0, 1, 0), "title": "word", "particles": [scene.point], "system": scene.system,
     }  # fmt: skip
     raw = []
-    names = [
-        name
-        for name, _ in public_functions({"world": iota.World, "looks": looks, "builder": builder, "iota": iota}[of])
-    ]
+    known = {"world": iota.World, **OF_A_WORLD, "looks": looks, "builder": builder, "iota": iota}
+    names = [name for name, _ in public_functions(known[of])]
+    assert names
     for name in names:
-        thing: Any = {"world": iota.World(sweep.Scene().system), "looks": looks, "builder": builder, "iota": iota}[of]
+        world = iota.World(sweep.Scene().system)
+        thing: Any = {"world": world, "looks": looks, "builder": builder, "iota": iota}.get(of) or getattr(world, of)
         if isinstance(function := getattr(thing, name), type) and function.__module__ == "iota._core":
             continue
         for call in given_wrongly(function, rest):
@@ -249,47 +253,60 @@ PYTHON_MISTAKES: dict[str, tuple[Callable[[iota.World], Any], str]] = {
         r"Camera has no argument 'eye'; did you mean 'position'\? It takes position, target",
     ),
     "a misspelled word": (lambda w: w.label("a", colour="#fff"), "label has no argument 'colour'; did you mean 'color'"),
-    "the beginning of a word": (lambda w: w.shape(looks.sphere(1), pos=V), "shape has no argument 'pos'; did you mean 'position'"),
+    "the beginning of a word": (lambda w: w.drawings.shape(looks.sphere(1), pos=V), "shape has no argument 'pos'; did you mean 'position'"),
     "a word of the result": (lambda w: w.label("a", visible=False), r"assign it to the result: label.visible = \.\.\."),
     "a word of a look": (lambda w: looks.sphere(0.1, colour="#ffffff"), "has no argument 'colour'; did you mean 'color'"),
-    "a missing one": (lambda w: w.slider("a"), "slider needs minimum: a number"),
+    "a missing one": (lambda w: w.controls.slider("a"), "slider needs minimum: a number"),
     "too many": (lambda w: w.on_reset(1, 2), r"on_reset takes 1 argument by place \(function\), not 2"),
     "a decorator without parentheses": (lambda w: w.every(print), "every: period must be a number, not <built-in function"),
     "a number for a place": (lambda w: w.label("a", at=5), "at: must be a particle, a body, .* or 2 or 3 numbers, not 5"),
-    "a text for a number": (lambda w: w.slider("a", 0, "ten"), "maximum:? must be a number, not 'ten'"),
+    "a text for a number": (lambda w: w.controls.slider("a", 0, "ten"), "maximum:? must be a number, not 'ten'"),
     "a camera without depth": (lambda w: iota.Camera((1,)), r"position: must be 2 or 3 numbers, not \(1,\)"),
     "a camera nowhere": (lambda w: iota.Camera((math.nan, 0, 0)), "position: must be finite"),
     "a misspelled attribute of a thing": (
         lambda w: setattr(w.label("a"), "txt", "b"), "a Label has no attribute 'txt'; did you mean 'text'",
     ),
     "a misspelled attribute of a world": (
-        lambda w: setattr(w, "pause", True), "World.pause|a World has no attribute 'pause'; did you mean 'paused'",
+        lambda w: setattr(w, "pause", True), "a World has no attribute 'pause'; did you mean 'world.clock.paused'",
     ),
-    "another library's drawing": (lambda w: w.polyline([V, V]), r"no attribute 'polyline'; use world.line\(points\)"),  # type: ignore[attr-defined]
-    "another library's shape": (lambda w: w.polygon([V]), r"no attribute 'polygon'; use world.shape\(looks.polygon\("),  # type: ignore[attr-defined]
-    "what is not in a world": (lambda w: w.pausd, "a World has no attribute 'pausd'; did you mean 'paused'"),  # type: ignore[attr-defined]
+    "another library's drawing": (lambda w: w.polyline([V, V]), r"no attribute 'polyline': it is world.drawings.line\(points\)"),  # type: ignore[attr-defined]
+    "another library's shape": (lambda w: w.polygon([V]), r"no attribute 'polygon': it is world.drawings.shape\(looks.polygon\("),  # type: ignore[attr-defined]
+    "the former name of a decorator": (lambda w: w.on_contact, "no attribute 'on_contact': it is world.on_stop"),  # type: ignore[attr-defined]
+    "what is not in a world": (lambda w: w.pausd, "a World has no attribute 'pausd'; did you mean 'world.clock.paused'"),  # type: ignore[attr-defined]
     "what is not in a thing": (lambda w: w.label("a").positon, "a Label has no attribute 'positon'; did you mean 'at'"),  # type: ignore[attr-defined]
     "what a thing has by another name": (lambda w: setattr(w.label("a"), "positon", V), "no attribute 'positon'; did you mean 'at'"),
     "a method": (lambda w: setattr(w, "reset", 1), "World.reset is a method and cannot be assigned"),
-    "what can only be read": (lambda w: setattr(w, "url", "x"), "World.url can be read but not assigned"),
+    "what can only be read": (lambda w: setattr(w, "title", "x"), "World.title can be read but not assigned"),
+    "a part": (lambda w: setattr(w, "drawings", []), "World.drawings can be read but not assigned"),
+    "what a part has": (lambda w: w.ray(V, V), "a World has no attribute 'ray': it is world.queries.ray$"),  # type: ignore[attr-defined]
+    "what is assigned to a part": (lambda w: setattr(w, "paused", True), "no attribute 'paused': it is world.clock.paused$"),
+    "what is near a name of a part": (lambda w: w.sliider, "did you mean 'world.controls.slider'"),  # type: ignore[attr-defined]
+    "a misspelled attribute of a part": (lambda w: setattr(w.clock, "pausd", True), "a Clock has no attribute 'pausd'; did you mean 'paused'"),
+    "a misspelled function of a part": (lambda w: w.queries.rays(V, V), "a Queries has no attribute 'rays'; did you mean 'ray'"),  # type: ignore[attr-defined]
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", PYTHON_MISTAKES)
 def test_a_mistake_in_the_script_layer_is_named(name: str) -> None:
     world = iota.World(iota.System())
-    things = len(world.things)
+    things = len(world.drawings.things)
     use, text = PYTHON_MISTAKES[name]
     with pytest.raises((TypeError, ValueError, AttributeError), match=text):
         use(world)
-    assert len(world.things) - things <= 1
+    assert len(world.drawings.things) - things <= 1
 
 
 def test_the_listed_names_exist() -> None:
     world = iota.World(iota.System())
+    assert {"ray", "slider", "held", "polyline"} <= ELSEWHERE.keys()
     for use in ELSEWHERE.values():
-        for of, name in re.findall(r"(world|looks)\.(\w+)", use):
-            assert callable(getattr({"world": world, "looks": looks}[of], name))
+        (place,) = re.findall(r"^world((?:\.\w+)+)", use)
+        thing: Any = world
+        for name in place.split(".")[1:]:
+            assert hasattr(thing, name), use
+            thing = getattr(thing, name)
+        for name in re.findall(r"looks\.(\w+)", use):
+            assert callable(getattr(looks, name))
 
 
 def test_a_misspelled_name_in_a_callback_is_reported_with_a_near_one() -> None:
@@ -322,7 +339,7 @@ def test_a_style_that_no_look_has_is_refused_before_the_world_is_served() -> Non
             ValueError, match=r"not 'roap'; did you mean 'rope'\? \(the styles in draw are 'rope', 'chain'\)"
         ):
             begin()
-    assert world.url is None
+    assert world.pages.url is None
     with pytest.raises(ValueError, match="no look in draw has a style"):
         iota.World(system, style="rope").step()
     iota.World(system).step()
@@ -372,7 +389,7 @@ DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     "a camera of numbers": (lambda w: setattr(w, "camera", V), "camera must be a Camera"),
     "a strut without length": (lambda w: w.add_strut(V, V, looks.cylinder(1)), "two different ends"),
     "a wall without a shape": (lambda w: w.add_static(looks.solid("wood"), V), "look must be a Look with a shape"),
-    "a slider beyond its end": (lambda w: w.slider("a", 0, 1, 5), "value: must be from 0 to 1, not 5"),
+    "a slider beyond its end": (lambda w: w.controls.slider("a", 0, 1, 5), "value: must be from 0 to 1, not 5"),
     "a function that is none": (lambda w: w.on_step(None), "a callback is a function, not None"),
     "a key that is none": (lambda w: w.on_key(5), "a key needs a name"),
     "a world of a number": (lambda w: iota.World(5), "a System or another Simulator, not 5"),  # type: ignore[arg-type]
@@ -390,7 +407,7 @@ def test_impossible_arguments_are_refused_where_they_are_written(name: str) -> N
 @pytest.mark.parametrize("places", [(), (V,), (V, V), ([V],), ([],)])
 def test_lines_of_no_length_are_there_and_show_nothing_or_a_point(places: Any) -> None:
     world = iota.World(iota.System())
-    for thing in (world.line(*places), world.tube(*places, radius=0.1)):
+    for thing in (world.drawings.line(*places), world.drawings.tube(*places, radius=0.1)):
         record = thing._record()
         assert record is not None and len(record["points"]) == len(np.reshape(np.array(places, float), (-1, 3)))
 

@@ -157,7 +157,7 @@ def test_the_ground_is_under_all_bodies_and_what_hangs_from_them() -> None:
         make(system)
         world = iota.World(system)
         run(world, 0.01)
-        return world._state.ground
+        return world.scene.ground
 
     assert ground_of(lambda system: system.body().particle((0, 1, 0))) == 0
 

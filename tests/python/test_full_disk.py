@@ -71,7 +71,7 @@ from iota.studies import playground
 world = playground.build(Path())
 cards = []
 world._state.notices.show = lambda client, level, title, text, *more, **rest: cards.append(text)
-save = next(thing for thing in world.things if getattr(thing, "label", "") == "save")
+save = next(thing for thing in world.drawings.things if getattr(thing, "label", "") == "save")
 before = world.system.state_hash()
 resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
 save.take(1.0, "", iota.Event(world.system, "save"), world._guard)

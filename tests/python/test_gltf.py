@@ -117,7 +117,7 @@ def test_metal_that_is_not_rough_is_drawn_as_metal(
     red, checked = shapelib.read_model(write_glb(tmp_path / "a.glb", head, buffer))
     assert (red.material, checked.material) == (material, "paint")
     world = iota.World(iota.System())
-    world.model([red])
+    world.drawings.model([red])
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.entities["surface"])
         assert page.entities["surface"][0]["material"] == material
@@ -226,7 +226,7 @@ def test_a_broken_description_is_refused_by_one_line_that_names_the_file(
 def test_a_model_is_drawn_with_its_colors_and_images(tmp_path: Path, run_world: Runner) -> None:
     (path, *_) = sources(tmp_path)
     world = iota.World(iota.System())
-    surfaces = world.model(shapelib.read_model(path), at=(0, 0, 2))
+    surfaces = world.drawings.model(shapelib.read_model(path), at=(0, 0, 2))
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["surface"]) == 2 and page.entities["texture"])
         red, checked = (page.entities["surface"][slot] for slot in (0, 1))
@@ -243,5 +243,5 @@ def test_a_model_without_its_image_is_drawn_and_says_so(tmp_path: Path) -> None:
     path = write_gltf(tmp_path / "b.gltf", *described({"uri": "gone.png"}))
     world = iota.World(iota.System())
     with pytest.warns(UserWarning, match=r"b\.gltf: image 0 \(gone\.png\) is left out: no such file"):
-        surfaces = world.model(shapelib.read_model(path))
+        surfaces = world.drawings.model(shapelib.read_model(path))
     assert len(surfaces) == 2 and surfaces[1].texture is None

@@ -25,31 +25,31 @@ def test_a_stop_calls_when_it_is_reached_and_left() -> None:
     told: list[tuple[str, str | None]] = []
 
     def stopped(event: iota.Event) -> None:
-        assert event.name == "contact" and event.contact is not None and event.target == hinge.a
-        assert event.contact.constraint == hinge and event.point is not None
-        told.append((event.phase, event.contact.stop))
+        assert event.name == "stop" and event.stop is not None and event.target == hinge.a
+        assert event.stop.constraint == hinge and event.point is not None
+        told.append((event.phase, event.stop.coordinate))
 
-    world.on_contact(hinge)(stopped)
+    world.on_stop(hinge)(stopped)
 
     run(world, 1)
     assert told == [("start", "angle")]
     hinge.a.angular_velocity = (0, 0, 2)
     world.step()
     assert told == [("start", "angle"), ("end", "angle")]
-    assert world.forget(stopped)
+    assert world.events.forget(stopped)
     run(world, 2)
     assert len(told) == 2 and other.alive
 
 
-def test_a_body_hears_of_its_own_contacts_and_anything_of_all() -> None:
+def test_a_body_hears_of_its_own_stops_and_anything_of_all() -> None:
     world = iota.World(iota.System(), dt=1 / 120)
     hinges = [pendulum(world, 5 * i) for i in range(3)]
     own: list[iota.Body | None] = []
     all_of_them: list[str] = []
     some: list[iota.Body | None] = []
-    world.on_contact(hinges[1].a)(lambda event: own.append(event.target))
-    world.on_contact([hinges[0], hinges[2].a])(lambda event: some.append(event.target))
-    world.on_contact(lambda event: all_of_them.append(event.phase))
+    world.on_stop(hinges[1].a)(lambda event: own.append(event.target))
+    world.on_stop([hinges[0], hinges[2].a])(lambda event: some.append(event.target))
+    world.on_stop(lambda event: all_of_them.append(event.phase))
     run(world, 1)
     assert own == [hinges[1].a] and all_of_them == ["start"] * 3
     assert some == [hinges[0].a, hinges[2].a]
@@ -81,8 +81,8 @@ def test_one_that_raises_is_switched_off_and_the_others_go_on(capsys: pytest.Cap
     world = iota.World(iota.System(), dt=1 / 120)
     hinges = [pendulum(world, 5 * i) for i in range(2)]
     heard: list[str] = []
-    world.on_contact(lambda event: 1 / 0)
-    world.on_contact(lambda event: heard.append(event.phase))
+    world.on_stop(lambda event: 1 / 0)
+    world.on_stop(lambda event: heard.append(event.phase))
     run(world, 1)
     assert heard == ["start", "start"] and hinges[0].alive
     assert capsys.readouterr().err.count("ZeroDivisionError") == 1
@@ -91,4 +91,4 @@ def test_one_that_raises_is_switched_off_and_the_others_go_on(capsys: pytest.Cap
 @pytest.mark.parametrize("target", ["nothing", "everything", 3, []])
 def test_values_that_are_no_things_are_refused(target: object) -> None:
     with pytest.raises(TypeError, match="must be a body, a constraint, several"):
-        iota.World(iota.System()).on_contact(target)
+        iota.World(iota.System()).on_stop(target)

@@ -33,7 +33,7 @@ def test_a_thrown_body_keeps_the_velocity_of_the_hand(run_world: Runner) -> None
             page.send("grab_move", hold=1, target=(1.5 * gone, 1, 0))
             time.sleep(0.008)
         page.send("grab_end", hold=1)
-        page.wait_for(lambda: world.call(lambda: world.held() is None))
+        page.wait_for(lambda: world.call(lambda: world.users.held() is None))
         velocity = world.call(lambda: ball.velocity)
         # As fast as the hand was while the world heard of it, on however busy a machine.
         late = [move for move in moves if move[0] > moves[-1][0] - 0.3]
@@ -63,7 +63,7 @@ def test_a_pull_that_is_far_too_far_explodes_nothing(run_world: Runner, mass: fl
             reach, kinetic = world.call(figures)
             assert math.isfinite(kinetic) and reach <= size * 1.001
         page.send("grab_end", hold=1)
-        page.wait_for(lambda: world.call(lambda: world.held() is None))
+        page.wait_for(lambda: world.call(lambda: world.users.held() is None))
         reach, kinetic = world.call(figures)
         # At most a hundred lengths of the chain or so in a second; targets were 100 000 of them away.
         assert kinetic < 0.5 * mass * (200 * size) ** 2 and reach <= size * 1.001
@@ -76,7 +76,9 @@ def test_a_body_that_is_destroyed_in_two_users_hands_ends_their_holds_and_nothin
     world = iota.World(system, ground=None)
 
     def holds() -> int:
-        return world.call(lambda: sum(hold.grip.alive for client in world.clients for hold in client.holds.values()))
+        return world.call(
+            lambda: sum(hold.grip.alive for client in world.users.clients for hold in client.holds.values())
+        )
 
     url = run_world(world)
     with PageClient(url, "Ada") as ada, PageClient(url, "Bob") as bob:
@@ -96,7 +98,7 @@ def test_a_body_that_is_destroyed_in_two_users_hands_ends_their_holds_and_nothin
         bob.send("grab_end", hold=1)
         bob.send("grab_start", hold=1, body=bob.body(1), local_point=(0, 0, 0), target=(1.2, 1, 0))
         bob.wait_for(lambda: bob.places[1][0] > 1.05)
-        assert world.call(lambda: world.held() == system.bodies[0]) and not ada.closed.is_set()
+        assert world.call(lambda: world.users.held() == system.bodies[0]) and not ada.closed.is_set()
 
 
 def test_two_users_hold_one_body_and_one_who_leaves_takes_only_his_own_hand(run_world: Runner) -> None:
@@ -152,7 +154,7 @@ def test_a_hand_is_on_what_the_body_became_part_of_and_then_on_the_part_at_its_p
     with PageClient(run_world(world)) as page:
 
         def held() -> iota.Body | None:
-            return world.call(world.held)
+            return world.call(world.users.held)
 
         def slot_held() -> int:
             return page.last["poses"]["holds"][0]["body"]

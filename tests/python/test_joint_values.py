@@ -167,8 +167,8 @@ def test_reaching_and_leaving_a_stop_is_reported_once() -> None:
         if i == 120:
             shoulder.angle.motor = (-1.0, 10.0)
         system.step(1 / 120)
-        told += [(i, event) for event in system.contacts]
-    assert [(event.met, event.stop) for _, event in told] == [(True, "angle"), (False, "angle"), (True, "angle")]
+        told += [(i, event) for event in system.stops]
+    assert [(event.met, event.coordinate) for _, event in told] == [(True, "angle"), (False, "angle"), (True, "angle")]
     assert told[0][1].constraint == shoulder and 20 <= told[0][0] <= 30
     assert 120 <= told[1][0] <= 122 and 200 <= told[2][0] <= 210
 
@@ -181,12 +181,12 @@ def test_meeting_and_parting_of_a_rope_is_reported() -> None:
     events = []
     for _ in range(120):
         system.step(1 / 120)
-        events += system.contacts
-    assert events and events[0].met and events[0].stop is None and events[0].constraint == rope
+        events += system.stops
+    assert events and events[0].met and events[0].coordinate is None and events[0].constraint == rope
     assert "met" in repr(events[0])
     weight.velocity = (0, 3, 0)
     events = []
     for _ in range(10):
         system.step(1 / 120)
-        events += system.contacts
+        events += system.stops
     assert [event.met for event in events] == [False]

@@ -48,26 +48,26 @@ def place(url: str | None) -> tuple[str, int]:
 
 
 def test_a_client_that_checks_the_certificate_gets_the_page(world: iota.World, trust: ssl.SSLContext) -> None:
-    assert world.lan_url is not None and world.lan_url.startswith(f"https://{address()}:")
-    with urllib.request.urlopen(world.lan_url, context=trust) as answer:
+    assert world.pages.lan_url is not None and world.pages.lan_url.startswith(f"https://{address()}:")
+    with urllib.request.urlopen(world.pages.lan_url, context=trust) as answer:
         assert answer.status == 200 and b"<!doctype html>" in answer.read().lower()
         assert "wss://" in answer.headers["Content-Security-Policy"]
 
 
 def test_a_client_that_does_not_know_the_certificate_refuses_it(world: iota.World) -> None:
-    assert world.lan_url is not None
+    assert world.pages.lan_url is not None
     with pytest.raises(OSError, match="certificate verify failed"):
-        urllib.request.urlopen(world.lan_url)
+        urllib.request.urlopen(world.pages.lan_url)
 
 
 def test_the_printed_fingerprint_is_that_of_the_certificate(world: iota.World, state: Path) -> None:
-    sent = ssl.get_server_certificate(place(world.lan_url))
+    sent = ssl.get_server_certificate(place(world.pages.lan_url))
     assert fingerprint(sent) == fingerprint((state / "certificate.pem").read_text())
 
 
 def test_poses_come_by_wss_too(world: iota.World, trust: ssl.SSLContext) -> None:
-    assert world.lan_url is not None
-    with PageClient(world.lan_url, trust=trust) as client:
+    assert world.pages.lan_url is not None
+    with PageClient(world.pages.lan_url, trust=trust) as client:
         frames = client.pose_frames
         for _ in range(30):
             world.step()
@@ -75,15 +75,15 @@ def test_poses_come_by_wss_too(world: iota.World, trust: ssl.SSLContext) -> None
 
 
 def test_this_machine_needs_no_https(world: iota.World) -> None:
-    assert world.url is not None and world.url.startswith("http://127.0.0.1:")
-    with urllib.request.urlopen(world.url) as answer:
+    assert world.pages.url is not None and world.pages.url.startswith("http://127.0.0.1:")
+    with urllib.request.urlopen(world.pages.url) as answer:
         assert answer.status == 200
 
 
 def test_a_page_of_http_may_not_open_the_socket_of_https(world: iota.World, trust: ssl.SSLContext) -> None:
-    assert world.lan_url is not None
-    socket_url = world.lan_url.replace("https://", "wss://").replace("/?", "/ws?")
-    origin = world.lan_url.split("/?")[0]
+    assert world.pages.lan_url is not None
+    socket_url = world.pages.lan_url.replace("https://", "wss://").replace("/?", "/ws?")
+    origin = world.pages.lan_url.split("/?")[0]
     with connect(socket_url, ssl=trust, origin=origin), pytest.raises(WebSocketException):  # type: ignore[arg-type]
         connect(socket_url, ssl=trust, origin=origin.replace("https", "http"))  # type: ignore[arg-type]
 
@@ -91,7 +91,7 @@ def test_a_page_of_http_may_not_open_the_socket_of_https(world: iota.World, trus
 @pytest.mark.parametrize("rubbish", [b"\x16", b"\x16\x03\x01\x02\x00" + bytes(600), b"\x16\x03\x01\xff\xff", bytes(64)])
 def test_broken_handshakes_disturb_nobody(world: iota.World, trust: ssl.SSLContext, rubbish: bytes) -> None:
     for _ in range(50):
-        with socket.create_connection(place(world.lan_url)) as stranger:
+        with socket.create_connection(place(world.pages.lan_url)) as stranger:
             stranger.sendall(rubbish)
     test_a_client_that_checks_the_certificate_gets_the_page(world, trust)
 
@@ -102,7 +102,7 @@ def test_old_versions_of_tls_are_refused(world: iota.World) -> None:
     old.set_ciphers("ALL:@SECLEVEL=0")
     with pytest.warns(DeprecationWarning):
         old.minimum_version = old.maximum_version = ssl.TLSVersion.TLSv1_1
-    with socket.create_connection(place(world.lan_url)) as plain, pytest.raises((ssl.SSLError, ConnectionError)):
+    with socket.create_connection(place(world.pages.lan_url)) as plain, pytest.raises((ssl.SSLError, ConnectionError)):
         old.wrap_socket(plain)
 
 

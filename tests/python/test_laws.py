@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import gc
 import math
 import warnings
@@ -11,7 +12,6 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 
@@ -52,17 +52,22 @@ def pull(p: np.ndarray, q: np.ndarray, k: np.ndarray, length: np.ndarray) -> np.
     return (k * (r - length) / r)[:, None] * d
 
 
-numba_radial_spring = numba.cfunc("float64(float64, float64, float64, CPointer(float64))")(radial_spring)
+@functools.cache
+def of_numba(signature: str) -> Any:
+    """The two springs compiled by Numba. To load it and to compile takes seconds, in each process that collects tests."""
+    import numba
 
+    def batch(count, t, xp, xq, vp, vq, parameters, force):
+        p, q, f = (numba.carray(xp, (count, 3)), numba.carray(xq, (count, 3)), numba.carray(force, (count, 3)))
+        k = numba.carray(parameters, (count, 2))
+        for i in range(count):
+            d = q[i] - p[i]
+            r = math.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+            f[i] = (k[i, 0] * (r - k[i, 1]) / r) * d
 
-@numba.cfunc("void(int64, float64" + ", CPointer(float64)" * 6 + ")")
-def numba_batch_spring(count, t, xp, xq, vp, vq, parameters, force):
-    p, q, f = (numba.carray(xp, (count, 3)), numba.carray(xq, (count, 3)), numba.carray(force, (count, 3)))
-    k = numba.carray(parameters, (count, 2))
-    for i in range(count):
-        d = q[i] - p[i]
-        r = math.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-        f[i] = (k[i, 0] * (r - k[i, 1]) / r) * d
+    if signature == "batch":
+        return numba.cfunc("void(int64, float64" + ", CPointer(float64)" * 6 + ")")(batch)
+    return numba.cfunc("float64(float64, float64, float64, CPointer(float64))")(radial_spring)
 
 
 def numpy_spring(bonds: iota.types.BondBatch) -> np.ndarray:
@@ -98,8 +103,8 @@ RUNGS: dict[str, tuple[Callable[[iota.System], Any], dict[str, Any]]] = {
     "force expression": (lambda s: "force = -k*(r - r0)", {"k": 20, "r0": 0.1, "implicit": False}),
     "compiled": (lambda s: s.law(Radial(radial_spring), k=20, r0=0.1), {}),
     "compiled batch": (lambda s: s.law(Batch(batch_spring), signature="batch", k=20, r0=0.1), {}),
-    "numba": (lambda s: s.law(numba_radial_spring, k=20, r0=0.1), {}),
-    "numba batch": (lambda s: s.law(numba_batch_spring, signature="batch", k=20, r0=0.1), {}),
+    "numba": (lambda s: s.law(of_numba("radial"), k=20, r0=0.1), {}),
+    "numba batch": (lambda s: s.law(of_numba("batch"), signature="batch", k=20, r0=0.1), {}),
     "numpy": (lambda s: s.law(numpy_spring, k=20, r0=0.1), {}),
     "python": (lambda s: python_spring, {}),
 }

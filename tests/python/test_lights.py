@@ -19,9 +19,9 @@ def test_lights_have_the_records_of_the_protocol_and_follow_their_anchor(run_wor
     system = iota.System(gravity=(0, 0, 0))
     lamp = system.body().particle((0, 2, 0)).body
     world = iota.World(system)
-    spot = world.light("spot", at=lamp, color="#ffd9a0", intensity=2, reach=3, angle=0.4, shadow=True)
-    world.light("sun", at=(3, 5, 2))
-    world.light("point", at=(0, 1, 0))
+    spot = world.drawings.light("spot", at=lamp, color="#ffd9a0", intensity=2, reach=3, angle=0.4, shadow=True)
+    world.drawings.light("sun", at=(3, 5, 2))
+    world.drawings.light("point", at=(0, 1, 0))
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["light"]) == 3)
         seen, sun, point = (page.entities["light"][slot] for slot in range(3))
@@ -41,12 +41,15 @@ def test_lights_have_the_records_of_the_protocol_and_follow_their_anchor(run_wor
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda w: w.light("lamp"), "kind: must be one of point, spot, sun, not 'lamp'"),
-        (lambda w: w.light("point", shadow=True), "a point casts none"),
-        (lambda w: w.light(intensity=-1), "intensity: must be a finite number"),
-        (lambda w: w.light("spot", angle=3), "angle: must be a finite number"),
-        (lambda w: [w.light() for _ in range(9)], "at most 8 lights"),
-        (lambda w: [w.light("spot", shadow=True) for _ in range(3)], "at most 2 lights of a world cast shadows"),
+        (lambda w: w.drawings.light("lamp"), "kind: must be one of point, spot, sun, not 'lamp'"),
+        (lambda w: w.drawings.light("point", shadow=True), "a point casts none"),
+        (lambda w: w.drawings.light(intensity=-1), "intensity: must be a finite number"),
+        (lambda w: w.drawings.light("spot", angle=3), "angle: must be a finite number"),
+        (lambda w: [w.drawings.light() for _ in range(9)], "at most 8 lights"),
+        (
+            lambda w: [w.drawings.light("spot", shadow=True) for _ in range(3)],
+            "at most 2 lights of a world cast shadows",
+        ),
     ],
 )
 def test_lights_that_cannot_be_are_refused(make: Callable[[iota.World], Any], said: str) -> None:
@@ -56,6 +59,6 @@ def test_lights_that_cannot_be_are_refused(make: Callable[[iota.World], Any], sa
 
 def test_a_light_that_is_gone_makes_room_for_another() -> None:
     world = iota.World(iota.System())
-    lights = [world.light("spot", shadow=number < 2) for number in range(8)]
+    lights = [world.drawings.light("spot", shadow=number < 2) for number in range(8)]
     lights[0].destroy()
-    world.light("sun", at=(1, 1, 1), shadow=True)
+    world.drawings.light("sun", at=(1, 1, 1), shadow=True)

@@ -43,7 +43,7 @@ def make_world() -> iota.World:
 
     @world.action("flash", key="f", on="world")
     def flash() -> None:
-        world.effect("break", (0, 2, 0))
+        world.drawings.effect("break", (0, 2, 0))
 
     return world
 
@@ -51,7 +51,7 @@ def make_world() -> iota.World:
 def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_path: Path) -> None:
     file = tmp_path / "lesson.iota"
     world = make_world()
-    with world.record(file) as recording:
+    with world.pages.record(file) as recording:
         url = world.start(port=0)
         with PageClient(url, name="Ada") as ada, PageClient(url, name="Max") as max_:
             ada.wait_for(lambda: len(ada.last["clients"]["clients"]) == 2)
@@ -63,8 +63,8 @@ def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_pa
             ada.wait_for(lambda: ada.places[1][0] > 0.5 and ada.effects)
             early, is_complete = read(file)  # while it is written
             assert early and not is_complete
-            world.notice("only for Ada", client=ada.id)
-            world.notice("for all")
+            world.users.notice("only for Ada", client=ada.id)
+            world.users.notice("for all")
             max_.wait_for(lambda: max_.notices)
         world.call(lambda: None)
     assert recording.error is None
@@ -148,7 +148,9 @@ def test_a_recording_that_does_not_fit_on_the_disk_ends_and_the_world_goes_on(tm
         + SCRIPT.replace(
             "world = ",
             "for _ in range(200): system.body().particle([random.random() for _ in range(3)], velocity=(0.1, 0, 0))\nworld = ",
-        ).replace("world.run()", "recording = world.record('full.iota')\nworld.run(seconds=4)\nprint(recording.error)")
+        ).replace(
+            "world.run()", "recording = world.pages.record('full.iota')\nworld.run(seconds=4)\nprint(recording.error)"
+        )
     )
     words = [sys.executable, "-m", "iota", "run", "full.py", "--port", "0", "--no-open"]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -167,25 +169,25 @@ def test_an_older_file_stays_until_there_is_something_to_record(tmp_path: Path) 
     file = tmp_path / "old.iota"
     file.write_bytes(b"an older one")
     StreamFile(file).close()
-    recording = make_world().record(file)
+    recording = make_world().pages.record(file)
     recording.stop()
     recording.stop()
     assert file.read_bytes() == b"an older one" and list(tmp_path.iterdir()) == [file], "nothing else is left"
     world = make_world()
-    with world.record(file):
+    with world.pages.record(file):
         world.start(port=0)
         wait_for(lambda: file.read_bytes() != b"an older one")
     world.stop()
     assert read(file)[1] and [path for path in tmp_path.iterdir() if path.is_file()] == [file]
-    make_world().record(tmp_path / "SHOUTED.IOTA").stop()
+    make_world().pages.record(tmp_path / "SHOUTED.IOTA").stop()
 
 
 def test_files_that_cannot_be_are_refused_in_one_line(tmp_path: Path) -> None:
     world = make_world()
     with pytest.raises(ValueError, match=r"end in \.iota"):
-        world.record(tmp_path / "film.mp4")
+        world.pages.record(tmp_path / "film.mp4")
     with pytest.raises(OSError, match="cannot be written: No such file"):
-        world.record(tmp_path / "none" / "film.iota")
+        world.pages.record(tmp_path / "none" / "film.iota")
     for words, told in (
         (["--record", "x.iota", "--headless"], "needs a page"),
         (["--record", "x.iota", "--terminal"], "needs a page"),

@@ -107,7 +107,7 @@ def test_the_page_says_that_it_lacks_drawings_by_code_of_the_script(tmp_path: Pa
             {own}
             return world
         """
-    own = f"world.client_module({str(tmp_path / 'flower.js')!r}); world.custom('flower')"
+    own = f"world.pages.client_module({str(tmp_path / 'flower.js')!r}); world.drawings.custom('flower')"
     with sync.sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
         for name, line, told in (("own", own, ["flower.js"]), ("usual", "pass", [])):

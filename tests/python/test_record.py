@@ -108,7 +108,7 @@ def test_a_film_is_smooth_and_in_real_time_on_any_machine(script: Path, tmp_path
 @needs_browser
 def test_a_film_shows_the_plots_of_the_script_on_request(script: Path, tmp_path: Path) -> None:
     plotted = script.read_text().replace(
-        "return world", 'world.plot("up", lambda: system.time, seconds=1); return world'
+        "return world", 'world.controls.plot("up", lambda: system.time, seconds=1); return world'
     )
     script.write_text(plotted.replace("#ff0000", "#000000"))
 
@@ -182,5 +182,7 @@ def test_a_missing_browser_or_package_is_named_with_advice(script: Path, tmp_pat
         hidden.mkdir()
         (hidden / f"{package}.py").write_text("raise ImportError")
         done = record(script, "-o", film, PYTHONPATH=str(hidden))
-        assert done.returncode == 1 and f"the package {package}" in done.stderr and "iota[film]" in done.stderr
+        assert (
+            done.returncode == 1 and f"the package {package}" in done.stderr and "requirements-film.txt" in done.stderr
+        )
     assert not film.exists() and not list(tmp_path.glob(".film*"))

@@ -13,7 +13,7 @@ import iota
 from iota import looks
 from iota._protocol import NO_COLOR, BodyKind, TieKind
 from iota.world.frames import into_frame, turn_from_x
-from iota.world.scene import Scene
+from iota.world.visuals import Visuals
 
 ROOT = Path(__file__).parents[2]
 
@@ -28,7 +28,7 @@ def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.Syste
         assert shown.bodies[1]["kind"] == BodyKind.STATIC and shown.bodies[1]["length"] == 0.0
         (thick,), (round_,) = shown.parts(rod), shown.parts(ball)
         assert thick["shape"]["kind"] == "capsule" and thick["shape"]["sizes"][0] == pytest.approx(0.12)
-        assert round_["shape"]["kind"] == "sphere" and round_["look"] == "*"
+        assert round_["shape"]["kind"] == "sphere" and round_["style"] == "*"
 
 
 def test_movable_solids_without_a_look_stand_out_from_the_ground_in_light_and_dark(system: iota.System) -> None:
@@ -51,8 +51,8 @@ def test_movable_solids_without_a_look_stand_out_from_the_ground_in_light_and_da
 
 def test_a_rod_is_drawn_from_end_to_end_whatever_its_masses_and_joints(system: iota.System) -> None:
     """With the drawn frame's origin at the center of mass and x from the first end to the second."""
-    scene = Scene()
-    scene.classes["rod"] = looks.by_style([looks.cylinder(0.01), looks.sphere(0.1)])
+    visuals = Visuals()
+    visuals.looks["rod"] = looks.by_style([looks.cylinder(0.01), looks.sphere(0.1)])
     rods = []
     for drawn, masses in ((True, (0.1, 1.9)), (False, (3.0, 1.0)), (True, (1.0, 1.0))):
         rod = system.body()
@@ -60,11 +60,11 @@ def test_a_rod_is_drawn_from_end_to_end_whatever_its_masses_and_joints(system: i
             rod.particle((x, 0, 0), mass)
         rods.append(rod)
         if drawn:
-            scene.assign([rod], "rod")
+            visuals.assign([rod], "rod")
     block = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=1, position=(2, 0, 0))
     for rod in rods:
         system.revolute(block, rod, at=(2, 0, 0), axis=(0, 0, 1))
-    with show(system, scene) as shown:
+    with show(system, visuals) as shown:
         for rod in rods:
             assert len(rod.particles) > 2, "the joint has points of its own on the rod"
             assert shown.bodies[rod.slot]["length"] == pytest.approx(2)
@@ -75,14 +75,14 @@ def test_a_rod_is_drawn_from_end_to_end_whatever_its_masses_and_joints(system: i
 
 
 def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list[iota.Body]) -> None:
-    scene = Scene()
-    scene.classes["link"] = {"rope": looks.cylinder(0.01, "rope"), "chain": looks.chain_link(0.1)}
-    scene.assign(chain, "link")
-    with show(system, scene) as shown:
+    visuals = Visuals()
+    visuals.looks["link"] = {"rope": looks.cylinder(0.01, "rope"), "chain": looks.chain_link(0.1)}
+    visuals.assign(chain, "link")
+    with show(system, visuals) as shown:
         assert [shown.bodies[body.slot]["odd"] for body in chain] == [False, True] * 3
-        assert len({shown.bodies[body.slot]["style"] for body in chain}) == 1
-        style = shown.page.style_of(chain[0].slot)
-        assert style["name"] == "link" and [part["look"] for part in style["parts"]] == ["rope", "chain"]
+        assert len({shown.bodies[body.slot]["visual"] for body in chain}) == 1
+        visual = shown.page.visual_of(chain[0].slot)
+        assert visual["name"] == "link" and [part["style"] for part in visual["parts"]] == ["rope", "chain"]
 
 
 def test_pages_get_the_names_of_the_script_and_for_a_new_name_only_that_body(
@@ -115,14 +115,14 @@ def test_pages_get_the_names_of_the_script_and_for_a_new_name_only_that_body(
 def test_welded_bodies_get_a_compound_as_thick_as_their_looks(
     system: iota.System, chain: list[iota.Body], shape: iota.Shape
 ) -> None:
-    scene = Scene()
-    scene.classes["link"] = {"*": looks.Look(shape, "brass")}
-    scene.assign(chain, "link")
-    with show(system, scene) as shown:
+    visuals = Visuals()
+    visuals.looks["link"] = {"*": looks.Look(shape, "brass")}
+    visuals.assign(chain, "link")
+    with show(system, visuals) as shown:
         chain[0].combine(chain[1])
         shown.look()
         parts = shown.parts(chain[0])
-        assert len(shown.bodies) == 5 and shown.page.style_of(chain[2].slot)["name"] == "link"
+        assert len(shown.bodies) == 5 and shown.page.visual_of(chain[2].slot)["name"] == "link"
         assert all(part["material"] == "brass" for part in parts)
         assert [part["shape"]["sizes"][0] for part in parts] == pytest.approx([0.01] * len(parts))
         assert sum(part["shape"]["sizes"][1] for part in parts) == pytest.approx(0.2)
@@ -303,7 +303,7 @@ def test_bodies_that_are_drawn_alike_share_a_class(system: iota.System, chain: l
     world.draw(chain[:3], looks.cylinder(0.01))
     world.draw(chain[3], looks.cylinder(0.01))
     world.draw(chain[4:], {"thin": looks.cylinder(0.001), "thick": [looks.cylinder(0.1), looks.sphere(0.2)]})
-    assert list(world._state.scene.classes) == ["rope", "class 2", "class 3"]
+    assert list(world._state.visuals.looks) == ["rope", "visual 2", "visual 3"]
     with pytest.raises(TypeError, match=r"a look is made by iota.looks.* not 'brass'"):
         world.draw(chain, "brass")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="kind must be one of spring, rope, rod, not 'bond'"):

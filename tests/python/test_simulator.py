@@ -50,7 +50,7 @@ def test_a_page_shows_drags_cuts_pauses_and_resets_it(example: dict[str, Any], r
         page.wait_for(lambda: page.places[60][2] > 1.2)
         (hold,) = page.last["poses"]["holds"]
         assert hold["client"] == page.id and hold["body"] == 60 and hold["force"] > 0
-        assert world.call(lambda: world.held(page.id)) is cloth.bodies[60]
+        assert world.call(lambda: world.users.held(page.id)) is cloth.bodies[60]
         page.send("action", name="cut", body=page.body(60))
         page.wait_for(lambda: page.parts() == 2)
         page.wait_for(lambda: [e for e in page.effects if e["kind"] == "break"])

@@ -21,7 +21,7 @@ def test_a_skin_is_the_surface_around_its_particles_and_follows_them(run_world: 
     bodies = [system.body() for _ in range(2)]
     balls = [body.particle((x, 1, 0)) for body, x in zip(bodies, (0.0, 0.15), strict=True)]
     world = iota.World(system)
-    skin = world.skin(balls, 0.1, color="#4c9a52")
+    skin = world.drawings.skin(balls, 0.1, color="#4c9a52")
     places, triangles = effects.skin([ball.position for ball in balls], 0.1)
     with PageClient(run_world(world)) as page:
         seen = page.wait_for(lambda: page.entities["surface"].get(0))
@@ -41,7 +41,7 @@ def test_a_skin_is_the_surface_around_its_particles_and_follows_them(run_world: 
 def test_a_skin_around_points_of_a_function_is_switched_off_by_an_error(run_world: Runner) -> None:
     world = iota.World(iota.System())
     places: Any = [[0, 0, 0]]
-    skin = world.skin(lambda: places, 0.1, cell=0.05)
+    skin = world.drawings.skin(lambda: places, 0.1, cell=0.05)
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.entities["surface"].get(0))
 
@@ -56,4 +56,4 @@ def test_a_skin_around_points_of_a_function_is_switched_off_by_an_error(run_worl
         page.wait_for(lambda: not page.entities["surface"])
         assert len(page.notices) == 1
     with pytest.raises(TypeError, match="particles or bodies, or a function"):
-        world.skin([1, 2], 0.1)
+        world.drawings.skin([1, 2], 0.1)

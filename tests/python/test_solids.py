@@ -111,7 +111,7 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     b = system.body(shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
     c = system.body(shape=cube(), position=(0, 5, 0))
     with show(system) as shown:
-        assert shown.bodies[a.slot]["style"] == shown.bodies[b.slot]["style"] != shown.bodies[c.slot]["style"]
+        assert shown.bodies[a.slot]["visual"] == shown.bodies[b.slot]["visual"] != shown.bodies[c.slot]["visual"]
         (part,) = shown.parts(a)
         assert (
             part["shape"]["kind"] == "box" and part["shape"]["sizes"][:3] == [1, 1, 1] and part["offset"] == (0, 0, 0)

@@ -43,23 +43,23 @@ def test_a_file_that_cannot_be_used_is_refused_by_its_name(tmp_path: Path, data:
         path.write_bytes(data)
     world = iota.World(iota.System())
     with pytest.raises(ValueError, match=rf"sound '.*bell\.ogg': .*{said}"):
-        world.sound(path)
-    assert world.things == []
+        world.drawings.sound(path)
+    assert world.drawings.things == []
 
 
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda w: w.sound(np.zeros((3, 3))), r"\(n,\) or \(n, 2\)"),
-        (lambda w: w.sound(np.zeros(0)), r"\(n,\) or \(n, 2\)"),
-        (lambda w: w.sound(TONE, rate=4), "rate is from"),
-        (lambda w: w.sound(np.full(9, np.nan)), "finite"),
-        (lambda w: w.sound(np.zeros(MOST_BYTES)), "has 2.0 MiB"),
-        (lambda w: w.sound(TONE, reach=-1), "reach: must be"),
-        (lambda w: w.sound(TONE).play((0, 0, 0), volume=11), "volume must be from 0 to 10"),
-        (lambda w: w.effect("impact", (0, 0, 0), volume=float("nan")), "volume must be from 0 to 10"),
-        (lambda w: w.effect("bang", (0, 0, 0)), "kind must be one of"),
-        (lambda w: w.sound(TONE).play((0, float("inf"), 0)), "finite"),
+        (lambda w: w.drawings.sound(np.zeros((3, 3))), r"\(n,\) or \(n, 2\)"),
+        (lambda w: w.drawings.sound(np.zeros(0)), r"\(n,\) or \(n, 2\)"),
+        (lambda w: w.drawings.sound(TONE, rate=4), "rate is from"),
+        (lambda w: w.drawings.sound(np.full(9, np.nan)), "finite"),
+        (lambda w: w.drawings.sound(np.zeros(MOST_BYTES)), "has 2.0 MiB"),
+        (lambda w: w.drawings.sound(TONE, reach=-1), "reach: must be"),
+        (lambda w: w.drawings.sound(TONE).play((0, 0, 0), volume=11), "volume must be from 0 to 10"),
+        (lambda w: w.drawings.effect("impact", (0, 0, 0), volume=float("nan")), "volume must be from 0 to 10"),
+        (lambda w: w.drawings.effect("bang", (0, 0, 0)), "kind must be one of"),
+        (lambda w: w.drawings.sound(TONE).play((0, float("inf"), 0)), "finite"),
     ],
 )
 def test_sounds_that_cannot_be_are_refused(make: Callable[[iota.World], Any], said: str) -> None:
@@ -73,12 +73,14 @@ def test_a_sound_is_sent_once_and_played_where_its_body_is(run_world: Runner, tm
     world = iota.World(system, ground=None)
     path = tmp_path / "tone.wav"
     path.write_bytes(make_wav(TONE, 22050))
-    bell = world.sound(path, reach=2)
+    bell = world.drawings.sound(path, reach=2)
     with PageClient(run_world(world)) as page:
         told = page.wait_for(lambda: page.entities["sound"].get(0))
         assert told["file"] == path.read_bytes() and told["reach"] == 2
         told_before = page.told
-        world.call(lambda: [bell.play(ball, volume=0.5), bell.play((0, 1, 0)), world.effect("impact", (1, 1, 1), 2)])
+        world.call(
+            lambda: [bell.play(ball, volume=0.5), bell.play((0, 1, 0)), world.drawings.effect("impact", (1, 1, 1), 2)]
+        )
         page.wait_for(lambda: len(page.effects) == 3)
         assert page.effects[0] == {"kind": f"#{told['name']}", "position": (1, 2, 3), "volume": 0.5}
         assert page.effects[1]["position"] == (0, 1, 0)

@@ -55,7 +55,7 @@ def test_every_nail_is_at_something_visible(name: str) -> None:
     held = [p for p in world.system.particles if p.is_nailed]
     held += [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
     for thing in held:
-        near = world.overlap(iota.Sphere(0.03), thing.position)
+        near = world.queries.overlap(iota.Sphere(0.03), thing.position)
         assert any(not isinstance(each, iota.Body) for each in near), thing
 
 

@@ -25,7 +25,9 @@ def run(world: iota.World, seconds: float) -> None:
 
 
 def widget(world: iota.World, label: str):  # type: ignore[no-untyped-def]
-    return next(thing for thing in world.things if getattr(thing, "label", None) == label and hasattr(thing, "value"))
+    return next(
+        thing for thing in world.drawings.things if getattr(thing, "label", None) == label and hasattr(thing, "value")
+    )
 
 
 def change(world: iota.World, label: str, value: float) -> None:
@@ -35,7 +37,7 @@ def change(world: iota.World, label: str, value: float) -> None:
 
 
 def labels(world: iota.World) -> list[str]:
-    return [thing.text for thing in world.things if hasattr(thing, "text")]
+    return [thing.text for thing in world.drawings.things if hasattr(thing, "text")]
 
 
 def test_the_appendix_scripts_fall_swing_and_fold_and_land_on_the_ground() -> None:
@@ -90,7 +92,7 @@ def test_the_plots_of_the_class_show_its_motions() -> None:
     run(world, 2.0)
     system = world.system
     newest = {}
-    for plot in world.things:
+    for plot in world.drawings.things:
         if isinstance(plot, Plot):
             plot.sample(system.time, world._guard)  # as before each picture
             newest[plot.label] = plot._record()["values"][-1]  # type: ignore[index]

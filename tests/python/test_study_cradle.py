@@ -67,7 +67,7 @@ def test_balls_touch_at_rest_and_hang_from_the_bars() -> None:
         assert abs(q.center_of_mass - p.center_of_mass) == pytest.approx(2 * cradle.RADIUS, abs=1e-12)
     joints = [joint for joint in world.system.constraints if joint.a in made.balls]
     assert [joint.position.y for joint in joints] == pytest.approx([cradle.HEIGHT] * 5)
-    (drawn,) = world.look_of(made.balls[0]).values()  # type: ignore[union-attr]
+    (drawn,) = world.scene.look_of(made.balls[0]).values()  # type: ignore[union-attr]
     _, *strings = drawn
     for string, side in zip(strings, (-1, 1), strict=True):
         half = turned(string.rotation, iota.Vec3(string.shape.length / 2, 0, 0))
@@ -185,7 +185,7 @@ def test_the_cradle_can_be_turned_round_while_it_swings() -> None:
 
 def test_keys_lift_one_more_ball_and_reset_begins_anew() -> None:
     world = cradle.build(1, 0)
-    made = world._stepper.on_step[0].function.__self__  # type: ignore[attr-defined]
+    made = world._state.listeners.on_step[0].function.__self__  # type: ignore[attr-defined]
     for _ in range(50):
         world.step()
     world._state.actions["lift left"].hook.function()

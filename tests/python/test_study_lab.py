@@ -17,8 +17,8 @@ def test_the_room_is_rich_and_light_enough_for_a_headset() -> None:
     world = iota.World(iota.System())
     room = _laboratory.furnish(world)
     assert 50_000 < room.triangles < 75_000
-    assert len(world._state.statics) < 40
-    drawn = sum(len(static.look.shape.triangles) for static in world._state.statics)
+    assert len(world.scene.statics) < 40
+    drawn = sum(len(static.look.shape.triangles) for static in world.scene.statics)
     assert drawn == room.triangles
 
 

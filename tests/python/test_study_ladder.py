@@ -6,12 +6,13 @@ import os
 
 import numpy as np
 import pytest
+from amount import sampled
 
 import iota
 from iota.studies import ladder
 from iota.world.frames import turned
 
-MINUTES = float(os.environ.get("IOTA_LADDER_MINUTES", "1"))  # tools/soak.py asks for ten
+MINUTES = float(os.environ.get("IOTA_LADDER_MINUTES", sampled(60) / 60))  # tools/soak.py asks for ten
 
 
 class Watched:
@@ -137,7 +138,8 @@ def test_two_ripples_run_and_leave_it_as_it_was() -> None:
 
 def test_a_second_ripple_that_catches_up_with_the_first_ends_it() -> None:
     """Thesis 5.1.3: pairs above where they meet have turned twice, those below never."""
-    for delay in np.arange(1.2, 1.5, 0.02):  # s; where they meet depends on it chaotically
+    # In seconds. Where they meet depends on it chaotically; the first of them will do as long as no bit changes.
+    for delay in sorted(np.arange(1.2, 1.5, 0.02), key=lambda delay: abs(delay - 1.4)):
         watched = Watched(9)
         watched.ladder.tip()
         watched.run(delay)
@@ -155,7 +157,7 @@ def test_a_second_ripple_that_catches_up_with_the_first_ends_it() -> None:
 
 @pytest.mark.parametrize("blocks", [5, 6, 7, 8, 9])
 def test_it_is_never_stuck_nor_torn(blocks: int) -> None:
-    """Somebody tips it for a minute, and pulls at blocks from all sides."""
+    """Somebody tips it for some time, and pulls at blocks from all sides."""
     watched = Watched(blocks)
     random = np.random.default_rng(blocks)
     while watched.system.time < 60 * MINUTES:
@@ -179,7 +181,7 @@ def test_a_hand_turns_the_top_block_and_it_stays_as_it_is_left(monkeypatch: pyte
     block = watched.ladder.blocks[0]
     arm = abs(block.ends[1].position - ladder.TOP)
     grip = watched.system.grip(block.ends[0].body, (0, arm, 0), ladder.TOP + (0, arm, 0))
-    monkeypatch.setattr(iota.World, "held", lambda world, client=None: block.ends[0].body)
+    monkeypatch.setattr(type(watched.world.users), "held", lambda users, client=None: block.ends[0].body)
     for step in range(120):
         turn = 2.8 * step / 120
         grip.move(ladder.TOP + iota.Vec3(-math.sin(turn), math.cos(turn), 0) * (4 * arm))

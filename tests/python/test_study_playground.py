@@ -30,7 +30,7 @@ def act(world: iota.World, name: str, body: iota.Body) -> None:
 
 
 def widget(world: iota.World, label: str) -> Any:
-    return next(thing for thing in world.things if getattr(thing, "label", "") == label)
+    return next(thing for thing in world.drawings.things if getattr(thing, "label", "") == label)
 
 
 def push(world: iota.World, label: str) -> None:

@@ -114,8 +114,8 @@ def test_an_image_is_laid_upright_and_once_over_points() -> None:
 
 def test_an_image_is_sent_once_and_gone_with_the_last_that_needs_it(run_world: Runner) -> None:
     world = iota.World(iota.System())
-    boxes = [world.shape(looks.box((1, 1, 1), "wood", texture=CHECK)) for _ in range(3)]
-    world.shape(looks.sphere(1, texture=CHECK, repeat=2))
+    boxes = [world.drawings.shape(looks.box((1, 1, 1), "wood", texture=CHECK)) for _ in range(3)]
+    world.drawings.shape(looks.sphere(1, texture=CHECK, repeat=2))
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["texture"]) == 2)
         page.wait_for(lambda: len(page.entities["marker"]) == 4)
@@ -148,7 +148,7 @@ def test_bodies_fixed_shapes_and_surfaces_have_images(run_world: Runner) -> None
         page.wait_for(lambda: len(page.entities["texture"]) == 3)
         surface = page.wait_for(lambda: page.entities["surface"].get(0))
         assert list(surface["coordinates"]) == [0, 0, 1, 0, 1, 1]
-        assert page.style_of(corners[0].slot)["parts"][0]["material"].startswith("steel#")
+        assert page.visual_of(corners[0].slot)["parts"][0]["material"].startswith("steel#")
         world.call(lambda: setattr(sail, "coordinates", [(0, 0), (3, 0), (3, 3)]))
         page.wait_for(lambda: list(page.entities["surface"][0]["coordinates"]) == [0, 0, 3, 0, 3, 3])
         world.call(lambda: setattr(sail, "texture", None))
@@ -160,7 +160,7 @@ def test_several_large_images_arrive(run_world: Runner) -> None:
     world = iota.World(iota.System())
     for seed in range(4):
         noise = np.random.default_rng(seed).integers(0, 256, (1100, 1200, 3), np.uint8)
-        world.shape(looks.box((1, 1, 1), texture=noise))
+        world.drawings.shape(looks.box((1, 1, 1), texture=noise))
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["texture"]) == 4)
         assert all(len(entity["image"]) > 3_900_000 for entity in page.entities["texture"].values())

@@ -54,7 +54,7 @@ def test_assigning_updates_and_only_changes_are_sent(rod: iota.Body, run_world: 
         page.wait_for(lambda: 4 in page.entities["label"])
         world.call(label.destroy)
         page.wait_for(lambda: 0 not in page.entities["label"])
-        assert page.told == told + 2 and not label.alive and len(world.things) == 50
+        assert page.told == told + 2 and not label.alive and len(world.drawings.things) == 50
         new = world.call(lambda: world.label("in the place of the first"))
         assert entity(page, "label")["id"][1] > seen["id"][1], "another one in that slot"
         assert new.text == "in the place of the first"
@@ -68,10 +68,10 @@ def test_drawings_on_a_particle_stay_on_it_when_bodies_are_cut(run_world: Runner
     last = other.particle((2, 1, 0))
     world = iota.World(system)
     world.label("end", at=last)
-    arrow = world.arrow(first, last)
+    arrow = world.drawings.arrow(first, last)
     bond = system.bond(first, last, "spring", stiffness=1, length=2)
     world.label("middle", at=bond)
-    world.paused = True
+    world.clock.paused = True
     with PageClient(run_world(world)) as page:
         before = entity(page, "label")["a"]
         assert before["body"] == other.slot
@@ -111,8 +111,8 @@ def test_thousands_of_arrows_and_lines_are_set_by_one_array(rod: iota.Body, run_
         return np.reshape(seen["places"], (-1, 3)) + to * np.reshape(seen["scales"], (-1, 3))[:, :1]
 
     world = iota.World(rod.system)
-    arrows = world.arrows(starts, ways, color="#ff0000", at=rod)
-    lines = world.segments(starts, starts + ways, radius=0.01, color=random.uniform(0, 1, (3000, 3)))
+    arrows = world.drawings.arrows(starts, ways, color="#ff0000", at=rod)
+    lines = world.drawings.segments(starts, starts + ways, radius=0.01, color=random.uniform(0, 1, (3000, 3)))
     with PageClient(run_world(world)) as page:
         seen = entity(page, "shape_set")
         np.testing.assert_allclose(ends(seen), starts + ways, atol=2e-6)
@@ -134,7 +134,7 @@ def test_thousands_of_arrows_and_lines_are_set_by_one_array(rod: iota.Body, run_
         world.call(lambda: setattr(lines, "ends", starts[:5]))
         page.wait_for(lambda: any("ends must be 3000" in notice["text"] for notice in page.notices))
     with pytest.raises(ValueError, match="starts: may have 262144 rows at most, not 300000"):
-        world.arrows(np.zeros((300_000, 3)), np.zeros((300_000, 3)))
+        world.drawings.arrows(np.zeros((300_000, 3)), np.zeros((300_000, 3)))
 
 
 def test_a_script_may_navigate_by_keys_and_a_camera_of_its_own(rod: iota.Body, run_world: Runner) -> None:
@@ -160,12 +160,12 @@ def test_more_than_pages_take_is_refused_where_it_is_assigned(rod: iota.Body) ->
     with pytest.raises(ValueError, match="points: may have 1048576 rows at most, not 1100000; draw them in several"):
         world.points(many, radius=0.1)
     with pytest.raises(ValueError, match="positions: may have 349525 rows at most"):
-        world.shapes(looks.sphere(0.1), many)
+        world.drawings.shapes(looks.sphere(0.1), many)
     with pytest.raises(ValueError, match="points: may have 349525 rows"):
         world.surface(many, [(0, 1, 2)])
     with pytest.raises(ValueError, match="triangles: may have 349525 rows"):
         world.surface(many[:3], np.zeros((400_000, 3), int))
-    shapes = world.shapes(looks.sphere(0.1), many[:100])
+    shapes = world.drawings.shapes(looks.sphere(0.1), many[:100])
     with pytest.raises(ValueError, match="positions: may have"):
         shapes.positions = many
     assert len(shapes.positions) == 100
@@ -179,9 +179,9 @@ def test_more_things_than_pages_draw_are_refused_and_the_others_stay(
     kept = [world.label("a", at=(x, 0, 0)) for x in range(3)]
     with pytest.raises(ValueError, match=r"at most 3 things .* by one array: world\.points"):
         world.label("b")
-    assert world.things == kept
+    assert world.drawings.things == kept
     kept[0].destroy()
-    assert len(world.things) == 2 and world.label("c") in world.things
+    assert len(world.drawings.things) == 2 and world.label("c") in world.drawings.things
 
 
 def test_pages_that_open_later_get_the_notice_of_a_thing_that_cannot_be_shown(
@@ -198,11 +198,11 @@ def test_pages_that_open_later_get_the_notice_of_a_thing_that_cannot_be_shown(
 
 def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system)
-    line = world.line(rod.particles[0], (0, 0, 0), radius=0.02, closed=True)
-    world.line(np.zeros((4, 2)))
-    world.axes(rod, length=0.3)
-    world.trace(rod.particles[1], seconds=2, color=(1, 0, 0))
-    world.shape(looks.sphere(0.1, "steel"), position=(0, 0.5, 0), on=rod, color=0x112233)
+    line = world.drawings.line(rod.particles[0], (0, 0, 0), radius=0.02, closed=True)
+    world.drawings.line(np.zeros((4, 2)))
+    world.drawings.axes(rod, length=0.3)
+    world.drawings.trace(rod.particles[1], seconds=2, color=(1, 0, 0))
+    world.drawings.shape(looks.sphere(0.1, "steel"), position=(0, 0.5, 0), on=rod, color=0x112233)
     with PageClient(run_world(world)) as page:
         seen = entity(page, "line")
         assert seen["bodies"] == [rod.slot, NO_BODY] and seen["points"] == pytest.approx([-0.5, 0, 0, 0, 0, 0])
@@ -225,10 +225,10 @@ def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota
         (lambda w: w.label("x", height=-1), "height: must be a finite number from 0"),
         (lambda w: w.points(np.zeros((3, 4))), r"points: must have the shape \(n, 2\) or \(n, 3\)"),
         (lambda w: w.points([[0, 0, np.inf]]), "points: must be finite"),
-        (lambda w: w.slider("s", 3, 2), "a minimum below its maximum"),
-        (lambda w: w.choice("c", []), "at least one option"),
-        (lambda w: w.choice("c", ["a"], "b"), "value must be one of a"),
-        (lambda w: w.plot("p", ["a", "b"]).add(0, 1), "has 2 curves, not 1"),
+        (lambda w: w.controls.slider("s", 3, 2), "a minimum below its maximum"),
+        (lambda w: w.controls.choice("c", []), "at least one option"),
+        (lambda w: w.controls.choice("c", ["a"], "b"), "value must be one of a"),
+        (lambda w: w.controls.plot("p", ["a", "b"]).add(0, 1), "has 2 curves, not 1"),
         (lambda w: w.on_key(""), "a key needs a name"),
     ],
 )
@@ -250,19 +250,19 @@ def test_a_bad_assignment_leaves_a_thing_as_it_was() -> None:
 def test_controls_reach_the_script_and_all_pages(system: iota.System, run_world: Runner) -> None:
     world = iota.World(system)
     heard: list[Any] = []
-    slider = world.slider("gravity", 0, 20, 9.5, step=0.5, unit="m/s²")
-    check = world.checkbox("wind")
-    choice = world.choice("law", ["spring", "rope"], "rope")
-    text = world.text("name", "Ada")
+    slider = world.controls.slider("gravity", 0, 20, 9.5, step=0.5, unit="m/s²")
+    check = world.controls.checkbox("wind")
+    choice = world.controls.choice("law", ["spring", "rope"], "rope")
+    text = world.controls.text("name", "Ada")
     slider.on_change(lambda: heard.append(slider.value))
     check.on_change(lambda event: heard.append((event.client, event.name, check.value)))
 
-    @world.button("go", help="starts")
+    @world.controls.button("go", help="starts")
     def go(event: iota.Event) -> None:
         heard.append("go")
         event.notice("gone")
 
-    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+    with PageClient(run_world(world)) as page, PageClient(world.pages.url or "") as other:
         seen = entity(page, "widget")
         assert seen["kind"] == WidgetKind.SLIDER and seen["value"] == 9.5 and seen["unit"] == "m/s²"
         assert entity(page, "widget", 2)["options"] == ["spring", "rope"] and page.entities["widget"][2]["value"] == 1
@@ -295,7 +295,7 @@ def test_controls_reach_the_script_and_all_pages(system: iota.System, run_world:
 
 def test_a_control_that_raises_is_reported_and_the_world_goes_on(run_world: Runner) -> None:
     world = iota.World(iota.System())
-    slider = world.slider("s", 0, 1)
+    slider = world.controls.slider("s", 0, 1)
 
     @slider.on_change
     def bad() -> None:
@@ -311,8 +311,8 @@ def test_a_plot_samples_by_itself_and_begins_anew_after_reset(run_world: Runner)
     system = iota.System()
     ball = system.body().particle((0, 100, 0))
     world = iota.World(system, ground=None)
-    world.plot("height", lambda: ball.position.y, unit="m", seconds=1)
-    own = world.plot("mine", ["a", "b"])
+    world.controls.plot("height", lambda: ball.position.y, unit="m", seconds=1)
+    own = world.controls.plot("mine", ["a", "b"])
     world.on_step(lambda: own.add(system.time, 1, 2))
     with PageClient(run_world(world)) as page:
         seen = page.wait_for(lambda: (p := page.entities["plot"].get(0)) and p["times"] and p["times"][-1] > 1.3 and p)
@@ -408,7 +408,7 @@ def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> Non
         page.wait_for(lambda: len(heard) == 2)
         page.send("grab_move", hold=1, target=(2, 0, 0))
         page.wait_for(lambda: len(heard) == 3)
-        assert not page.last["poses"]["holds"] and world.held() is None, "no spring pulls"
+        assert not page.last["poses"]["holds"] and world.users.held() is None, "no spring pulls"
         page.send("grab_end", hold=1)
         page.wait_for(lambda: len(heard) == 5)
         assert heard == ["press", ("start", (1, 0, 0)), ("update", (2, 0, 0)), ("end", None), "release"]
@@ -522,7 +522,7 @@ def test_keys_joins_and_frames_are_called_until_forgotten(run_world: Runner) -> 
         page.send("key", key="j", down=True)
         page.wait_for(lambda: len(heard) == 3 and len(frames) > 5)
         assert heard == [("join", page.id), "k", "up"]
-        assert world.call(lambda: world.forget(pressed)) and not world.call(lambda: world.forget(print))
+        assert world.call(lambda: world.events.forget(pressed)) and not world.call(lambda: world.events.forget(print))
         page.send("key", key="k", down=True)
         number = page.id
     for _ in range(200):
@@ -546,23 +546,23 @@ def test_an_on_frame_that_raises_is_reported_once(run_world: Runner) -> None:
 
 def test_effects_of_the_script_reach_all_pages(run_world: Runner) -> None:
     world = iota.World(iota.System())
-    world.effect("join", (0, 0, 0))  # nobody is there to see it
+    world.drawings.effect("join", (0, 0, 0))  # nobody is there to see it
     url = run_world(world)
     with PageClient(url) as one, PageClient(url) as two:
-        world.call(lambda: world.effect("break", (1, 2, 3)))
+        world.call(lambda: world.drawings.effect("break", (1, 2, 3)))
         for page in (one, two):
             (effect,) = page.wait_for(lambda page=page: page.effects)
             assert effect["kind"] == "break" and effect["position"] == pytest.approx((1, 2, 3))
     with pytest.raises(ValueError, match="kind must be one of 'break', 'join', 'grab', 'impact', not 'boom'"):
-        world.effect("boom", (0, 0, 0))  # type: ignore[arg-type]
+        world.drawings.effect("boom", (0, 0, 0))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="finite"):
-        world.effect("join", (0, float("nan"), 0))
+        world.drawings.effect("join", (0, float("nan"), 0))
 
 
 def test_a_picture_comes_from_the_page(run_world: Runner, tmp_path: Path) -> None:
     world = iota.World(iota.System())
     with PageClient(run_world(world)) as page:
-        (client,) = page.wait_for(lambda: world.clients)
+        (client,) = page.wait_for(lambda: world.users.clients)
 
         def answer() -> None:
             number = page.wait_for(lambda: page.last.get("ask_picture"))["request"]
@@ -609,7 +609,7 @@ def test_bodies_are_painted_by_one_array_and_the_survivor_keeps_its_own(run_worl
     bodies = [system.body(shape=iota.Sphere(0.1), mass=1, position=(i, 0, 0)) for i in range(300)]
     slots = [body.slot for body in bodies]
     world = iota.World(system)
-    paint = world.paint(bodies, np.linspace(0, 1, 900).reshape(300, 3))
+    paint = world.drawings.paint(bodies, np.linspace(0, 1, 900).reshape(300, 3))
     with PageClient(run_world(world)) as page:
         seen = entity(page, "paint")
         assert seen["bodies"] == slots and seen["colors"][-1] == 0xFEFFFF
@@ -619,16 +619,16 @@ def test_bodies_are_painted_by_one_array_and_the_survivor_keeps_its_own(run_worl
         world.call(lambda: setattr(paint, "color", "#102030"))
         page.wait_for(lambda: page.entities["paint"][0]["colors"] == [0x102030])
     with pytest.raises(TypeError, match="bodies: must be bodies"):
-        world.paint("all", "#102030")
+        world.drawings.paint("all", "#102030")
 
 
 def test_frames_carry_hide_and_remove_their_drawings(rod: iota.Body, run_world: Runner) -> None:
     slot = rod.slot
     world = iota.World(rod.system)
-    outer = world.frame(rod, rotation=(0, 0, 0, 2))
-    inner = world.frame(outer.point((0, 1, 0)))
-    world.shape(looks.sphere(0.1), on=inner, position=(0, 0, 0.5))
-    world.line(inner.point((1, 0, 0)), rod)
+    outer = world.drawings.frame(rod, rotation=(0, 0, 0, 2))
+    inner = world.drawings.frame(outer.point((0, 1, 0)))
+    world.drawings.shape(looks.sphere(0.1), on=inner, position=(0, 0, 0.5))
+    world.drawings.line(inner.point((1, 0, 0)), rod)
     with PageClient(run_world(world)) as page:
         assert entity(page, "frame") | {"id": None} == {
             "id": None,
@@ -652,13 +652,13 @@ def test_frames_carry_hide_and_remove_their_drawings(rod: iota.Body, run_world: 
 def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
     slot = rod.slot
     world = iota.World(rod.system)
-    strut = world.strut(rod.particles[0], (0, 4, 0), looks.cylinder(0.02), color=(1, 0, 0))
-    world.strut(rod, (0, 4, 0), looks.box((0.5, 0.1, 0.1)))
-    world.tube(rod.particles[0], (0, 0, 0), radius=0.05)
-    world.viewpoint("along", rod.particles[0], (0, 4, 0))
-    world.stage(sky="#05070d", light=0.5)
+    strut = world.drawings.strut(rod.particles[0], (0, 4, 0), looks.cylinder(0.02), color=(1, 0, 0))
+    world.drawings.strut(rod, (0, 4, 0), looks.box((0.5, 0.1, 0.1)))
+    world.drawings.tube(rod.particles[0], (0, 0, 0), radius=0.05)
+    world.drawings.viewpoint("along", rod.particles[0], (0, 4, 0))
+    world.drawings.stage(sky="#05070d", light=0.5)
     places = np.random.default_rng(1).uniform(-1, 1, (5000, 3))
-    shapes = world.shapes(looks.cone(0.1, 0.2), places, sizes=np.linspace(1, 2, 5000), at=rod)
+    shapes = world.drawings.shapes(looks.cone(0.1, 0.2), places, sizes=np.linspace(1, 2, 5000), at=rod)
     with PageClient(run_world(world)) as page:
         seen = entity(page, "strut")
         assert seen["length"] == pytest.approx(3) and seen["part"]["shape"]["sizes"][1] == pytest.approx(3), (
@@ -686,12 +686,12 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
         (lambda w: w.surface([(0, 0, 0)], [(0, 1.5, 2)]), "triangles: must have the shape"),
         (lambda w: w.surface("no.stl"), "a surface needs triangles"),
         (
-            lambda w: w.shapes(looks.sphere(0.1), [(0, 0, 0)], rotations=[(0, 0, 0, 0)]),
+            lambda w: w.drawings.shapes(looks.sphere(0.1), [(0, 0, 0)], rotations=[(0, 0, 0, 0)]),
             "rotations: must have the shape",
         ),
-        (lambda w: w.shape(looks.sphere(0.1), rotation=(0, 0, 0, 0)), "rotation: a rotation is a quaternion"),
-        (lambda w: w.tube((0, 0, 0), (1, 0, 0), radius=0), "radius: must be a finite number"),
-        (lambda w: w.tube((0, 0, 0), (1, 0, 0), radius=1, material="silk"), "material must be one of"),
+        (lambda w: w.drawings.shape(looks.sphere(0.1), rotation=(0, 0, 0, 0)), "rotation: a rotation is a quaternion"),
+        (lambda w: w.drawings.tube((0, 0, 0), (1, 0, 0), radius=0), "radius: must be a finite number"),
+        (lambda w: w.drawings.tube((0, 0, 0), (1, 0, 0), radius=1, material="silk"), "material must be one of"),
         (lambda w: looks.sphere(0.1, color="#12345"), "a color is"),
         (
             lambda w: looks.polygon([(0, 0), (1, 1), (1, 0), (0, 1)], 0.1),
@@ -722,23 +722,26 @@ def test_looks_of_all_shapes_enclose_their_volume() -> None:
 ON = ("particle", "body", "bond", "frame", "place in a frame", "nothing")
 DRAWINGS: dict[str, tuple[Callable[[iota.World, Any], Any], Callable[[dict[str, Any]], Any]]] = {
     "label": (lambda w, at: w.label("text", at=at), lambda e: e["a"]),
-    "line": (lambda w, at: w.line(at, (9, 9, 9)), lambda e: {"body": e["bodies"][0] if e["bodies"] else NO_BODY}),
-    "tube": (
-        lambda w, at: w.tube(at, (9, 9, 9), radius=0.1),
+    "line": (
+        lambda w, at: w.drawings.line(at, (9, 9, 9)),
         lambda e: {"body": e["bodies"][0] if e["bodies"] else NO_BODY},
     ),
-    "arrow": (lambda w, at: w.arrow(at, vector=(1, 0, 0)), lambda e: e["a"]),
-    "axes": (lambda w, at: w.axes(at), lambda e: e["at"]),
-    "trace": (lambda w, at: w.trace(at), lambda e: e["at"]),
+    "tube": (
+        lambda w, at: w.drawings.tube(at, (9, 9, 9), radius=0.1),
+        lambda e: {"body": e["bodies"][0] if e["bodies"] else NO_BODY},
+    ),
+    "arrow": (lambda w, at: w.drawings.arrow(at, vector=(1, 0, 0)), lambda e: e["a"]),
+    "axes": (lambda w, at: w.drawings.axes(at), lambda e: e["at"]),
+    "trace": (lambda w, at: w.drawings.trace(at), lambda e: e["at"]),
     "point_cloud": (lambda w, at: w.points([(0, 0, 0)], at=at), lambda e: e["at"]),
-    "marker": (lambda w, at: w.shape(looks.sphere(0.1), on=at), lambda e: e),
-    "shape_set": (lambda w, at: w.shapes(looks.sphere(0.1), [(0, 0, 0)], at=at), lambda e: e["at"]),
-    "strut": (lambda w, at: w.strut(at, (9, 9, 9), looks.cylinder(0.1)), lambda e: e["a"]),
+    "marker": (lambda w, at: w.drawings.shape(looks.sphere(0.1), on=at), lambda e: e),
+    "shape_set": (lambda w, at: w.drawings.shapes(looks.sphere(0.1), [(0, 0, 0)], at=at), lambda e: e["at"]),
+    "strut": (lambda w, at: w.drawings.strut(at, (9, 9, 9), looks.cylinder(0.1)), lambda e: e["a"]),
     "surface": (lambda w, at: w.surface(np.eye(3), [(0, 1, 2)], at=at), lambda e: e["at"]),
-    "light": (lambda w, at: w.light(at=at or (0, 0, 0)), lambda e: e["at"]),
-    "frame": (lambda w, at: w.frame(at), lambda e: e["at"]),
-    "custom": (lambda w, at: w.custom("own", at=at), lambda e: e["at"]),
-    "viewpoint": (lambda w, at: w.viewpoint("here", at or (0, 0, 0), (9, 9, 9)), lambda e: e["eye"]),
+    "light": (lambda w, at: w.drawings.light(at=at or (0, 0, 0)), lambda e: e["at"]),
+    "frame": (lambda w, at: w.drawings.frame(at), lambda e: e["at"]),
+    "custom": (lambda w, at: w.drawings.custom("own", at=at), lambda e: e["at"]),
+    "viewpoint": (lambda w, at: w.drawings.viewpoint("here", at or (0, 0, 0), (9, 9, 9)), lambda e: e["eye"]),
 }
 
 
@@ -751,7 +754,7 @@ def test_every_drawing_is_on_a_particle_a_body_a_bond_a_frame_or_nothing(
     other.nail()
     bond = system.bond(rod.particles[1], other, "spring", stiffness=1.0, length=1.0)
     world = iota.World(system)
-    frame = world.frame((5, 5, 5))
+    frame = world.drawings.frame((5, 5, 5))
     places = {
         "particle": rod.particles[1], "body": rod, "bond": bond, "frame": frame, "place in a frame": frame.point((1, 0, 0)), "nothing": None,
     }  # fmt: skip
@@ -778,20 +781,20 @@ def drawn_on(world: iota.World, at: Any) -> dict[str, Any]:
     ball = looks.sphere(0.1)
     return {
         "label": world.label("here", at=at),
-        "line": world.line(at, (1, 1, 1)),
-        "tube": world.tube(at, (1, 1, 1), radius=0.1),
-        "arrow": world.arrow(at, vector=(0, 1, 0)),
-        "axes": world.axes(at),
-        "trace": world.trace(at),
+        "line": world.drawings.line(at, (1, 1, 1)),
+        "tube": world.drawings.tube(at, (1, 1, 1), radius=0.1),
+        "arrow": world.drawings.arrow(at, vector=(0, 1, 0)),
+        "axes": world.drawings.axes(at),
+        "trace": world.drawings.trace(at),
         "points": world.points(corners, at=at),
-        "shape": world.shape(ball, on=None if isinstance(at, tuple) else at),
-        "shapes": world.shapes(ball, corners, at=at),
-        "strut": world.strut(at, (1, 1, 1), looks.cylinder(0.1)),
+        "shape": world.drawings.shape(ball, on=None if isinstance(at, tuple) else at),
+        "shapes": world.drawings.shapes(ball, corners, at=at),
+        "strut": world.drawings.strut(at, (1, 1, 1), looks.cylinder(0.1)),
         "surface": world.surface(corners, [(0, 1, 2)], at=at),
-        "frame": world.frame(at),
-        "viewpoint": world.viewpoint("there", at, (0, 0, 0)),
-        "light": world.light("point", at=at),
-        "custom": world.custom("flower", at=at),
+        "frame": world.drawings.frame(at),
+        "viewpoint": world.drawings.viewpoint("there", at, (0, 0, 0)),
+        "light": world.drawings.light("point", at=at),
+        "custom": world.drawings.custom("flower", at=at),
     }
 
 

@@ -58,7 +58,7 @@ print("and goes on")
 """
 BUTTON = """cards = []
     world._state.notices.show = lambda client, level, title, text, *more, **rest: cards.append(text)
-    button = next(thing for thing in world.things if getattr(thing, "label", "") == "{label}")
+    button = next(thing for thing in world.drawings.things if getattr(thing, "label", "") == "{label}")
     button.take(1.0, "", iota.Event(world.system, "{label}"), world._guard)
     print("refused:", *cards)"""
 

@@ -62,18 +62,18 @@ def make_world() -> tuple[iota.World, iota.Particle]:
 def test_a_view_of_the_script_sees_the_world_and_acts_on_it() -> None:
     world, ball = make_world()
     view = Probe(
-        lambda world: world.act("kick", ball.body),
-        lambda world: world.act("fail"),
-        lambda world: world.act("kick"),
+        lambda world: world.controls.act("kick", ball.body),
+        lambda world: world.controls.act("fail"),
+        lambda world: world.controls.act("kick"),
         *[lambda world: time.sleep(0.02)] * 20,
     )
     summary = world.run(view=view)
     assert view.told[0] == "open" and view.told[-1] == "close" and set(view.told[1:-1]) == {"frame"}
     assert summary.steps > 5 and ball.position.x > 0
     assert [title for title, _ in view.notices] == ["The action 'fail' failed", "Nothing to kick"]
-    assert world.url is None and [action.name for action in world.actions] == ["kick", "fail"]
+    assert world.pages.url is None and [action.name for action in world.controls.actions] == ["kick", "fail"]
     with pytest.raises(LookupError, match="none"):
-        world.act("none")
+        world.controls.act("none")
 
 
 def test_a_view_that_fails_is_closed() -> None:
@@ -143,19 +143,22 @@ def test_the_terminal_draws_every_shape_along_its_surface(shape: iota.Shape) -> 
 
 def test_keys_in_the_terminal_act_on_the_selected_body() -> None:
     world, ball = make_world()
+    world.system.body().particle((2, 1, 0))  # an arrow key pulls by a share of the size of the scene
     mine, theirs = pty.openpty()
     out = io.StringIO()
     with open(theirs, closefd=False) as keys:
         view = TerminalView(out=out, keys=keys)
         places: list[float] = []
         paused: list[bool] = []
-        world.on_frame(lambda: (places.append(ball.position.x), paused.append(world.paused)))
+        answered: list[bool] = []
+        world.on_frame(lambda: (places.append(ball.position.x), paused.append(world.clock.paused)))
 
         def press() -> None:
             def until(condition: Callable[[], bool]) -> None:
                 end = time.monotonic() + 20
                 while not condition() and time.monotonic() < end:
                     time.sleep(0.01)
+                answered.append(condition())
 
             until(lambda: len(places) > 2)
             os.write(mine, b"\t\x1b[C")
@@ -174,5 +177,6 @@ def test_keys_in_the_terminal_act_on_the_selected_body() -> None:
         presser.join()
     os.close(mine)
     os.close(theirs)
+    assert answered == [True] * 5
     assert max(places) > 0.5 and paused[-1] and places[-1] == 0
     assert "\x1b[38;5;209m" in out.getvalue(), "the selected body has another color"

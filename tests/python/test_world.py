@@ -25,8 +25,8 @@ Runner = Callable[[iota.World], str]
 def world() -> iota.World:
     """The study, without its scripted break."""
     world = study.build()
-    world._stepper.schedule._plan.clear()
-    world._stepper.schedule.rewind()
+    world._state.schedule._plan.clear()
+    world._state.schedule.rewind()
     return world
 
 
@@ -35,9 +35,9 @@ def test_a_page_gets_the_scene_and_its_motion(world: iota.World, run_world: Runn
         page.wait_for(lambda: {"world_settings", "world_state", "actions"} <= page.last.keys())
         assert page.last["world_state"]["dt"] == 1 / 120
         assert page.last["world_settings"]["title"] == "chain: 1.8 m long"
-        assert page.last["world_settings"]["looks"] == ["rope", "chain"]
+        assert page.last["world_settings"]["styles"] == ["rope", "chain"]
         page.wait_for(lambda: len(page.entities["body"]) == 24)
-        assert len({body["style"] for body in page.entities["body"].values()}) == 1
+        assert len({body["visual"] for body in page.entities["body"].values()}) == 1
         assert len(page.entities["static_shape"]) > 0, "what it hangs from is visible"
         actions = {action["key"]: action for action in page.last["actions"]["actions"]}
         assert actions["b"]["name"] == "break" and actions["b"]["button"] == ControllerButton.B
@@ -68,10 +68,10 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
 def test_a_script_that_changes_looks_does_not_send_its_actions_again(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.parts() == 1)
-        styles = page.entities["body"][0]["style"]
+        visuals = page.entities["body"][0]["visual"]
         before = page.messages.copy()
         world.call(lambda: world.draw(world.system.bodies[0], iota.looks.solid("steel")))
-        page.wait_for(lambda: page.entities["body"][0]["style"] != styles)
+        page.wait_for(lambda: page.entities["body"][0]["visual"] != visuals)
         for name in ("actions", "world_settings", "listens"):
             assert before[name] >= 1 and page.messages[name] == before[name], name
         world.call(lambda: world.action("wave", key="h", on="world")(lambda: None))
@@ -81,12 +81,12 @@ def test_a_script_that_changes_looks_does_not_send_its_actions_again(world: iota
 def test_edits_that_are_a_mechanism_show_no_rings_and_those_that_the_script_chooses_do(
     world: iota.World, run_world: Runner
 ) -> None:
-    world.shows_edits = False
+    world.scene.shows_edits = False
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.parts() == 1)
         page.send("action", name="break", body=page.body(11))
         page.wait_for(lambda: page.parts() == 2)
-        world.call(lambda: world.effect("join", (0, 1, 0)))
+        world.call(lambda: world.drawings.effect("join", (0, 1, 0)))
         page.wait_for(lambda: page.effects)
         assert [effect["kind"] for effect in page.effects] == ["join"]
 
@@ -98,8 +98,8 @@ def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Ru
         page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15)
         (hold,) = page.wait_for(lambda: page.last["poses"]["holds"])
         assert hold["client"] == page.id and hold["hold"] == 1 and hold["body"] == 23 and hold["force"] > 0
-        assert world.call(lambda: world.held(page.id)) == world.call(lambda: world.held())
-        assert world.call(lambda: world.held(page.id).slot) == 23
+        assert world.call(lambda: world.users.held(page.id)) == world.call(lambda: world.users.held())
+        assert world.call(lambda: world.users.held(page.id).slot) == 23
         page.send("grab_move", hold=1, target=(-1.2, 1.2, 0.0))
         page.wait_for(lambda: page.places[23][0] < -0.8)
         page.send("grab_end", hold=1)
@@ -116,8 +116,8 @@ def test_two_pages_have_their_own_selections_and_agree_on_the_rest(world: iota.W
         one.wait_for(lambda: len(one.last["clients"]["clients"]) == 2)
         two.wait_for(lambda: {c["selected"][0] for c in two.last["clients"]["clients"]} == {3, 20})
         for page, slot in ((one, 3), (two, 20)):
-            page.wait_for(lambda p=page, s=slot: world.call(lambda: world.selected(p.id)) == bodies[s])
-        assert sorted(client.name for client in world.call(lambda: world.clients)) == ["one", "two"]
+            page.wait_for(lambda p=page, s=slot: world.call(lambda: world.users.selected(p.id)) == bodies[s])
+        assert sorted(client.name for client in world.call(lambda: world.users.clients)) == ["one", "two"]
         two.send("action", name="break", body=NOTHING)
         one.wait_for(lambda: one.parts() == 2)
         two.wait_for(lambda: two.parts() == 2)
@@ -143,7 +143,7 @@ def test_a_page_that_leaves_lets_go_of_its_bodies(world: iota.World, run_world: 
             leaves.send("grab_start", hold=7, body=leaves.body(5), local_point=(0, 0, 0), target=(0, 2, 2))
             stays.wait_for(lambda: stays.last["poses"]["holds"])
         stays.wait_for(lambda: not stays.last["poses"]["holds"])
-        assert len(world.call(lambda: world.clients)) == 1
+        assert len(world.call(lambda: world.users.clients)) == 1
 
 
 def test_pause_step_speed_and_reset(world: iota.World, run_world: Runner) -> None:
@@ -223,7 +223,7 @@ def test_an_error_is_shown_to_pages_that_open_later_until_reset(run_world: Runne
     with PageClient(url) as page:
         (notice,) = page.wait_for(lambda: page.notices)
         assert "nobody saw it" in notice["text"] and notice["level"] == 2
-    world.call(lambda: setattr(world, "paused", True))
+    world.call(lambda: setattr(world.clock, "paused", True))
     world.call(world.reset)
     with PageClient(url) as page:
         page.wait_for(lambda: page.pose_frames > 3)
@@ -261,7 +261,7 @@ def test_a_page_that_opens_while_a_callback_hangs_gets_a_notice(run_world: Runne
 
 
 def test_one_pages_bad_hand_is_its_error_alone(world: iota.World, run_world: Runner) -> None:
-    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+    with PageClient(run_world(world)) as page, PageClient(world.pages.url or "") as other:
         page.send("grab_start", hold=1, body=page.body(3), local_point=(0, 0, 0), target=(2e9, 0, 0))
         (notice,) = page.wait_for(lambda: page.notices)
         assert "1e9" in notice["text"] and "script" not in notice["hint"]
@@ -428,7 +428,7 @@ def test_a_taken_port_is_an_os_error(world: iota.World, run_world: Runner) -> No
     other = iota.World(iota.System())
     with pytest.raises(OSError, match=str(port)):
         other.start(port=port)
-    assert other.url is None
+    assert other.pages.url is None
     other.system.step()  # the system is the caller's again
 
 
@@ -456,8 +456,8 @@ def test_structure_changes_reach_the_page_with_the_looks_of_new_bodies(
 
         world.call(edit)
         page.wait_for(lambda: len(page.entities["body"]) == 5)
-        assert page.style_of(0)["name"] == "(body)"
-        assert all(body["style"] in page.entities["style"] for body in page.entities["body"].values())
+        assert page.visual_of(0)["name"] == "(body)"
+        assert all(body["visual"] in page.entities["visual"] for body in page.entities["body"].values())
 
 
 def test_a_message_about_a_destroyed_body_is_answered_by_a_notice(system: iota.System, run_world: Runner) -> None:
@@ -486,7 +486,7 @@ def test_a_message_about_a_destroyed_body_is_answered_by_a_notice(system: iota.S
         page.send("action", name="poke", body=old)
         page.wait_for(lambda: [n["title"] for n in page.notices] == ["It no longer exists"] * 3)
         assert asked == [] and not page.last["poses"]["holds"]
-        assert world.call(lambda: world.selected(page.id)) is None
+        assert world.call(lambda: world.users.selected(page.id)) is None
         page.send("action", name="poke", body=now)
         page.wait_for(lambda: asked == [new])
 
@@ -558,4 +558,4 @@ def test_bad_actions_are_refused() -> None:
         with pytest.raises(ValueError, match=r"taken|already|must be"):
             world.action(**arguments)
     with pytest.raises(ValueError, match="level"):
-        world.notice("x", level="loud")
+        world.users.notice("x", level="loud")

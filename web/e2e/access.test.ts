@@ -2,7 +2,7 @@
 // Everybody reaches everything: by keyboard, at 200 % zoom, on a phone, and can read it.
 
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { Browser, type Tab } from "./browser.ts";
+import { Browser, type BrowserOptions, type Tab } from "./browser.ts";
 import { freePort, WorldServer } from "./server.ts";
 
 let server: WorldServer;
@@ -11,7 +11,11 @@ beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
 });
 
+/** Of a test in a usual window, for the next one. */
+let desk: { readonly browser: Browser; readonly tab: Tab } | null = null;
+
 afterAll(async () => {
+  await desk?.browser.stop();
   await server?.stop();
 });
 
@@ -20,20 +24,38 @@ const controls = () => [...document.querySelectorAll<HTMLElement>("button, selec
   .filter((element) => element.checkVisibility() && !(element as HTMLButtonElement).disabled)
   .map((element) => element.id || `${element.tagName} ${element.getAttribute("aria-label") ?? element.closest("label")?.textContent ?? element.textContent}`);
 
-/** Visits the page in a browser of its own, with the script's controls and a card shown. */
-async function visit(options: Parameters<typeof Browser.start>[0], look: (tab: Tab) => Promise<void>): Promise<void> {
+/** A page in a window, as it is at first. */
+async function open(options: BrowserOptions): Promise<{ browser: Browser; tab: Tab }> {
   const browser = await Browser.start(options);
+  const tab = await browser.open(server.url);
+  // The panel comes with the page, but is hidden until the script's controls have come.
+  await tab.until("world and controls are shown", () => !document.getElementById("view")!.classList.contains("waiting")
+    && [...document.querySelectorAll("#panel:not([hidden]) button")].some(({ textContent }) => textContent === "throw"));
+  // One of an error stays, however long the test takes.
+  await tab.page.evaluate(() => iota.page.events.notice({ level: 2, title: "A card", text: "with some text", hint: "and what to try" }));
+  return { browser, tab };
+}
+
+/** Visits the page in a browser of its own, with the script's controls and a card shown. */
+async function visit(options: BrowserOptions, look: (tab: Tab) => Promise<void>): Promise<void> {
+  const { browser, tab } = await open(options);
   try {
-    const tab = await browser.open(server.url);
-    // The panel comes with the page, but is hidden until the script's controls have come.
-    await tab.until("world and controls are shown", () => !document.getElementById("view")!.classList.contains("waiting")
-      && [...document.querySelectorAll("#panel:not([hidden]) button")].some(({ textContent }) => textContent === "throw"));
-    // One of an error stays, however long the test takes.
-    await tab.page.evaluate(() => iota.page.events.notice({ level: 2, title: "A card", text: "with some text", hint: "and what to try" }));
     await look(tab);
   } finally {
     await browser.stop();
   }
+}
+
+/** The same at a desk, in one page for all such tests. */
+async function visitDesk(look: (tab: Tab) => Promise<void>): Promise<void> {
+  desk ??= await open({ width: 1000, height: 640 });
+  const { tab } = desk;
+  await look(tab);
+  if (await tab.page.locator("#help[open]").isVisible()) {
+    await tab.page.keyboard.press("Escape");
+    await tab.page.locator("#help[open]").waitFor({ state: "detached" });
+  }
+  await tab.page.evaluate(() => iota.select(-1));
 }
 
 /** Controls that are not wholly in the window or a part that scrolls, lie over each other, or are smaller than a finger. */
@@ -84,7 +106,7 @@ const faint = () => {
 
 describe("the page", () => {
   it("is reached by the keyboard alone, with a ring around what has the focus", async () => {
-    await visit({ width: 1000, height: 640 }, async (tab) => {
+    await visitDesk(async (tab) => {
       const wanted = new Set(await tab.page.evaluate(controls));
       expect(wanted.size).toBeGreaterThan(10);
       const unmarked: string[] = [];
@@ -105,7 +127,8 @@ describe("the page", () => {
   });
 
   it.each([false, true])("can be read before any world (dark: %s)", async (dark) => {
-    await visit({ width: 1000, height: 640, dark }, async (tab) => {
+    await visitDesk(async (tab) => {
+      await tab.page.emulateMedia({ colorScheme: dark ? "dark" : "light" });
       await tab.page.keyboard.press("?");
       await tab.page.locator("#help[open]").waitFor();
       await tab.untilShown();
@@ -114,7 +137,7 @@ describe("the page", () => {
   });
 
   it("tells a screen reader what each of its controls, panels and pictures is", async () => {
-    await visit({ width: 1000, height: 640 }, async (tab) => {
+    await visitDesk(async (tab) => {
       await tab.page.evaluate(() => iota.select(iota.bodies()[0]));
       await tab.page.keyboard.press("?");
       await tab.page.locator("#help[open]").waitFor();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Debian's Chromium, headless, drawing with Mesa's llvmpipe; and hands for the tests.
+// Debian's Chromium, headless, drawing with Mesa's llvmpipe; and hands for the tests. A run has one process of it (shared_browser.ts), in
+// which each `Browser` is a context of its own: with its own window, storage and cache.
 
-import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { mkdirSync } from "node:fs";
 import path from "node:path";
-import { chromium, type BrowserContext, type CDPSession, type Page } from "playwright-core";
+import { chromium, type Browser as Chromium, type BrowserContext, type CDPSession, type Page } from "playwright-core";
 import type { IotaDebug } from "../src/app/debug.ts";
 import { ControlCommand } from "../src/protocol/generated.ts";
 import { artifacts } from "./server.ts";
@@ -12,7 +12,15 @@ import { artifacts } from "./server.ts";
 declare global {
   // The same object as window.iota, as scripts of the page see it.
   var iota: IotaDebug;
+  // Whether a page that draws less than always draws what it shows.
+  var drawsFrames: boolean | undefined;
 }
+
+/** Everything of the suite, also what takes long and changes seldom. */
+export const runsAll = process.env["IOTA_TEST_ALL"] === "1";
+
+/** The address of the run's browser; a script outside of a run starts its own. */
+export const sharedBrowser = "IOTA_TEST_BROWSER";
 
 const flags = [
   "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -30,46 +38,99 @@ export interface BrowserOptions {
   readonly trustsAll?: boolean;
   /** Draws shadows, for tests that look at pictures: software takes most of a frame for them. */
   readonly shadows?: boolean;
+  /** Which pictures of the world are drawn: those that the page shows ("always"), those that a test draws and reads ("asked"), or none,
+   * which is usual. All else of a page goes on without them. Software takes most of two cores for them, and some seconds for a frame where
+   * the machine is busy. */
+  readonly draws?: Draws;
 }
+
+type Draws = "always" | "asked" | "never";
 
 /** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
 export const small: BrowserOptions = { width: 640, height: 360 };
 
+/** For a page that draws less than always: leaves out the commands that fill pixels. What the processor does for a picture stays. */
+const drawLess = (isAsked: boolean) => {
+  let inFrame = false;
+  let isOnScreen = true;
+  const nextFrame = globalThis.requestAnimationFrame;
+  globalThis.requestAnimationFrame = (callback) => nextFrame((time) => {
+    inFrame = true;
+    try {
+      callback(time);
+    } finally {
+      inFrame = false;
+    }
+  });
+  const context = WebGL2RenderingContext.prototype;
+  const bind = context.bindFramebuffer;
+  context.bindFramebuffer = function (target, framebuffer) {
+    isOnScreen = framebuffer === null;
+    bind.call(this, target, framebuffer);
+  };
+  // What is mirrored, and shadows, are drawn in frames and kept for the pictures that are asked for.
+  const isLeftOut = () => globalThis.drawsFrames !== true && (!isAsked || (inFrame && isOnScreen));
+  for (const name of ["clear", "drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"] as const) {
+    const own = context[name] as (...given: number[]) => void;
+    context[name] = function (this: WebGL2RenderingContext, ...given: number[]) {
+      if (!isLeftOut()) own.apply(this, given);
+    };
+  }
+};
+
+export const launchOptions = {
+  executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+  args: flags,
+  env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1" },
+};
+
+let connected: Promise<Chromium> | null = null;
+
+function chromiumOfRun(): Promise<Chromium> {
+  const address = process.env[sharedBrowser];
+  connected ??= address === undefined ? chromium.launch(launchOptions) : chromium.connect(address);
+  return connected;
+}
+
 export class Browser {
   readonly context: BrowserContext;
-  private readonly profile_: string;
+  private readonly draws_: Draws;
   private readonly shadows_: boolean;
 
-  private constructor(context: BrowserContext, profile: string, shadows: boolean) {
+  private constructor(context: BrowserContext, draws: Draws, shadows: boolean) {
     this.context = context;
-    this.profile_ = profile;
+    this.draws_ = draws;
     this.shadows_ = shadows;
   }
 
   static async start(options: BrowserOptions = small): Promise<Browser> {
-    const profile = mkdtempSync(path.join(tmpdir(), "iota-profile-"));
-    const context = await chromium.launchPersistentContext(profile, {
-      executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
-      args: flags,
-      env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1" },
+    const browser = await chromiumOfRun();
+    const context = await browser.newContext({
       ignoreHTTPSErrors: options.trustsAll === true,
       deviceScaleFactor: options.density ?? 0.5,
       viewport: { width: options.width, height: options.height },
       colorScheme: options.dark === true ? "dark" : "light",
       ...(options.touch === true ? { hasTouch: true, isMobile: true } : {}),
     });
-    return new Browser(context, profile, options.shadows === true);
+    const draws = runsAll || process.env[sharedBrowser] === undefined ? "always" : options.draws ?? "never";
+    if (draws !== "always") await context.addInitScript(drawLess, draws === "asked");
+    return new Browser(context, draws, options.shadows === true);
   }
 
   async stop(): Promise<void> {
     await this.context.close();
-    rmSync(this.profile_, { recursive: true, force: true });
+    // The last one ends what this process has started.
+    if (process.env[sharedBrowser] !== undefined) return;
+    const browser = await chromiumOfRun();
+    if (browser.contexts().length > 0) return;
+    connected = null;
+    await browser.close();
   }
 
   /** A tab with the world drawn in it; `begun`: and running. */
   async open(url: string, { begun = true, shadows = this.shadows_ } = {}): Promise<Tab> {
     const blank = this.context.pages().find((page) => page.url() === "about:blank");
-    const tab = new Tab(blank ?? (await this.context.newPage()));
+    const tab = new Tab(blank ?? (await this.context.newPage()), this.draws_);
     await tab.page.goto(shadows ? url : `${url}&shadows=none`);
     await tab.until("the world is drawn", (step) => globalThis.iota?.connected && iota.bodies().length > 0 && iota.step >= step, begun ? 1 : 0);
     return tab;
@@ -84,11 +145,13 @@ export class Tab {
   readonly complaints: string[] = [];
   private touch_: CDPSession | null = null;
   private fingers_ = 0;
+  private readonly draws_: Draws;
   /** When the world was back at its start, ms. */
   private begunAnew_ = -Infinity;
 
-  constructor(page: Page) {
+  constructor(page: Page, draws: Draws) {
     this.page = page;
+    this.draws_ = draws;
     page.on("pageerror", (error) => this.complaints.push(String(error)));
     page.on("console", (message) => {
       if (message.type() === "error") this.complaints.push(message.text());
@@ -279,18 +342,33 @@ export class Tab {
     await this.touch_.send("Input.dispatchTouchEvent", { type, touchPoints: fingers.map(([x, y], id) => ({ x, y, id })) });
   }
 
+  /** A file for people to look at. */
   async picture(name: string): Promise<void> {
-    mkdirSync(artifacts, { recursive: true });
-    const file = path.join(artifacts, `${name}.png`);
-    for (let trial = 0; trial < 3; trial++) {
-      try {
-        await this.page.screenshot({ path: file, timeout: 8000 });
-        return;
-      } catch (error) {
-        // A busy machine's software renderer may take seconds for a frame; a missing picture is not a failure.
-        console.warn(`no picture ${name}: ${String(error).split("\n")[0]}`);
+    await this.showing(async () => {
+      mkdirSync(artifacts, { recursive: true });
+      const file = path.join(artifacts, `${name}.png`);
+      for (let trial = 0; trial < 3; trial++) {
+        try {
+          await this.page.screenshot({ path: file, timeout: 8000 });
+          return;
+        } catch (error) {
+          // A busy machine's software renderer may take seconds for a frame; a missing picture is not a failure.
+          console.warn(`no picture ${name}: ${String(error).split("\n")[0]}`);
+        }
       }
-    }
+    });
+  }
+
+  /** Does something with the picture that the page shows; nothing on a page that never draws. */
+  async showing(look: () => Promise<void>): Promise<void> {
+    if (this.draws_ === "never") return;
+    await this.page.evaluate(async () => {
+      globalThis.drawsFrames = true;
+      iota.page.viewer.invalidate();
+      for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+    });
+    await look();
+    await this.page.evaluate(() => { globalThis.drawsFrames = false; });
   }
 }
 

@@ -64,13 +64,13 @@ describe("the page of a chain", () => {
     expect(tab.complaints).toEqual([]);
   });
 
-  it("switches looks live and keeps links interlocked, each turned against its neighbors", async () => {
-    const [first] = await tab.page.evaluate(() => iota.looks);
-    const other = await tab.page.evaluate((look) => iota.looks.find((name) => name !== look), first);
-    await tab.press("#look");
-    await tab.until("it is in the other look", (wanted) => iota.look === wanted, other);
+  it("switches styles live and keeps links interlocked, each turned against its neighbors", async () => {
+    const [first] = await tab.page.evaluate(() => iota.styles);
+    const other = await tab.page.evaluate((style) => iota.styles.find((name) => name !== style), first);
+    await tab.press("#style");
+    await tab.until("it is in the other style", (wanted) => iota.style === wanted, other);
     await tab.page.keyboard.press("l");
-    await tab.until("it is in the first look again", (wanted) => iota.look === wanted, first);
+    await tab.until("it is in the first style again", (wanted) => iota.style === wanted, first);
   });
 
   it("turns no link suddenly and keeps neighbors untwisted, or links would not stay interlocked", async () => {

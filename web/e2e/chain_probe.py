@@ -22,7 +22,7 @@ def build(links: int = 24) -> iota.World:
         now = {
             "articulates": system.articulate_count,
             "structure_version": system.structure_version,
-            "held": sum(1 for client in world.clients if world.held(client.id) is not None),
+            "held": sum(1 for client in world.users.clients if world.users.held(client.id) is not None),
         }
         if not last or last[0] != now:
             last[:] = [now]

@@ -12,7 +12,7 @@ const links = 10_000;
 const cuts = 20;
 const limitMs = 4;
 
-const kindNames = { style: "style", body: "body", membership: "membership" } as const;
+const kindNames = { visual: "visual", body: "body", membership: "membership" } as const;
 
 function set<K extends EntityKind & keyof typeof kindNames>(kind: K, entities: readonly EntityRecords[K][]): number[] {
   return bytes(encodeServerMessage({ type: "entitiesSet", kind: kindNames[kind], records: encodeEntities(kind, entities) }));
@@ -24,17 +24,17 @@ function bytes(buffer: ArrayBuffer): number[] {
 
 const id = (slot: number, generation = 1) => ({ slot, generation });
 const link = (slot: number, generation = 1): EntityRecords["body"] => ({
-  id: id(slot, generation), kind: BodyKind.dynamic, style: 0, odd: slot % 2 === 1, length: 0.1, name: "",
+  id: id(slot, generation), kind: BodyKind.dynamic, visual: 0, odd: slot % 2 === 1, length: 0.1, name: "",
 });
-const part = (look: string, kind: string, sizes: number[]) => ({
-  look, shape: { kind, sizes: Float32Array.from(sizes), vertices: new Float32Array(0), triangles: new Uint32Array(0) },
+const part = (style: string, kind: string, sizes: number[]) => ({
+  style, shape: { kind, sizes: Float32Array.from(sizes), vertices: new Float32Array(0), triangles: new Uint32Array(0) },
   offset: [0, 0, 0] as [number, number, number], rotation: [0, 0, 0, 1] as [number, number, number, number], turn: 0, material: "steel", color: NO_COLOR,
 });
 
 /** All messages to a page that joins. */
 const joining: number[][] = [
   bytes(encodeServerMessage({ type: "welcome", version: PROTOCOL_VERSION, world: "", client: 1 })),
-  set("style", [{ id: id(0), name: "link", parts: [part("rope", "capsule", [0.012, 0.1])] }]),
+  set("visual", [{ id: id(0), name: "link", parts: [part("rope", "capsule", [0.012, 0.1])] }]),
   set("body", Array.from({ length: links }, (_, slot) => link(slot))),
   set("membership", Array.from({ length: links }, (_, slot) => ({ id: id(slot), articulate: 0 }))),
   bytes(encodePoses({

@@ -2,7 +2,9 @@
 // Things that scripts draw besides bodies, as pixels at their expected places; the controls of the panel, clicks and
 // keys, as received by the script; pictures. build/artifacts/page_entities.png is for inspection.
 
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser, type Tab } from "./browser.ts";
 import { freePort, WorldServer } from "./server.ts";
@@ -16,7 +18,7 @@ let passed: Place;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
-  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true });
+  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true, draws: "asked" });
   tab = await browser.open(server.url);
   await tab.drawn();
   await tab.until("its images are decoded", () => {
@@ -282,7 +284,9 @@ describe("the script hears", () => {
     await tab.page.evaluate(() => (document.activeElement as HTMLElement).blur());
     const [file] = await Promise.all([tab.page.waitForEvent("download"), tab.page.keyboard.press("p")]);
     expect(file.suggestedFilename()).toBe("entities.png");
-    const png = readFileSync(await file.path());
+    const saved = path.join(mkdtempSync(path.join(tmpdir(), "iota-picture-")), "picture.png");
+    await file.saveAs(saved);
+    const png = readFileSync(saved);
     expect([png.toString("latin1", 1, 4), png.readUInt32BE(16), png.readUInt32BE(20)]).toEqual(["PNG", 960, 540]);
     expect(tab.complaints).toEqual([]);
   });

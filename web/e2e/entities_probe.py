@@ -32,14 +32,16 @@ def build() -> iota.World:
     follow(world)
     ask(world)
     listen(world, ball)
-    night = world.stage(sky="#05070d", horizon="#101a2e", ground="#20242c", light=0.4)
+    night = world.drawings.stage(sky="#05070d", horizon="#101a2e", ground="#20242c", light=0.4)
     night.visible = False
 
     @world.on_key("n")
     def dusk() -> None:
         night.visible = not night.visible
 
-    lamp = world.light("spot", at=(-0.4, 1.5, 1.2), color="#ff4020", intensity=3, reach=1.5, angle=0.3, shadow=True)
+    lamp = world.drawings.light(
+        "spot", at=(-0.4, 1.5, 1.2), color="#ff4020", intensity=3, reach=1.5, angle=0.3, shadow=True
+    )
     lamp.visible = False
 
     @world.on_key("l")
@@ -51,12 +53,12 @@ def build() -> iota.World:
 
 def draw(world: iota.World) -> None:
     """What stays where it is."""
-    world.line((-1.6, 0.2, 0), (-1.35, 0.6, 0), (-1.2, 0.2, 0), radius=0.03, color="#d0402b")
-    world.line((-1.6, 0.8, 0), (-1.35, 1.2, 0), (-1.2, 0.8, 0), color="#3f7fd0", closed=True)
-    world.line((0.35, 0.35, 0.9), (0.65, 0.35, 0.9), radius=0.03, color="#d0402b")
-    world.arrow((-0.9, 0.2, 0), vector=(0.3, 0.6, 0), color="#2f9d92")
-    world.arrow((-0.9, 1.0, 0), vector=(0.3, 0.2, 0), radius=0.03, color="#8a4fb0")
-    world.axes(at=(-0.2, 0.3, 0), length=0.5)
+    world.drawings.line((-1.6, 0.2, 0), (-1.35, 0.6, 0), (-1.2, 0.2, 0), radius=0.03, color="#d0402b")
+    world.drawings.line((-1.6, 0.8, 0), (-1.35, 1.2, 0), (-1.2, 0.8, 0), color="#3f7fd0", closed=True)
+    world.drawings.line((0.35, 0.35, 0.9), (0.65, 0.35, 0.9), radius=0.03, color="#d0402b")
+    world.drawings.arrow((-0.9, 0.2, 0), vector=(0.3, 0.6, 0), color="#2f9d92")
+    world.drawings.arrow((-0.9, 1.0, 0), vector=(0.3, 0.2, 0), radius=0.03, color="#8a4fb0")
+    world.drawings.axes(at=(-0.2, 0.3, 0), length=0.5)
     grid = [(i, j) for i in range(8) for j in range(8)]
     world.points(
         np.array([[0.5 + 0.04 * i, 0.3 + 0.06 * j, 0] for i, j in grid]),
@@ -65,37 +67,41 @@ def draw(world: iota.World) -> None:
     )
     world.label("a label", at=(0, 1.25, 0))
     world.label("of 10 cm", at=(0.65, 1.1, 0), height=0.1, color="#d0402b")
-    world.shape(looks.box((0.25, 0.25, 0.25), "wood"), position=(1.1, 0.3, 0))
-    world.shape(looks.sphere(0.12, "glass"), position=(1.45, 0.3, 0))
-    world.shape(looks.torus(0.12, 0.04, "steel"), position=(1.1, 0.8, 0))
-    world.shape(looks.Look(iota.Cone(0.12, 0.3), "paint", "#4c9a52"), position=(1.45, 0.8, 0), rotation=UPRIGHT)
+    world.drawings.shape(looks.box((0.25, 0.25, 0.25), "wood"), position=(1.1, 0.3, 0))
+    world.drawings.shape(looks.sphere(0.12, "glass"), position=(1.45, 0.3, 0))
+    world.drawings.shape(looks.torus(0.12, 0.04, "steel"), position=(1.1, 0.8, 0))
+    world.drawings.shape(
+        looks.Look(iota.Cone(0.12, 0.3), "paint", "#4c9a52"), position=(1.45, 0.8, 0), rotation=UPRIGHT
+    )
 
 
 def draw_more(world: iota.World) -> None:
     """Above and before the others."""
-    world.tube((-1.6, 1.4, 0), (-1.3, 1.6, 0), (-1.0, 1.4, 0), radius=0.04, material="paint", color="#4c9a52")
-    world.strut((-0.8, 1.4, 0), (-0.6, 1.8, 0), looks.cylinder(0.03, "paint"), color="#d0402b")
+    world.drawings.tube((-1.6, 1.4, 0), (-1.3, 1.6, 0), (-1.0, 1.4, 0), radius=0.04, material="paint", color="#4c9a52")
+    world.drawings.strut((-0.8, 1.4, 0), (-0.6, 1.8, 0), looks.cylinder(0.03, "paint"), color="#d0402b")
     world.surface([(-0.4, 1.4, 0), (0, 1.4, 0), (-0.2, 1.8, 0)], [(0, 2, 1)], color="#3f7fd0")
-    cubes = world.shapes(
+    cubes = world.drawings.shapes(
         looks.box((0.1, 0.1, 0.1), "paint"),
         [(0.2, 1.45, 0), (0.35, 1.45, 0)],
         sizes=[1, 1.2],
         color=["#8a4fb0", "#f2a324"],
     )
-    frame = world.frame((9, 9, 9))
+    frame = world.drawings.frame((9, 9, 9))
     # So steep that its face does not mirror the lamp above it, which is white.
-    world.shape(looks.pyramid((0.4, 0.2, 0.2), color="#2f9d92"), on=frame, position=(0, 0.2, 0), rotation=UPRIGHT)
+    world.drawings.shape(
+        looks.pyramid((0.4, 0.2, 0.2), color="#2f9d92"), on=frame, position=(0, 0.2, 0), rotation=UPRIGHT
+    )
     # Green and red above, blue and yellow below.
     four = np.array([[(0.3, 0.6, 0.32), (0.8, 0, 0)], [(0, 0, 0.8), (0.8, 0.7, 0)]])
-    world.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=(1.1, 1.5, 0))
+    world.drawings.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=(1.1, 1.5, 0))
     world.surface(
         [(1.4, 1.35, 0), (1.7, 1.35, 0), (1.7, 1.65, 0), (1.4, 1.65, 0)], [(0, 1, 2), (0, 2, 3)], texture=four, repeat=2
     )
     # Two balls that have merged: between them is surface.
-    world.skin(lambda: [(0.9, 0.2, 0.9), (1.06, 0.2, 0.9)], 0.1, color="#4c9a52")
+    world.drawings.skin(lambda: [(0.9, 0.2, 0.9), (1.06, 0.2, 0.9)], 0.1, color="#4c9a52")
     painted = world.system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1.0, position=(-1.0, 0.2, 0.9))
     world.draw(painted, looks.solid("wood"))
-    world.paint(painted, "#8a4fb0")
+    world.drawings.paint(painted, "#8a4fb0")
 
     @world.after(0.2)
     def move() -> None:
@@ -107,7 +113,7 @@ def follow(world: iota.World) -> None:
     """A ball that runs to and fro, and its path."""
     system = world.system
     runner = system.body(shape=iota.Sphere(0.03), mass=1.0, position=(-0.3, 0.2, 0.7))
-    world.trace(runner, radius=0.01, color="#f2a324")
+    world.drawings.trace(runner, radius=0.01, color="#f2a324")
 
     @world.on_step
     def run() -> None:
@@ -117,17 +123,17 @@ def follow(world: iota.World) -> None:
 def ask(world: iota.World) -> None:
     """One of each control."""
     system = world.system
-    gravity = world.slider("gravity", 0, 20, 9.81, unit="m/s²")
+    gravity = world.controls.slider("gravity", 0, 20, 9.81, unit="m/s²")
     gravity.on_change(lambda: tell(slider=gravity.value))
-    wind = world.checkbox("wind", True)
+    wind = world.controls.checkbox("wind", True)
     wind.on_change(lambda: tell(checkbox=wind.value))
-    material = world.choice("material", ["steel", "wood", "glass"])
+    material = world.controls.choice("material", ["steel", "wood", "glass"])
     material.on_change(lambda: tell(choice=material.value))
-    name = world.text("name", "ball")
+    name = world.controls.text("name", "ball")
     name.on_change(lambda: tell(text=name.value))
-    world.button("throw")(lambda: tell(button=True))
+    world.controls.button("throw")(lambda: tell(button=True))
     waves = {"sine": lambda: math.sin(3 * system.time), "cosine": lambda: math.cos(3 * system.time)}
-    world.plot("wave", waves, unit="m")
+    world.controls.plot("wave", waves, unit="m")
 
 
 def listen(world: iota.World, ball: iota.Body) -> None:
@@ -138,8 +144,8 @@ def listen(world: iota.World, ball: iota.Body) -> None:
 
     @world.on_key("i")
     def picture(event: iota.Event) -> None:
-        curtain = world.shape(looks.Look(iota.Box((4, 4, 0.02)), "paint", "#d0402b"), position=(0, 0.9, 2.4))
-        png = next(client for client in world.clients if client.id == event.client).screenshot()
+        curtain = world.drawings.shape(looks.Look(iota.Box((4, 4, 0.02)), "paint", "#d0402b"), position=(0, 0.9, 2.4))
+        png = next(client for client in world.users.clients if client.id == event.client).screenshot()
         curtain.visible = False
         tell(curtain=base64.b64encode(png).decode())
         tell(screenshot=struct.unpack(">II", png[16:24]))

@@ -4,7 +4,7 @@
 import { mkdirSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { afterAll, beforeAll, expect, it } from "vitest";
-import { Browser } from "./browser.ts";
+import { Browser, small } from "./browser.ts";
 import { artifacts, freePort, probe, WorldServer } from "./server.ts";
 
 let server: WorldServer;
@@ -12,7 +12,7 @@ let browser: Browser;
 
 beforeAll(async () => {
   server = await WorldServer.start([probe], await freePort());
-  browser = await Browser.start();
+  browser = await Browser.start({ ...small, draws: "always" });
 });
 
 afterAll(async () => {

@@ -99,11 +99,13 @@ export class HeadsetTab {
 
   /** Both eyes' views side by side, as drawn: taken from the canvas within a frame, which no busy compositor can delay. */
   async picture(name: string): Promise<void> {
-    const address = await this.tab.page.evaluate(() => new Promise<string>((resolve) => {
-      requestAnimationFrame(() => resolve(iota.page.viewer.renderer.domElement.toDataURL("image/png")));
-    }));
-    mkdirSync(artifacts, { recursive: true });
-    writeFileSync(path.join(artifacts, `${name}.png`), Buffer.from(address.slice(address.indexOf(",") + 1), "base64"));
+    await this.tab.showing(async () => {
+      const address = await this.tab.page.evaluate(() => new Promise<string>((resolve) => {
+        requestAnimationFrame(() => resolve(iota.page.viewer.renderer.domElement.toDataURL("image/png")));
+      }));
+      mkdirSync(artifacts, { recursive: true });
+      writeFileSync(path.join(artifacts, `${name}.png`), Buffer.from(address.slice(address.indexOf(",") + 1), "base64"));
+    });
   }
 
   /** Turns the head: rad to the left, rad up. */

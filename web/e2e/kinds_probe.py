@@ -79,23 +79,23 @@ def draw_shapes(world: iota.World) -> None:
         looks.box((0.3, 0.3, 0.05), "glass"),
         looks.sphere(0.17, color="#d0402b80"),
     ):
-        world.shape(look, position=cell(), rotation=TILT)
+        world.drawings.shape(look, position=cell(), rotation=TILT)
     world.add_static(looks.box((0.1, 0.4, 0.1), "rope"), cell(), TILT)
 
 
 def draw_strokes(world: iota.World) -> None:
     at = cell()
-    world.line(beside(at, -0.2, -0.2), beside(at, 0, 0.2), beside(at, 0.2, -0.2), color=BLUE, closed=True)
+    world.drawings.line(beside(at, -0.2, -0.2), beside(at, 0, 0.2), beside(at, 0.2, -0.2), color=BLUE, closed=True)
     at = cell()
-    world.line(beside(at, -0.2, -0.1), beside(at, 0, 0.15), beside(at, 0.2, -0.1), radius=0.03, color=RED)
+    world.drawings.line(beside(at, -0.2, -0.1), beside(at, 0, 0.15), beside(at, 0.2, -0.1), radius=0.03, color=RED)
     at = cell()
-    world.tube(
+    world.drawings.tube(
         beside(at, -0.25, -0.1), beside(at, 0, 0.2), beside(at, 0.25, -0.1), radius=0.05, color=GREEN, material="paint"
     )
-    world.arrow(beside(cell(), -0.15, -0.2), vector=(0.3, 0.4, 0), radius=0.03, color=AMBER)
+    world.drawings.arrow(beside(cell(), -0.15, -0.2), vector=(0.3, 0.4, 0), radius=0.03, color=AMBER)
     at = cell()
     for place in range(4):
-        world.axes(at=beside(at, 0.09 * place - 0.2, 0.05 * place - 0.2), length=0.25)
+        world.drawings.axes(at=beside(at, 0.09 * place - 0.2, 0.05 * place - 0.2), length=0.25)
     world.label("label", at=cell())
     world.label("10 cm", at=cell(), height=0.1, color=RED)
     at = cell()
@@ -107,16 +107,16 @@ def draw_strokes(world: iota.World) -> None:
     )
     at = cell()
     grid = [(0.12 * x, 0.12 * y, 0.0) for x in (-1, 0, 1) for y in (-1, 0, 1)]
-    world.shapes(
+    world.drawings.shapes(
         looks.box((0.07, 0.07, 0.07)), np.array(grid) + at, rotations=[TILT] * 9, color=[GREEN, AMBER, BLUE] * 3
     )
     at = cell()
-    world.strut(beside(at, -0.2, -0.2), beside(at, 0.2, 0.2), looks.cylinder(0.04, "paint"), color=RED)
+    world.drawings.strut(beside(at, -0.2, -0.2), beside(at, 0.2, 0.2), looks.cylinder(0.04, "paint"), color=RED)
     spot = cell()
-    world.shape(looks.box((0.4, 0.4, 0.02), "paint", color="#606060"), position=spot)
-    world.light("spot", at=beside(spot, z=0.8), to=spot, color=RED, intensity=3, reach=0.8, angle=0.2)
-    frame = world.frame(beside(cell(), -0.1), (0, 0, math.sqrt(0.5), math.sqrt(0.5)))
-    world.shape(looks.cone(0.1, 0.2, color=AMBER), on=frame, position=(0.1, 0, 0))
+    world.drawings.shape(looks.box((0.4, 0.4, 0.02), "paint", color="#606060"), position=spot)
+    world.drawings.light("spot", at=beside(spot, z=0.8), to=spot, color=RED, intensity=3, reach=0.8, angle=0.2)
+    frame = world.drawings.frame(beside(cell(), -0.1), (0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+    world.drawings.shape(looks.cone(0.1, 0.2, color=AMBER), on=frame, position=(0.1, 0, 0))
 
 
 def draw_surfaces(world: iota.World) -> None:
@@ -124,16 +124,16 @@ def draw_surfaces(world: iota.World) -> None:
     at = cell()
     square = [beside(at, x, y) for x, y in ((-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2))]
     world.surface(square, [(0, 1, 2), (0, 2, 3)], texture=four, repeat=2)
-    world.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=cell(), rotation=TILT)
+    world.drawings.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=cell(), rotation=TILT)
     at = cell()
-    world.skin(lambda: [beside(at, -0.1), beside(at, 0.1)], 0.14, color=GREEN)
+    world.drawings.skin(lambda: [beside(at, -0.1), beside(at, 0.1)], 0.14, color=GREEN)
     file = Path(mkdtemp()) / "tent.obj"
     file.write_text("v -0.2 -0.2 0\nv 0.2 -0.2 0\nv 0 0.2 0\nv 0 -0.1 0.3\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n")
     world.surface(shapelib.read_surface(str(file)), at=cell(), color=BLUE)
     module = file.with_name("knot.js")
     module.write_text(CLASS)
-    world.client_module(module)
-    world.custom("knot", at=cell(), values={"color": RED})
+    world.pages.client_module(module)
+    world.drawings.custom("knot", at=cell(), values={"color": RED})
 
 
 def draw_bodies(world: iota.World) -> None:
@@ -141,7 +141,7 @@ def draw_bodies(world: iota.World) -> None:
     at = cell()
     painted = system.body(shape=iota.Box((0.25, 0.25, 0.25)), mass=1.0, position=at, orientation=TILT)
     world.draw(painted, looks.solid("wood"))
-    world.paint(painted, "#8a4fb0")
+    world.drawings.paint(painted, "#8a4fb0")
 
     def between(make: str) -> None:
         at = cell()
@@ -170,7 +170,7 @@ def draw_bodies(world: iota.World) -> None:
         curve=[(0, 0.03, (1, 0.6, 0.1)), (1, 0.03, (1, 0.6, 0.1))],
     )  # fmt: skip
     runner = system.body(shape=iota.Sphere(0.03), mass=1.0, position=beside(cell(), 0.2))
-    world.trace(runner, radius=0.02, color=AMBER)
+    world.drawings.trace(runner, radius=0.02, color=AMBER)
 
     @world.on_step
     def run() -> None:
@@ -179,6 +179,6 @@ def draw_bodies(world: iota.World) -> None:
 
     @world.at(0.6)
     def stay() -> None:
-        world.paused = True
+        world.clock.paused = True
 
     assert next(cells) <= COLUMNS * ROWS

@@ -7,7 +7,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSyn
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { Browser } from "./browser.ts";
+import { Browser, small } from "./browser.ts";
 import { freePort, WorldServer } from "./server.ts";
 
 const web = path.resolve(import.meta.dirname, "..");
@@ -106,7 +106,7 @@ beforeAll(async () => {
   writeFileSync(path.join(folder, "vite.config.js"), 'export default { base: "./", build: { target: "es2022", assetsInlineLimit: 0, modulePreload: { polyfill: false }, rolldownOptions: { input: ["index.html", "page.html"] } } };');
   run(folder, process.execPath, path.join(web, "node_modules", "vite", "bin", "vite.js"), "build");
   server = await WorldServer.start(["web/e2e/packages_probe.py"], await freePort(), undefined, { IOTA_PAGE_FOLDER: path.join(folder, "dist") });
-  browser = await Browser.start();
+  browser = await Browser.start({ ...small, draws: "always" });
 });
 
 afterAll(async () => {

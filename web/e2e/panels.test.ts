@@ -19,6 +19,7 @@ beforeAll(async () => {
 });
 
 afterAll(async () => {
+  await leaveAll();
   await chain?.stop();
   await things?.stop();
 });
@@ -32,32 +33,51 @@ async function panel(tab: Tab, selector: string): Promise<string> {
   return `data:image/png;base64,${png.toString("base64")}`;
 }
 
-/** The next page waits for a world that has begun. */
-async function goOn(browser: Browser): Promise<void> {
-  const page = browser.context.pages().at(-1);
-  await page?.evaluate(() => iota.page.world.paused && iota.page.commands.run("play")).catch(() => {});
-  await page?.waitForFunction(() => iota.step > 0, undefined, { polling: 50 }).catch(() => {});
+/** A page for all tests of a world with the same window. */
+interface Visited {
+  readonly browser: Browser;
+  readonly tab: Tab;
+}
+const visited = new Map<string, Visited>();
+
+async function leaveAll(): Promise<void> {
+  for (const { browser } of visited.values()) await browser.stop();
+  visited.clear();
 }
 
-async function visit(server: WorldServer, options: BrowserOptions, look: (tab: Tab) => Promise<void>): Promise<void> {
+async function open(server: WorldServer, options: BrowserOptions): Promise<Visited> {
   const browser = await Browser.start({ ...options, density: 1 });
-  try {
-    const tab = await browser.open(server.url);
-    await tab.drawn();
-    // The world at its start, so that plots are empty and all is whole.
-    await tab.pause(true);
-    await tab.reset();
-    await tab.page.evaluate((rules) => {
-      const sheet = new CSSStyleSheet();
-      sheet.replaceSync(rules);
-      document.adoptedStyleSheets = [sheet];
-    }, alone);
-    await look(tab);
-    expect(tab.complaints).toEqual([]);
-  } finally {
-    await goOn(browser);
-    await browser.stop();
-  }
+  const tab = await browser.open(server.url);
+  await tab.drawn();
+  await tab.page.evaluate((rules) => {
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(rules);
+    document.adoptedStyleSheets = [sheet];
+  }, alone);
+  return { browser, tab };
+}
+
+async function visit(server: WorldServer, { dark, ...options }: BrowserOptions, look: (tab: Tab) => Promise<void>): Promise<void> {
+  const key = JSON.stringify([server.port, options]);
+  const { tab } = visited.get(key) ?? visited.set(key, await open(server, options)).get(key)!;
+  await tab.page.emulateMedia({ colorScheme: dark === true ? "dark" : "light" });
+  // The world at its start, so that plots are empty and all is whole.
+  await tab.pause(true);
+  await tab.reset();
+  await look(tab);
+  expect(tab.complaints).toEqual([]);
+  await tab.page.keyboard.press("Escape");
+  await tab.page.evaluate(() => {
+    iota.select(-1);
+    for (const close of document.querySelectorAll<HTMLElement>("#cards .card button[aria-label=Close]")) close.click();
+  });
+  await goOn(tab);
+}
+
+/** The next page waits for a world that has begun. */
+async function goOn(tab: Tab): Promise<void> {
+  await tab.pause(false);
+  await tab.until("the world has begun", () => iota.step > 0);
 }
 
 describe("the page", () => {
@@ -99,26 +119,6 @@ describe("the page", () => {
   });
 });
 
-describe("the headset", () => {
-  it.each([["actions", () => chain], ["controls", () => things]] as const)("has its wrist panel as it was: %s", async (name, server) => {
-    const browser = await Browser.start({ width: 400, height: 224 });
-    try {
-      const me = await HeadsetTab.open(browser, server().url);
-      await me.tab.pause(true);
-      await me.tab.reset();
-      await me.enter();
-      await me.lookAtWrist();
-      await expectKept(me.tab, `panel_wrist_${name}`, () => me.tab.page.evaluate(() => {
-        const { map } = iotaXR!.headset.panel.board.mesh.material;
-        return (map!.image as HTMLCanvasElement).toDataURL("image/png");
-      }), [8, 8]);
-    } finally {
-      await goOn(browser);
-      await browser.stop();
-    }
-  });
-});
-
 it("a panel that lacks a button is noticed", async () => {
   await visit(chain, { width: 1000, height: 640 }, async (tab) => {
     await tab.page.mouse.move(300, 40);
@@ -129,5 +129,28 @@ it("a panel that lacks a button is noticed", async () => {
       document.getElementById("step")!.style.visibility = "hidden";
     });
     expect(await alike()).toBe(false);
+  });
+});
+
+describe("the headset", () => {
+  // The kept pictures are of worlds without other pages.
+  beforeAll(leaveAll);
+
+  it.each([["actions", () => chain], ["controls", () => things]] as const)("has its wrist panel as it was: %s", async (name, server) => {
+    const browser = await Browser.start({ width: 400, height: 224 });
+    const me = await HeadsetTab.open(browser, server().url);
+    try {
+      await me.tab.pause(true);
+      await me.tab.reset();
+      await me.enter();
+      await me.lookAtWrist();
+      await expectKept(me.tab, `panel_wrist_${name}`, () => me.tab.page.evaluate(() => {
+        const { map } = iotaXR!.headset.panel.board.mesh.material;
+        return (map!.image as HTMLCanvasElement).toDataURL("image/png");
+      }), [8, 8]);
+    } finally {
+      await goOn(me.tab);
+      await browser.stop();
+    }
   });
 });

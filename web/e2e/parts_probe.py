@@ -31,13 +31,13 @@ def build() -> iota.World:
         particle.nail()
     lower.particles[0].combine(upper.particles[1])
     world.offer()
-    world.carry(piece)
-    socket = world.socket(post.particles[1], [plug.particles[0]], within=0.15, pull=2)
+    world.tools.carry(piece)
+    socket = world.tools.socket(post.particles[1], [plug.particles[0]], within=0.15, pull=2)
     last: list[dict[str, object]] = []
 
     @world.on_frame
     def report() -> None:
-        texts = [thing.text for thing in world.things if thing.kind == "label"]
+        texts = [thing.text for thing in world.drawings.things if thing.kind == "label"]
         now = {
             "bodies": len(system.bodies),
             "arm": len(lower.articulate),

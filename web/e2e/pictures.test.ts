@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures at full size, for inspection: build/artifacts/page_*.png. Also the time of a grab.
+// The time of a grab. With all tests also pictures at full size, for inspection: build/artifacts/page_*.png.
 
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { Browser, type Tab } from "./browser.ts";
+import { Browser, runsAll, type Tab } from "./browser.ts";
 import { artifacts, freePort, probe, WorldServer } from "./server.ts";
 
 let server: WorldServer;
@@ -13,7 +13,7 @@ let tab: Tab;
 
 beforeAll(async () => {
   server = await WorldServer.start([probe], await freePort());
-  browser = await Browser.start({ width: 1280, height: 720, density: 1, shadows: true });
+  browser = await Browser.start({ width: 1280, height: 720, density: 1, shadows: true, draws: "always" });
   tab = await browser.open(server.url);
 });
 
@@ -36,7 +36,7 @@ async function picture(name: string): Promise<void> {
 }
 
 describe("pictures", () => {
-  it("show both looks, a drag, the dark theme and a phone", async () => {
+  it.runIf(runsAll)("show both styles, a drag, the dark theme and a phone", async () => {
     await tab.goOn(0.5);
     await picture("rope");
     await tab.page.keyboard.press("l");

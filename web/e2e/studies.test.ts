@@ -3,7 +3,7 @@
 // of its keys and controls does what its help says, in the world (Python), on the page, and in the picture.
 
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { Browser, distance, small, type Place, type Tab } from "./browser.ts";
+import { Browser, distance, runsAll, small, type Place, type Tab } from "./browser.ts";
 import { drawn } from "./drawn.ts";
 import { HeadsetTab } from "./headset.ts";
 import { freePort, studyNames, WorldServer } from "./server.ts";
@@ -519,10 +519,13 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   },
 };
 
+/** Usually these stand for all when a finger, a controller's ray and a bare hand drag. */
+const takenByAll = ["chain", "ladder", "undersea", "weather"];
+
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await Browser.start(small);
+  browser = await Browser.start({ ...small, draws: "asked" });
 });
 
 afterAll(async () => {
@@ -543,9 +546,11 @@ describe("the study", () => {
       expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(200_000);
       await study.isFramed();
       await studies[name](study);
-      await study.dragByFinger();
-      // The keys have led to another view of the laboratory.
-      await study.dragInHeadset(Object.keys(studies).indexOf(name) % 2 === 1, name !== "lab");
+      if (runsAll || takenByAll.includes(name)) {
+        await study.dragByFinger();
+        // The keys have led to another view of the laboratory.
+        await study.dragInHeadset(Object.keys(studies).indexOf(name) % 2 === 1, name !== "lab");
+      }
       expect(tab.complaints).toEqual([]);
       expect(server.output).not.toMatch(/Traceback|Error/);
     } catch (error) {

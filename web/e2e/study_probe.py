@@ -18,7 +18,7 @@ NAME = os.environ["IOTA_STUDY"]
 def build() -> iota.World:
     make = studies.module(NAME).build
     world: iota.World = make(Path(mkdtemp())) if NAME == "playground" else make()
-    world.paused = "IOTA_PAUSED" in os.environ
+    world.clock.paused = "IOTA_PAUSED" in os.environ
     watch(world)
     return world
 
@@ -28,7 +28,7 @@ def watch(world: iota.World) -> None:
     system = world.system
 
     def report() -> None:
-        bodies, held = [body for body in system.bodies if not body.is_spark], world.held()
+        bodies, held = [body for body in system.bodies if not body.is_spark], world.users.held()
         facts = {
             "time": system.time,
             "bodies": len(bodies),

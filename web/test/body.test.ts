@@ -2,14 +2,14 @@
 import { BufferAttribute, BufferGeometry, Color, Matrix4, Object3D, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { Hit, pickRay } from "../src/interact/picking.ts";
-import { body, bodyEntity, id, packRotation, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, packRotation, part, visual, TestWorld } from "./test_world.ts";
 
-const link = style(0, "link", part("capsule", [0.05, 0.1]), part("sphere", [0.06], { offset: [0.1, 0, 0] }));
+const link = visual(0, "link", part("capsule", [0.05, 0.1]), part("sphere", [0.06], { offset: [0.1, 0, 0] }));
 
 function told(count: number): TestWorld {
   const test = new TestWorld();
   test.join();
-  test.set("style", link);
+  test.set("visual", link);
   test.set("body", ...Array.from({ length: count }, (_, slot) => bodyEntity(slot)));
   test.set("membership", ...Array.from({ length: count }, (_, slot) => ({ id: id(slot), articulate: 0 })));
   test.poses(Array.from({ length: count }, (_, slot) => body(slot, (10 * slot) / count)));
@@ -33,7 +33,7 @@ function placeOf(test: TestWorld, mesh: number, instance: number): Vector3 {
 }
 
 describe("bodies", () => {
-  it("are drawn with one mesh for each part of a style, at their places", () => {
+  it("are drawn with one mesh for each part of a visual, at their places", () => {
     const test = told(3);
     expect(test.meshes().map((mesh) => mesh.count)).toEqual([3, 3]);
     expect(placeOf(test, 0, 1).x).toBeCloseTo(10 / 3, 3);
@@ -143,12 +143,12 @@ describe("bodies", () => {
     expect(test.world.entities.body.slotOf(id(1, 2))).toBe(1);
   });
 
-  it("are drawn anew where a style changes, and only those", () => {
+  it("are drawn anew where a visual changes, and only those", () => {
     const test = told(2);
-    test.set("style", style(1, "ball", part("sphere", [0.1])));
-    test.set("body", bodyEntity(2, { style: 1 }));
+    test.set("visual", visual(1, "ball", part("sphere", [0.1])));
+    test.set("body", bodyEntity(2, { visual: 1 }));
     const [, , ball] = test.meshes();
-    test.set("style", { ...link, parts: [part("box", [0.1, 0.1, 0.1, 0])] });
+    test.set("visual", { ...link, parts: [part("box", [0.1, 0.1, 0.1, 0])] });
     expect(test.meshes().map((mesh) => mesh.count)).toEqual([1, 2]);
     expect(test.meshes()[0]).toBe(ball);
   });
@@ -170,12 +170,12 @@ describe("bodies", () => {
     expect(bodies.renamed).toBe(1);
   });
 
-  it("wait for a style that comes after them", () => {
+  it("wait for a visual that comes after them", () => {
     const test = told(1);
-    test.set("body", bodyEntity(4, { style: 8 }));
+    test.set("body", bodyEntity(4, { visual: 8 }));
     test.poses([body(4, 2)]);
     expect(test.world.entities.body.has(4)).toBe(false);
-    test.set("style", style(8, "late", part("sphere", [0.1])));
+    test.set("visual", visual(8, "late", part("sphere", [0.1])));
     expect(test.world.entities.body.has(4)).toBe(true);
   });
 });

@@ -25,12 +25,12 @@ describe("the list of commands", () => {
 
   it("lets the script's keys win, in either case", () => {
     const commands = new Commands();
-    commands.add(command("reset", ["r"]), command("look", ["l"]));
+    commands.add(command("reset", ["r"]), command("style", ["l"]));
     commands.script = [action("roll", "r"), action("burn", "B")];
     expect(commands.ofKey("r")?.name).toBe("roll");
     expect(commands.ofKey("R")?.name).toBe("roll");
     expect(commands.ofKey("b")?.name).toBe("burn");
-    expect(commands.ofKey("l")?.name).toBe("look");
+    expect(commands.ofKey("l")?.name).toBe("style");
   });
 
   it("refuses a second command of the same name or on the same key", () => {

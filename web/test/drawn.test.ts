@@ -2,7 +2,7 @@
 import { Matrix4, Mesh, Vector3, type BufferGeometry, type InstancedMesh } from "three";
 import { describe, expect, it } from "vitest";
 import { FIRST_FRAME, NO_BODY, NO_COLOR, type Anchor, type StrutEntity } from "../src/protocol/generated.ts";
-import { bodyEntity, id, packRotation, part, style, TestWorld } from "./test_world.ts";
+import { bodyEntity, id, packRotation, part, visual, TestWorld } from "./test_world.ts";
 
 const origin: Anchor = { body: NO_BODY, point: [0, 0, 0] };
 const bar = part("box", [2, 0.1, 0.1, 0]);
@@ -78,7 +78,7 @@ describe("a strut", () => {
 describe("a thing on a frame", () => {
   it("goes with it, and with the body and the frames that it is on", () => {
     const test = new TestWorld();
-    test.set("style", style(0, "ball", part("sphere", [0.1])));
+    test.set("visual", visual(0, "ball", part("sphere", [0.1])));
     test.set("body", bodyEntity(3));
     test.poses([], { farBodies: [{ body: 3, position: [10, 0, 0], rotation: packRotation([0, 0, Math.SQRT1_2, Math.SQRT1_2]) }] });
     const { frame, marker } = test.world.entities;
@@ -101,7 +101,7 @@ describe("a thing on a frame", () => {
 describe("paint", () => {
   it("stays with its body when others come and go, and ends with it", () => {
     const test = new TestWorld();
-    test.set("style", style(0, "bar", bar));
+    test.set("visual", visual(0, "bar", bar));
     test.set("body", ...[0, 1, 2].map((slot) => bodyEntity(slot)));
     test.set("paint", { id: id(0), bodies: Uint32Array.of(2), colors: Uint32Array.of(0xff0000) });
     const hues = () => {

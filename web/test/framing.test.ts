@@ -7,7 +7,7 @@ import type { Viewer } from "../src/page/viewer.ts";
 import type { LinkState } from "../src/net/connection.ts";
 import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
-import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
 
 const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
 
@@ -135,11 +135,11 @@ describe("another scene on the same page", () => {
   function join(test: TestWorld, framing: Framing, title: string, radius: number, [first, second]: readonly [number, number]): void {
     test.join();
     test.world.take({
-      type: "worldSettings", title, looks: [], look: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
+      type: "worldSettings", title, styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
       ground: 0, modules: [],
     });
     framing.changed("settings");
-    test.set("style", style(0, "ball", part("sphere", [radius])));
+    test.set("visual", visual(0, "ball", part("sphere", [radius])));
     test.set("body", bodyEntity(0), bodyEntity(1));
     test.poses([body(0, first), body(1, second)]);
   }

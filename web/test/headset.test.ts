@@ -144,19 +144,19 @@ describe("the back of the left hand is looked at as a watch", () => {
 });
 
 describe("the wrist panel's layout", () => {
-  const page = (looks: number): Entry[] => [
+  const page = (styles: number): Entry[] => [
     { name: "play", places: ["bar", "panel"], title: () => "Pause", sign: () => "M0 0", run: () => {} },
     { name: "speed", places: ["panel"], title: () => "Speed", options: ["1"], unit: "", value: () => "1", choose: () => {} },
-    { name: "look", places: ["panel"], title: () => "Look", offered: () => looks > 1, run: () => {} },
+    { name: "style", places: ["panel"], title: () => "Style", offered: () => styles > 1, run: () => {} },
     { name: "grid", keys: ["g"], title: () => "Grid", run: () => {} },
     { name: "leave", places: ["panel foot"], title: () => "Leave VR", run: () => {} },
   ];
   const action = (name: string, button: "a" | "b" | null): ScriptCommand => ({
     name: `action ${name}`, button, onBody: true, title: () => name, offered: () => false, run: () => {}, runOn: () => {},
   });
-  const commandsOf = (looks: number, ...script: ScriptCommand[]): Commands => {
+  const commandsOf = (styles: number, ...script: ScriptCommand[]): Commands => {
     const commands = new Commands();
-    commands.add(...page(looks));
+    commands.add(...page(styles));
     commands.script = script;
     return commands;
   };
@@ -165,7 +165,7 @@ describe("the wrist panel's layout", () => {
     const actions = ["break", "join", "paint", "burn"].map((name) => action(name, name === "break" ? "b" : null));
     const { buttons, height, readings } = layoutPanel(commandsOf(2, ...actions));
     expect(buttons.map((button) => button.command.name)).toEqual([
-      "play", "look", "action break", "action join", "action paint", "action burn", "leave",
+      "play", "style", "action break", "action join", "action paint", "action burn", "leave",
     ]);
     expect(buttons.find((button) => button.command.name === "action break")?.badge).toBe("B");
     const all = [...buttons, ...readings];
@@ -183,8 +183,8 @@ describe("the wrist panel's layout", () => {
   });
 
   it("keeps the places of commands that are not offered now", () => {
-    const play = (looks: number) => layoutPanel(commandsOf(looks)).buttons[0];
-    expect(layoutPanel(commandsOf(1)).buttons.map((button) => button.command.name)).not.toContain("look");
+    const play = (styles: number) => layoutPanel(commandsOf(styles)).buttons[0];
+    expect(layoutPanel(commandsOf(1)).buttons.map((button) => button.command.name)).not.toContain("style");
     expect(play(1).x).toBe(play(2).x);
   });
 

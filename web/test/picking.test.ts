@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { Hit, pickPoint, pickRay } from "../src/interact/picking.ts";
 import { BodyKind, NO_BODY, NO_COLOR } from "../src/protocol/generated.ts";
 import { TestScene } from "./test_scene.ts";
-import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, part, visual, TestWorld } from "./test_world.ts";
 
 const forward = [0, 0, -1];
 
@@ -96,7 +96,7 @@ describe("a surface over bodies", () => {
   const made = () => {
     const told = new TestWorld();
     told.join();
-    told.set("style", style(0, "ball", part("sphere", [0.05])));
+    told.set("visual", visual(0, "ball", part("sphere", [0.05])));
     told.set("body", ...[0, 1, 2].map((slot) => bodyEntity(slot)), bodyEntity(3, { kind: BodyKind.static }));
     told.poses([2, 4, 6, 8].map((x, slot) => body(slot, x)));
     return told.world.entities;

@@ -9,7 +9,7 @@ import { Reports } from "../src/page/reports.ts";
 import { Selection } from "../src/page/selection.ts";
 import type { PageParts } from "../src/page/page_parts.ts";
 import { PointerKind, type ClientMessage } from "../src/protocol/generated.ts";
-import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
 
 let told: ClientMessage[];
 let world: TestWorld["world"];
@@ -24,7 +24,7 @@ beforeEach(() => {
   told = [];
   const tested = new TestWorld();
   world = tested.world;
-  tested.set("style", style(0, "ball", part("sphere", [0.2])));
+  tested.set("visual", visual(0, "ball", part("sphere", [0.2])));
   tested.set("body", bodyEntity(0));
   tested.poses([body(0, 1)]);
   world.listens = { clicks: true, hovers: false, moves: false, keys: [] };

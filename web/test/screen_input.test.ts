@@ -6,7 +6,7 @@ import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { Gestures } from "../src/interact/gestures.ts";
 import { ScreenInput } from "../src/interact/screen_input.ts";
 import { Navigation } from "../src/navigate/navigation.ts";
-import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
 
 const [width, height] = [800, 600];
 let menus: number[];
@@ -18,7 +18,7 @@ beforeEach(() => {
   vi.stubGlobal("innerHeight", height);
   vi.stubGlobal("window", { setTimeout: () => 0, clearTimeout: () => {} });
   const test = new TestWorld();
-  test.set("style", style(0, "ball", part("sphere", [0.3])));
+  test.set("visual", visual(0, "ball", part("sphere", [0.3])));
   test.set("body", bodyEntity(7));
   test.poses([body(7, 5)]);
   const camera = new PerspectiveCamera(42, width / height);

@@ -4,7 +4,7 @@ import { Pointer } from "../src/interact/gestures.ts";
 import { Events } from "../src/page/events.ts";
 import { Selection } from "../src/page/selection.ts";
 import type { ClientMessage, Id } from "../src/protocol/generated.ts";
-import { body, bodyEntity, frame, id, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, frame, id, part, visual, TestWorld } from "./test_world.ts";
 
 /** A selection over two balls, 2 m apart on the x axis, and its messages to the server. */
 class Bench extends TestWorld {
@@ -22,7 +22,7 @@ class Bench extends TestWorld {
     };
     this.selection = new Selection(this.world, session, { invalidate: () => {} }, new Events());
     this.selection.gestures.add(this.pointer);
-    this.set("style", style(0, "ball", part("sphere", [0.2])));
+    this.set("visual", visual(0, "ball", part("sphere", [0.2])));
     this.set("body", bodyEntity(0, { id: id(0, 3) }), bodyEntity(1, { id: id(1, 5) }));
     this.poses([body(0, 1), body(1, 3)]);
     this.pointer.active = true;

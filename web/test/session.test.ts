@@ -6,7 +6,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Events } from "../src/page/events.ts";
 import { Session } from "../src/page/session.ts";
 import { Role, type PoseHold } from "../src/protocol/generated.ts";
-import { body, bodyEntity, frame, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, frame, part, visual, TestWorld } from "./test_world.ts";
 
 let asked = 0;
 let session: Session;
@@ -21,7 +21,7 @@ beforeEach(() => {
   };
   session = new Session("", { world: "", role: Role.actor, name: "" }, tested.world, viewer, new Events());
   tested.join();
-  tested.set("style", style(0, "ball", part("sphere", [0.1])));
+  tested.set("visual", visual(0, "ball", part("sphere", [0.1])));
   tested.set("body", bodyEntity(0));
 });
 

@@ -4,7 +4,7 @@
 import { InstancedMesh } from "three";
 import {
   BodyKind, decodePosesInto, encodeEntities, encodePoses, NO_COLOR, PosesBuffer, type BodyEntity, type EntityKind, type EntityRecords,
-  type Id, type Part, type PoseBody, type Poses, type StyleEntity,
+  type Id, type Part, type PoseBody, type Poses, type VisualEntity,
 } from "../src/protocol/generated.ts";
 import { World, type Change, type WorldListener } from "../src/world/world.ts";
 
@@ -38,7 +38,7 @@ export function body(slot: number, x: number, q: readonly number[] = [0, 0, 0, 1
 
 export function part(kind: string, sizes: readonly number[], extra: Partial<Part> = {}): Part {
   return {
-    look: "*", shape: { kind, sizes: Float32Array.from(sizes), vertices: new Float32Array(0), triangles: new Uint32Array(0) },
+    style: "*", shape: { kind, sizes: Float32Array.from(sizes), vertices: new Float32Array(0), triangles: new Uint32Array(0) },
     offset: [0, 0, 0], rotation: [0, 0, 0, 1], turn: 0, material: "paint", color: NO_COLOR, ...extra,
   };
 }
@@ -47,12 +47,12 @@ export function id(slot: number, generation = 1): Id {
   return { slot, generation };
 }
 
-export function style(slot: number, name: string, ...parts: Part[]): StyleEntity {
+export function visual(slot: number, name: string, ...parts: Part[]): VisualEntity {
   return { id: id(slot), name, parts };
 }
 
 export function bodyEntity(slot: number, extra: Partial<BodyEntity> = {}): BodyEntity {
-  return { id: id(slot), kind: BodyKind.dynamic, style: 0, odd: false, length: 0, name: "", ...extra };
+  return { id: id(slot), kind: BodyKind.dynamic, visual: 0, odd: false, length: 0, name: "", ...extra };
 }
 
 export class TestWorld implements WorldListener {

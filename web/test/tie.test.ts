@@ -3,10 +3,10 @@ import { Matrix4, Vector3, type InstancedMesh } from "three";
 import { describe, expect, it } from "vitest";
 import { NO_BODY, TieKind, type Anchor, type TieEntity } from "../src/protocol/generated.ts";
 import { TieView } from "../src/scene/entities/tie.ts";
-import { Styles } from "../src/scene/entities/style.ts";
+import { Visuals } from "../src/scene/entities/visual.ts";
 import { makeCoil } from "../src/scene/shapes/coil.ts";
 import { PoseBuffer } from "../src/scene/pose_buffer.ts";
-import { id, part, style } from "./test_world.ts";
+import { id, part, visual } from "./test_world.ts";
 
 const rope = 0;
 const spring = 1;
@@ -14,10 +14,10 @@ const spring = 1;
 function ties(...entries: Omit<TieEntity, "id">[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
   const poses = new PoseBuffer();
   poses.reserve(2);
-  const styles = new Styles((title) => expect.unreachable(title));
-  styles.create(style(rope, "rope", part("cylinder", [0.01, 0.1], { material: "rope" })));
-  styles.create(style(spring, "spring", part("cylinder", [0.02, 0.1])));
-  const view = new TieView(poses, styles);
+  const visuals = new Visuals((title) => expect.unreachable(title));
+  visuals.create(visual(rope, "rope", part("cylinder", [0.01, 0.1], { material: "rope" })));
+  visuals.create(visual(spring, "spring", part("cylinder", [0.02, 0.1])));
+  const view = new TieView(poses, visuals);
   entries.forEach((entry, slot) => view.create({ id: id(slot), ...entry }));
   const pieces = () => {
     const mesh = view.root.children[0] as InstancedMesh;
@@ -36,11 +36,11 @@ function ties(...entries: Omit<TieEntity, "id">[]): { view: TieView; poses: Pose
 }
 
 const world = (x: number, y: number, z: number): Anchor => ({ body: NO_BODY, point: [x, y, z] });
-const ropeOf = (length: number) => ({ kind: TieKind.rope, style: rope, a: world(0, 0, 0), b: world(2, 0, 0), length });
+const ropeOf = (length: number) => ({ kind: TieKind.rope, visual: rope, a: world(0, 0, 0), b: world(2, 0, 0), length });
 
 describe("ties", () => {
   it("a spring is as long as its ends are apart, wherever its body goes", () => {
-    const { view, poses, pieces } = ties({ kind: TieKind.spring, style: spring, a: world(0, 1, 0), b: { body: 1, point: [0, 0.5, 0] }, length: 0.4 });
+    const { view, poses, pieces } = ties({ kind: TieKind.spring, visual: spring, a: world(0, 1, 0), b: { body: 1, point: [0, 0.5, 0] }, length: 0.4 });
     view.draw();
     expect(pieces()[0].length).toBe(0); // its body has not been told of yet
     poses.known[1] = 1;

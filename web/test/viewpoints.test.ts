@@ -6,7 +6,7 @@ import { Navigation } from "../src/navigate/navigation.ts";
 import type { Viewer } from "../src/page/viewer.ts";
 import { Viewpoints } from "../src/page/viewpoints.ts";
 import { NO_BODY, type Anchor } from "../src/protocol/generated.ts";
-import { bodyEntity, id, packRotation, part, style, TestWorld } from "./test_world.ts";
+import { bodyEntity, id, packRotation, part, visual, TestWorld } from "./test_world.ts";
 
 function make() {
   const test = new TestWorld();
@@ -24,7 +24,7 @@ function make() {
   const carry = (x: number) => {
     for (let frame = 0; frame < 8; frame++) test.poses([], { farBodies: [{ body: 2, position: [x, 1, 0], rotation: packRotation([0, 0, 0, 1]) }] });
   };
-  test.set("style", style(0, "ball", part("sphere", [0.1])));
+  test.set("visual", visual(0, "ball", part("sphere", [0.1])));
   test.set("body", bodyEntity(2));
   carry(0);
   return { test, camera, navigation, viewpoints, frames, carry };

@@ -5,7 +5,7 @@ import { Navigation } from "../src/navigate/navigation.ts";
 import { wallsOf } from "../src/page/walking.ts";
 import { BodyKind, NO_BODY, NO_COLOR, type SurfaceEntity } from "../src/protocol/generated.ts";
 import { Walls, type Obstacle } from "../src/scene/walls.ts";
-import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, part, visual, TestWorld } from "./test_world.ts";
 
 /** A room of 4 x 3 x 6 m about the origin, times `size`, of walls of 5 cm, turned; with a ball in the middle. */
 function room(size: number): { walls: Walls; turned: (x: number, y: number, z: number) => Vector3 } {
@@ -146,8 +146,8 @@ describe("static bodies", () => {
   function made(): Walls {
     const tested = new TestWorld();
     const eighth = Math.PI / 8;
-    tested.set("style", style(0, "wall", part("box", [1, 2, 4, 0])), style(1, "ball", part("sphere", [1])));
-    tested.set("body", bodyEntity(0, { kind: BodyKind.static }), bodyEntity(1, { style: 1 }));
+    tested.set("visual", visual(0, "wall", part("box", [1, 2, 4, 0])), visual(1, "ball", part("sphere", [1])));
+    tested.set("body", bodyEntity(0, { kind: BodyKind.static }), bodyEntity(1, { visual: 1 }));
     tested.poses([body(0, 4, [0, Math.sin(eighth), 0, Math.cos(eighth)]), body(1, 8)]);
     return wallsOf(tested.world);
   }
@@ -187,7 +187,7 @@ describe("surfaces, as those of a room from a file,", () => {
   /** How far along x a walk from x = 2 gets before it. */
   function reached(surface: SurfaceEntity): number {
     const tested = new TestWorld();
-    tested.set("style", style(0, "ball", part("sphere", [0.1])));
+    tested.set("visual", visual(0, "ball", part("sphere", [0.1])));
     tested.set("body", bodyEntity(0));
     tested.poses([body(0, 4)]);
     tested.world.entities.surface.create(surface);

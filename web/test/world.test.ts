@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { ActionTarget, BodyKind, ControllerButton, type WorldSettings } from "../src/protocol/generated.ts";
-import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, part, visual, TestWorld } from "./test_world.ts";
 
-const link = style(0, "link",
-  part("capsule", [0.012, 0.1], { look: "rope", material: "rope" }),
-  part("torus", [0.03, 0.008, 0.05], { look: "chain", material: "steel", turn: Math.PI / 2 }));
-const weight = style(1, "weight", part("sphere", [0.1]));
+const link = visual(0, "link",
+  part("capsule", [0.012, 0.1], { style: "rope", material: "rope" }),
+  part("torus", [0.03, 0.008, 0.05], { style: "chain", material: "steel", turn: Math.PI / 2 }));
+const weight = visual(1, "weight", part("sphere", [0.1]));
 
-function settings(look: string): WorldSettings {
+function settings(style: string): WorldSettings {
   return {
-    type: "worldSettings", title: "chain", looks: ["rope", "chain"], look, hasCamera: true, cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0],
+    type: "worldSettings", title: "chain", styles: ["rope", "chain"], style, hasCamera: true, cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0],
     hasGround: false, ground: 0, modules: [],
   };
 }
@@ -19,27 +19,27 @@ function told(): TestWorld {
   const test = new TestWorld();
   test.join();
   test.world.take(settings("rope"));
-  test.set("style", link, weight);
-  test.set("body", bodyEntity(0), bodyEntity(7, { odd: true, length: 0.2 }), bodyEntity(9, { style: 1, kind: BodyKind.scripted }));
+  test.set("visual", link, weight);
+  test.set("body", bodyEntity(0), bodyEntity(7, { odd: true, length: 0.2 }), bodyEntity(9, { visual: 1, kind: BodyKind.scripted }));
   test.poses([body(0, 1), body(7, 2), body(9, 3)]);
   return test;
 }
 
 describe("the world", () => {
-  it("gives each body its shapes in the look that is shown", () => {
+  it("gives each body its shapes in the style that is shown", () => {
     const { world, changes } = told();
     const { body: bodies } = world.entities;
     expect(bodies.shapesOf(0)[0].shape.sizes[1]).toBeCloseTo(0.1, 6);
     expect(bodies.shapesOf(7)[0].shape.sizes[1]).toBeCloseTo(0.2, 6);
-    world.setLook("chain");
+    world.setStyle("chain");
     expect(bodies.shapesOf(7)[0].rotation[0]).toBeCloseTo(Math.SQRT1_2, 5);
     expect(bodies.shapesOf(9)[0].shape.kind.name).toBe("sphere");
-    world.setLook("never heard of");
+    world.setStyle("never heard of");
     expect(bodies.shapesOf(0)[0].shape.kind.name).toBe("capsule");
     expect(changes).toEqual(["look", "settings", "look", "look"]);
   });
 
-  it("names bodies by the script's classes and lets only dynamic ones be held", () => {
+  it("names bodies by the script's visuals and lets only dynamic ones be held", () => {
     const { world } = told();
     const { body: bodies } = world.entities;
     expect(bodies.nameOf(7)).toBe("link 7");
@@ -47,20 +47,20 @@ describe("the world", () => {
     expect([...bodies.pickable.subarray(0, bodies.pickableCount)]).toEqual([0, 7]);
   });
 
-  it.each(["(solid)", "class 3"])("names bodies of the class %s, which no script has named, by their number alone", (name) => {
+  it.each(["(solid)", "visual 3"])("names bodies of the visual %s, which no script has named, by their number alone", (name) => {
     const test = told();
-    test.set("style", style(2, name, part("sphere", [0.1])));
-    test.set("body", bodyEntity(4, { style: 2 }));
+    test.set("visual", visual(2, name, part("sphere", [0.1])));
+    test.set("body", bodyEntity(4, { visual: 2 }));
     expect(test.world.entities.body.nameOf(4)).toBe("body 4");
   });
 
-  it("keeps the look that its own user chose when the script's look changes", () => {
+  it("keeps the style that its own user chose when the script's style changes", () => {
     const { world } = told();
     world.take(settings("chain"));
-    expect(world.look).toBe("chain");
-    world.setLook("rope");
+    expect(world.style).toBe("chain");
+    world.setStyle("rope");
     world.take(settings("chain"));
-    expect(world.look).toBe("rope");
+    expect(world.style).toBe("rope");
   });
 
   it("names an unknown kind of entity in one notice, and shows all others", () => {
@@ -74,7 +74,7 @@ describe("the world", () => {
 
   it("leaves out a part that it cannot draw, and says why", () => {
     const test = told();
-    test.set("style", { ...weight, parts: [part("blob", [1]), part("sphere", [0.2])] });
+    test.set("visual", { ...weight, parts: [part("blob", [1]), part("sphere", [0.2])] });
     expect(test.warnings).toEqual([expect.stringMatching(/part of "weight".*"blob"/)]);
     expect(test.world.entities.body.shapesOf(9)).toHaveLength(1);
   });
@@ -107,8 +107,8 @@ describe("the world", () => {
     const meshes = test.meshes();
     test.join();
     test.world.take(settings("rope"));
-    test.set("style", link, weight);
-    test.set("body", bodyEntity(0), bodyEntity(9, { style: 1, kind: BodyKind.scripted }));
+    test.set("visual", link, weight);
+    test.set("body", bodyEntity(0), bodyEntity(9, { visual: 1, kind: BodyKind.scripted }));
     expect(test.goneBodies).toEqual([]);
     test.poses([body(0, 1), body(9, 3)]);
     expect(test.goneBodies).toEqual([7]);
@@ -119,7 +119,7 @@ describe("the world", () => {
     const test = new TestWorld();
     expect(test.world.described).toBe(false);
     test.join();
-    test.set("style", link, weight);
+    test.set("visual", link, weight);
     test.set("body", bodyEntity(0));
     expect(test.world.described).toBe(false);
     test.poses([body(0, 1)]);

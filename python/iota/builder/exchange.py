@@ -24,7 +24,7 @@ PARTS: dict[str, type[Any]] = {
 PAIRS = ("hinges", "lines")
 PLAIN = ("nails", "groups", "point_names")
 COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
-# What parts hold besides numbers, which the engine checks.
+# The fields of parts that are not numbers; the engine checks numbers.
 FIELDS: dict[str, type] = {
     "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "law": str, "parameters": dict,
     "options": dict, "terms": list, "shape": dict,

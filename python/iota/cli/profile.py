@@ -12,6 +12,7 @@ from typing import Any
 from iota._core import System
 from iota.cli import run
 from iota.cli.failure import Failure
+from iota.extras import how_to_get
 from iota.saving import replacing
 from iota.world import World
 from iota.world.options import RunOptions, use
@@ -34,7 +35,7 @@ def profile(arguments: argparse.Namespace) -> None:
         while world.system.step_count - first < arguments.seconds / world.dt:
             world.advance(steps)
         wall = time.perf_counter() - begun
-        rows.extend(rows_of(world.costs, wall, world.system.step_count - first))
+        rows.extend(rows_of(world.clock.costs, wall, world.system.step_count - first))
         if isinstance(world.system, System) and len(costs := world.system.profile()):
             forces.append(str(costs))
 
@@ -66,7 +67,7 @@ def plot(rows: list[dict[str, Any]], title: str, file: Path) -> None:
     try:
         from matplotlib.figure import Figure
     except ImportError:
-        raise Failure("plots need matplotlib: pip install 'iota[verify]'") from None
+        raise Failure(f"plots need Matplotlib. {how_to_get('verify')}") from None
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     shown = [row for row in rows if row["share"] > 0.005]

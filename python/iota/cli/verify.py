@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from iota.cli.failure import Failure
+from iota.extras import how_to_get
 
 if TYPE_CHECKING:
     from iota.verify.run import Case, Run
@@ -23,7 +24,7 @@ def run(arguments: argparse.Namespace) -> None:
     try:
         from iota.verify.cases import CASES
     except ImportError as missing:
-        raise Failure(f"verification needs SciPy ({missing}). Try: pip install 'iota[verify]'") from None
+        raise Failure(f"verification needs SciPy ({missing}). {how_to_get('verify')}") from None
     names = [case.name for case in CASES]
     if arguments.list:
         for case in CASES:
@@ -46,7 +47,7 @@ def run(arguments: argparse.Namespace) -> None:
         try:
             print(f"written: {report.write(out, done, names)}")
         except ImportError as missing:
-            raise Failure(f"figures need Matplotlib ({missing}). Try: pip install 'iota[verify]'") from None
+            raise Failure(f"figures need Matplotlib ({missing}). {how_to_get('verify')}") from None
     failed = sum(not row.passed for _, case_run in done for row in case_run.rows)
     if failed:
         raise Failure(f"{failed} of the checks failed")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Films of a world: `iota record`. Needs the extra packages of `pip install iota[film]`, and a Chromium."""
+"""Films of a world: `iota record`. Needs the extra `iota-worlds[film]` and a Chromium (docs/films.md)."""
 
 from iota.arguments import explain_module
 from iota.film.files import Failed

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from iota.extras import how_to_get
 from iota.film.files import Failed
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
@@ -73,7 +74,7 @@ def open_browser(purpose: str = "films") -> Iterator[Any]:
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
-        raise Failed(f"{purpose} need the package playwright. Try: pip install 'iota[film]'") from None
+        raise Failed(f"{purpose} need the package playwright. {how_to_get('film')}") from None
     environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": os.environ.get("LIBGL_ALWAYS_SOFTWARE", "1")}
     with sync_playwright() as playwright:
         program = find_browser() or playwright.chromium.executable_path

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from iota.extras import how_to_get
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -27,7 +29,7 @@ def video_library() -> Any:
     try:
         import av
     except ImportError:
-        raise Failed("films need the package av. Try: pip install 'iota[film]'") from None
+        raise Failed(f"films need the package av. {how_to_get('film')}") from None
     av.logging.set_level(av.logging.PANIC)
     return av
 

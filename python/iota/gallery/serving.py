@@ -79,7 +79,7 @@ class Gallery(Server):
                 self._start(name, room)
         now = time.monotonic()
         for name, world in list(self._worlds.items()):
-            if world.clients:
+            if world.users.clients:
                 self._left.pop(name, None)
             elif now - self._left.setdefault(name, now) > LEAVE:
                 self._end(name)

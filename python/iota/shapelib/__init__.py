@@ -6,7 +6,7 @@
     caffeine = iota.shapelib.molecule("caffeine.sdf", kind="soft", at=(0, 2, 0))
     caffeine.realize(system)
 
-Some formats need `pip install 'iota[shapelib]'`. docs/shapelib.md is the tutorial.
+Some formats need the extra `iota-worlds[shapelib]`. docs/shapelib.md is the tutorial.
 """
 
 from iota.arguments import explain_module

@@ -172,7 +172,7 @@ def _take(pipe: BinaryIO | Any, size: int, until: float | None) -> bytes:
 
 
 def _reason(process: subprocess.Popen[bytes]) -> str:
-    """Of a process that closed its output: it is ending."""
+    """Why a process closed its output; it is ending."""
     try:
         code = process.wait(ENDING_SECONDS)
     except subprocess.TimeoutExpired:

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Any, NamedTuple
 
+from iota.extras import how_to_get
+
 Color = tuple[float, float, float]
 
 # The colors of Corey, Pauling and Koltun, as in most programs.
@@ -41,7 +43,7 @@ def rdkit() -> Any:
     try:
         from rdkit import Chem
     except ImportError:
-        raise ImportError("molecules need RDKit: pip install 'iota[shapelib]'") from None
+        raise ImportError(f"molecules need RDKit. {how_to_get('shapelib')}") from None
     return Chem
 
 

@@ -253,7 +253,7 @@ class Solved:
 
 
 def _images(places: list[Place], turns: int) -> Array:
-    """Of corners, as `Solved` says."""
+    """The images of corners under the symmetry that `Solved` describes."""
     points = np.array([[sx * x, sy * y, z] for x, y, z in places for sx in (1, -1) for sy in (1, -1)])
     found = []
     for turn in range(turns):

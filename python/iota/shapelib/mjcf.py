@@ -12,6 +12,7 @@ import numpy as np
 
 from iota import looks
 from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
+from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
 from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism
@@ -37,7 +38,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
     try:
         import mujoco
     except ImportError:
-        raise ImportError("MJCF files need MuJoCo: pip install 'iota[shapelib]'") from None
+        raise ImportError(f"MJCF files need MuJoCo. {how_to_get('shapelib')}") from None
     warnings: list[str] = []
     # Without this it writes them into MUJOCO_LOG.TXT, in the folder where the script was started.
     mujoco.set_mju_user_warning(lambda text: warnings.append(" ".join(str(text).split())))
@@ -61,8 +62,8 @@ def read_mjcf(path: PathLike) -> Mechanism:
 
 
 def wrong(path: PathLike, text: str, included: list[Element]) -> FileError:
-    """The error to raise for one of MuJoCo, which tells line 0 of an element from an included file: then the element is found by its tag
-    and the attribute that the error names."""
+    """Converts an error of MuJoCo. MuJoCo reports line 0 for an element of an included file; the element is then found by
+    the tag and the attribute that the error names."""
     reason = f"MuJoCo cannot read it: {text.split(chr(10))[0]}"
     line = re.search(r"line(?: number=)? ?(\d+)", text)
     if line is None or line.group(1) != "0":

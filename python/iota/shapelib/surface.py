@@ -127,7 +127,7 @@ class Surface:
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
     def area(self) -> float:
-        """Of all faces."""
+        """The area of all faces."""
         triangles, _ = self.triangles()
         a, b, c = (self.vertices[triangles[:, i]] for i in range(3))
         return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)

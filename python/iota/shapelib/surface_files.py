@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from iota.extras import how_to_get
 from iota.shapelib.apart import apart
 from iota.shapelib.files import FileError, PathLike, number, read_bytes, read_text, whole, with_progress
 from iota.shapelib.gltf import PaintedSurface, read_gltf
@@ -91,8 +92,8 @@ def _read_off(path: PathLike) -> Surface:
 
 
 def _lines_of(text: str, goes_on: str = "") -> Iterator[tuple[int, list[str]]]:
-    """The words of each line that has some, and its number; without comments. A line whose last word is `goes_on` goes on
-    in the next one."""
+    """The number and the words of each line that is not empty, without comments. If the last word of a line is `goes_on`,
+    the next line continues it."""
     before: list[str] = []
     for at, line in enumerate(text.splitlines(), 1):
         words = before + line.split("#", 1)[0].split()
@@ -231,7 +232,7 @@ def trimesh() -> Any:
     try:
         import trimesh
     except ImportError:
-        raise ImportError("PLY and glTF files need trimesh: pip install 'iota[shapelib]'") from None
+        raise ImportError(f"PLY and glTF files need trimesh. {how_to_get('shapelib')}") from None
     return trimesh
 
 

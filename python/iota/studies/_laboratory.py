@@ -256,7 +256,7 @@ def lamp(room: Furniture, foot: Sequence[float]) -> None:
 
 
 def mug(room: Furniture, foot: Sequence[float]) -> None:
-    """Of coffee, with a handle."""
+    """A mug of coffee, with a handle."""
     x, y, z = foot
     room.turned(WHITE, foot, [(0.036, 0), (0.04, 0.005), (0.04, 0.095), (0.036, 0.095), (0.036, 0.08)], 64)
     room.turned(("paint", "#3a2418"), foot, [(0.036, 0.08), (0.036, 0.084)], 64)

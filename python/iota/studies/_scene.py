@@ -168,7 +168,7 @@ class _Made:
 
     def _look_of(self, body: iota.Body) -> str:
         """The name of its look in the structure; "" without one."""
-        look, known = self.world.look_of(body), self.structure.looks
+        look, known = self.world.scene.look_of(body), self.structure.looks
         if look is None:
             return ""
         name = next((name for name, other in known.items() if other == look), f"look {len(known) + 1}")
@@ -207,12 +207,12 @@ class _Made:
 
 
 def velocity_of(part: Any) -> iota.Vec3:
-    """Of its center of mass, m/s."""
+    """The velocity of its center of mass, m/s."""
     return sum((p.velocity * (p.mass / part.mass) for p in part.particles), iota.Vec3())
 
 
 def coordinate_options(coordinate: Any) -> dict[str, Any]:
-    """Of a joint that is made in the present pose, in which its coordinate is 0. Raises ValueError for a servo."""
+    """The options of a joint that is made in the present pose, in which its coordinate is 0. Raises ValueError for a servo."""
     if coordinate.servo is not None:
         raise ValueError("a joint with a servo cannot be saved here")
     now, options = coordinate.value, dict[str, Any]()

@@ -52,16 +52,16 @@ class Story:
         self._begins = self._world.system.time + self._wait
         if self._began is not None:
             self._began = None
-            self._world.notice("The story stops", "It is your turn.")
+            self._world.users.notice("The story stops", "It is your turn.")
             self._on_stop()
 
     def _tell(self) -> None:
         now = self._world.system.time
-        if self._world.held() is not None:
+        if self._world.users.held() is not None:
             self.touch()
         elif self._began is None and now >= self._begins:
             self._began, self._next = now, 0
-            self._world.notice("The story begins", "Touch anything, and it stops.")
+            self._world.users.notice("The story begins", "Touch anything, and it stops.")
         while self._began is not None and now >= self._began + self._events[self._next][0]:
             self._next += 1
             if self._next == len(self._events):

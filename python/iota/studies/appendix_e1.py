@@ -23,7 +23,7 @@ def build() -> iota.World:
 
 
 def present(world: iota.World) -> iota.World:
-    """What all three scripts of the appendix look like: balls with sticks between them, before a frame that shows how far
+    """The look of all three scripts of the appendix: balls with sticks between them, before a frame that shows how far
     they fall."""
     system = world.system
     world.draw([body for body in system.bodies if len(body.particles) > 1], looks.capsule(0.5, "brass"))

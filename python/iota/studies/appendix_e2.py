@@ -14,7 +14,7 @@ def build() -> iota.World:
     particle2 = system.body().particle((30, 0, 0))
     system.bond(particle1, particle2, force_function1)
     world = present(iota.World(system, title=f"Appendix E.2: {SCALE}", ground=GROUND))
-    world.line(particle1, particle2)
+    world.drawings.line(particle1, particle2)
     return world
 
 

@@ -46,7 +46,7 @@ def present(world: iota.World, made: iota.builder.Realized) -> None:
     corners = [(row * COLUMNS + column, COLUMNS) for row in range(ROWS - 1) for column in range(COLUMNS - 1)]
     triangles = [t for k, below in corners for t in ((k, k + below, k + 1), (k + 1, k + below, k + below + 1))]
     world.surface(list(made.points), triangles, threads=made.bonds, color="#b0303a")
-    world.paint([point.body for point in made.points], "#e8606a")  # they are in the shadow of their cloth
+    world.drawings.paint([point.body for point in made.points], "#e8606a")  # they are in the shadow of their cloth
     left, right, y = CORNER.x - 0.3, CORNER.x + (COLUMNS - 1) * SPACING + 0.3, CORNER.y
     world.add_strut((left, y, 0), (right, y, 0), looks.cylinder(0.014, "wood"))
     for x in (left, right):

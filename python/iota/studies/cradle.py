@@ -194,7 +194,7 @@ class Cradle:
 
     @property
     def axis(self) -> iota.Vec3:
-        """Of swinging towards the right."""
+        """The axis of a swing towards the right."""
         return self.along.cross(UP)
 
     def pivot(self, number: int) -> iota.Vec3:

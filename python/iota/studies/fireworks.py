@@ -49,7 +49,7 @@ class Rocket:
         if self.is_ready:
             return
         self._tail.move(self.particle.position)
-        if self.particle.velocity.y < 0.3 and self._world.held() != self.particle.body:  # not in a hand
+        if self.particle.velocity.y < 0.3 and self._world.users.held() != self.particle.body:  # not in a hand
             self._star.move(self.particle.position)
             self._tail.active, self._star.active = False, True
             self._world.after(0.1)(lambda: setattr(self._star, "active", False))
@@ -61,7 +61,7 @@ def build() -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust")
     world = iota.World(system, title="fireworks: a tube is 0.9 m high")
-    world.stage(sky="#03050a", horizon="#141c2c", ground="#34363a", light=0.45)  # a night
+    world.drawings.stage(sky="#03050a", horizon="#141c2c", ground="#34363a", light=0.45)  # a night
     places = np.linspace(-1.5, 1.5, len(COLORS))
     rockets = [Rocket(world, float(x), color, n) for n, (x, color) in enumerate(zip(places, COLORS, strict=True), 1)]
     for x in (-2.6, 2.6):

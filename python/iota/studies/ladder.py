@@ -71,7 +71,7 @@ class Block:
 
     def _strip(self, world: iota.World, place: iota.Vec3, color: str) -> Marker:
         look = looks.box((0.0008, LENGTH - 0.001, 0.008), "paint", color=color)
-        strip = world.shape(look, on=self.body.particle(place, mass=0))
+        strip = world.drawings.shape(look, on=self.body.particle(place, mass=0))
         strip.visible = False
         return strip
 
@@ -93,7 +93,7 @@ class Pair:
 
     @property
     def sense(self) -> int:
-        """Of turning about z with which the lower block opens: -1 at ends 0, 1 at ends 1."""
+        """The sense of rotation about z with which the lower block opens: -1 at ends 0, 1 at ends 1."""
         return 2 * (self.hinge & 1) - 1
 
     @property
@@ -168,7 +168,7 @@ class Ladder:
         self.begun = [(block.body, list(block.corners)) for block in self.blocks]
         self.aim = 0.0  # of the top block, rad
         self.rest()
-        world.shows_edits = False
+        world.scene.shows_edits = False
         world.on_step(self.step)
         world.on_reset(self.begin_anew)
 
@@ -193,7 +193,7 @@ class Ladder:
 
     def step(self) -> None:
         """Thesis, Algorithm 4; a hand on the top block turns it."""
-        if self.world.held() == self.blocks[0].ends[0].body:
+        if self.world.users.held() == self.blocks[0].ends[0].body:
             self.axle.angle.servo = None
         elif self.axle.angle.servo is None:
             self.rest()

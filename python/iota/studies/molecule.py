@@ -57,7 +57,7 @@ def build(repeat: bool = True) -> iota.World:
 
 
 def present(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
-    """What the molecule hangs from: an arm on a post."""
+    """The stand of the molecule: an arm on a post."""
     x, y, z = nail
     world.add_static(looks.sphere(0.03, "steel"), (x, y, z))
     world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))

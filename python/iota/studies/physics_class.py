@@ -22,7 +22,7 @@ def build() -> iota.World:
     world = iota.World(system, title="physics class: 2.6 m wide")
     heavy = system.group("heavy")
     field = system.field("energy = m*g*y", group=heavy, g=9.81)
-    gravity = world.slider("gravity", 0.5, 25, 9.81, unit="m/s²", help="on pendulum and weight")
+    gravity = world.controls.slider("gravity", 0.5, 25, 9.81, unit="m/s²", help="on pendulum and weight")
 
     @gravity.on_change
     def change() -> None:
@@ -31,7 +31,9 @@ def build() -> iota.World:
     pendulum(world, heavy, gravity)
     orbit(world)
     spring(world, heavy)
-    world.plot("energy", {"moving": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J")
+    world.controls.plot(
+        "energy", {"moving": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J"
+    )
     world.camera = iota.Camera(position=(0.47, 1.6, 4.35), target=(0.33, 1.22, 0))
     return world
 
@@ -66,7 +68,7 @@ def pendulum(world: iota.World, heavy: iota.Group, gravity: Slider) -> None:
     world.draw(rod, looks.cylinder(0.008, "steel"))
     bob.radius, bob.color = 0.08, (0.85, 0.25, 0.15)
     stand(world, PIVOT)
-    length = world.slider("length", 0.3, 1.4, 1.0, step=0.05, unit="m", help="of the pendulum")
+    length = world.controls.slider("length", 0.3, 1.4, 1.0, step=0.05, unit="m", help="of the pendulum")
     label = world.label("", at=PIVOT + (0, 0.22, 0), height=TEXT)
 
     @length.on_change
@@ -88,7 +90,7 @@ def pendulum(world: iota.World, heavy: iota.Group, gravity: Slider) -> None:
 
     hang()
     world.on_reset(lambda: setattr(length, "value", 1.0))
-    world.plot("pendulum", lambda: math.degrees(angle()), unit="°", seconds=8)
+    world.controls.plot("pendulum", lambda: math.degrees(angle()), unit="°", seconds=8)
 
 
 def orbit(world: iota.World) -> None:
@@ -101,8 +103,10 @@ def orbit(world: iota.World) -> None:
     sun.radius, sun.color = 0.1, (0.95, 0.7, 0.15)
     system.bond(planet, sun, "gravity", strength=PULL, softening=0)
     stand(world, SUN)
-    world.trace(planet, seconds=6, color="#3f7fd0")
-    speed = world.slider("launch", 0.6, 1.25, LAUNCH, step=0.05, unit="of a circle", help="launches the planet anew")
+    world.drawings.trace(planet, seconds=6, color="#3f7fd0")
+    speed = world.controls.slider(
+        "launch", 0.6, 1.25, LAUNCH, step=0.05, unit="of a circle", help="launches the planet anew"
+    )
     label = world.label("", at=SUN + (0, 0.58, 0), height=TEXT)
 
     @speed.on_change
@@ -120,7 +124,7 @@ def orbit(world: iota.World) -> None:
 
     launch()
     world.on_reset(lambda: setattr(speed, "value", LAUNCH))
-    world.plot("orbit", {"distance": lambda: abs(planet.position - SUN)}, unit="m", seconds=8)
+    world.controls.plot("orbit", {"distance": lambda: abs(planet.position - SUN)}, unit="m", seconds=8)
 
 
 def spring(world: iota.World, heavy: iota.Group) -> None:
@@ -135,8 +139,8 @@ def spring(world: iota.World, heavy: iota.Group) -> None:
     bond = system.bond(hook, weight, "spring", stiffness=40, damping=0, length=0.5)
     world.draw_ties("spring", looks.spring(0.035, 0.004, "steel"))
     stand(world, BEAM)
-    stiffness = world.slider("stiffness", 15, 150, 40, unit="N/m", help="of the spring")
-    damping = world.slider("damping", 0, 2, 0, unit="N s/m", help="of the spring")
+    stiffness = world.controls.slider("stiffness", 15, 150, 40, unit="N/m", help="of the spring")
+    damping = world.controls.slider("damping", 0, 2, 0, unit="N s/m", help="of the spring")
     label = world.label("", at=BEAM + (0, 0.22, 0), height=TEXT)
 
     @stiffness.on_change
@@ -160,7 +164,7 @@ def spring(world: iota.World, heavy: iota.Group) -> None:
     def back() -> None:
         stiffness.value, damping.value = 40, 0
 
-    world.plot("spring", stretch, unit="m", seconds=8)
+    world.controls.plot("spring", stretch, unit="m", seconds=8)
 
 
 def stand(world: iota.World, top: iota.Vec3) -> None:

@@ -89,7 +89,7 @@ def start(world: iota.World) -> None:
 
 def placing(world: iota.World) -> None:
     """A click on nothing places what is chosen: on the ground, or in the upright plane through the middle, what is nearer."""
-    what = world.choice("place", ["nothing", *PLACE], help="a click beside all things places one")
+    what = world.controls.choice("place", ["nothing", *PLACE], help="a click beside all things places one")
 
     def place(event: iota.Event) -> None:
         if what.value == "nothing" or event.origin is None or event.direction is None:
@@ -108,7 +108,7 @@ def placing(world: iota.World) -> None:
 
 
 def aim(origin: iota.Vec3, direction: iota.Vec3) -> iota.Vec3 | None:
-    """Where a ray meets the ground or the plane z = 0 first, within some meters."""
+    """The first point at which a ray meets the ground or the plane z = 0, within some meters."""
     ways = [
         (0.15 - origin.y) / direction.y if direction.y else math.inf,
         -origin.z / direction.z if direction.z else math.inf,
@@ -160,7 +160,7 @@ def connecting(world: iota.World) -> None:
             if not nailed:
                 point_of(event.body).nail()
 
-    tied_by = world.choice("tie", list(TIES), help="what the key t ties two bodies by")
+    tied_by = world.controls.choice("tie", list(TIES), help="what the key t ties two bodies by")
 
     @world.action("tie", key="t", help="a spring, rope or rod between two bodies: press it on one, then on the other")
     def tie(event: iota.Event) -> None:
@@ -213,7 +213,7 @@ def connecting(world: iota.World) -> None:
 
 def files(world: iota.World, folder: Path) -> None:
     """Save, load, export: files in one folder, by names without a path."""
-    name = world.text("file", "playground", help="letters, digits, - and _")
+    name = world.controls.text("file", "playground", help="letters, digits, - and _")
 
     def path(ending: str) -> Path:
         if not NAME.fullmatch(name.value):
@@ -223,30 +223,30 @@ def files(world: iota.World, folder: Path) -> None:
     def write(ending: str, text: str) -> None:
         with replacing(path(ending)) as fresh:
             fresh.write_text(text, encoding="utf-8")
-        world.notice("Saved", str(path(ending).resolve()))
+        world.users.notice("Saved", str(path(ending).resolve()))
 
     def told(work: Callable[[], None]) -> Callable[[], None]:
-        """What cannot be done is told in a card, and leaves the world as it is."""
+        """Reports an action that fails in a card; the world stays as it is."""
 
         def run() -> None:
             try:
                 work()
             except (OSError, ValueError) as error:
-                world.notice("That cannot be done", str(error), level="warning")
+                world.users.notice("That cannot be done", str(error), level="warning")
 
         return run
 
-    @world.button("save", help="as FILE.json")
+    @world.controls.button("save", help="as FILE.json")
     @told
     def save() -> None:
         write(".json", json.dumps(Scene.of(world).to_json(), indent=1))
 
-    @world.button("export script", help="as FILE.py, which makes this world")
+    @world.controls.button("export script", help="as FILE.py, which makes this world")
     @told
     def export() -> None:
         write(".py", Scene.of(world).script(world.system))
 
-    @world.button("load", help="FILE.json in place of what is here; z takes it back")
+    @world.controls.button("load", help="FILE.json in place of what is here; z takes it back")
     @told
     def load() -> None:
         file = path(".json")

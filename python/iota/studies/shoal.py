@@ -23,7 +23,7 @@ LEAN = 0.3  # s, how soon a fish leans into a turn
 MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
 WAY = np.array([2.2, 0.5, 1.8])  # how far it goes from there, m
 ROOM = np.array([0.12, 0.14, 0.45])  # across, up and along: between two fish at the start, m
-# Of a fish: places along it, half its height and half its width there, m.
+# The outline of a fish: places along it, half its height and half its width there, m.
 BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
 
 
@@ -46,7 +46,7 @@ def build(fish: int = FISH) -> iota.World:
 
 
 def leader_at(time: float) -> Any:
-    """Where the fish want to be, m: a loop in half a minute, at first across the view."""
+    """The place that the fish swim to, m: a loop in half a minute, at first across the view."""
     turn = 2 * math.pi * time / 30
     return MIDDLE + WAY * np.array([math.sin(turn), math.sin(2 * turn), math.cos(turn)])
 
@@ -150,5 +150,5 @@ def present(world: iota.World) -> None:
     for x, z, size in ((-1.5, -2, 0.8), (1.3, 1.5, 0.6), (2.0, -3, 1.1), (-1.9, 1.2, 0.8), (0.1, -5, 1.3)):
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
-    world.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
+    world.drawings.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
     world.camera = iota.Camera(position=(0, 2.0, 15.0), target=(0, 3.4, 0))

@@ -58,7 +58,7 @@ def build(fish: int = FISH) -> iota.World:
 
 
 def leader_at(time: float) -> Any:
-    """Where the shoal wants to be, m: round the seaweed, nearly as fast as a fish can swim."""
+    """The place that the shoal swims to, m: round the seaweed, nearly as fast as a fish can swim."""
     turn = 2 * math.pi * time / 16
     return np.array([1.9 * math.cos(turn), 2.7 + 0.5 * math.sin(3 * turn), 2.2 * math.sin(turn) - 0.4])
 
@@ -137,7 +137,7 @@ class Meal:
             self._say("")
 
     def _say(self, text: str) -> None:
-        """What the fish does, at the fish."""
+        """Labels the fish with what it does; an empty text removes the label."""
         self._label.visible = text != ""
         if self.fish is not None:
             self._label.text, self._label.at = text, self.fish

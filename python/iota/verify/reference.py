@@ -66,7 +66,7 @@ class PlanarChain:
         return np.concatenate([spin, np.linalg.solve(inertia, force)])
 
     def places(self, times: Array, angles: Sequence[float] | Array, spins: Sequence[float] | Array) -> Array:
-        """Of all masses at all times, from the state at times[0]: (len(times), n, 2), m."""
+        """The places of all masses at all times, from the state at times[0]: (len(times), n, 2), m."""
         states = integrate(self.rate, np.concatenate([angles, spins]), times)
         angle = states[:, : len(self.lengths)]
         steps = np.stack([self.lengths * np.sin(angle), -self.lengths * np.cos(angle)], axis=-1)

@@ -26,15 +26,15 @@ of
 
 The same checks at the small sizes are tests (`tests/python/test_verification.py`). `make soak` runs `iota verify --long`, and
 10 000 random scenes and ten million random edits, compared with a reference that only tracks labels (`soak/`; 400
-scenes and a million edits are tests): random graphs, joints, nails, springs, hands and edits every frame, masses over
+scenes and a million edits are in `make test-all`, a tenth of both in `make test`): random graphs, joints, nails, springs, hands and edits every frame, masses over
 six decades. A scene fails if it crashes, ends with a non-finite number or an invalid structure, reports a step with a
 gap as solved, or violates the energy balance. A failing scene is reduced to the shortest script that still fails, and
 printed with its seed and as calls; scenes that once failed are kept in `tests/cpp/soak/scenes`.
 10 000 more scenes of each promise (energy, velocities, momenta, forces, conflicts, order of arguments; `scenes/promises.h`)
 are measured from outside, from places and velocities alone, on trees and closed rings of bodies, nets and hinged boxes, with
-lengths and masses over six decades; 400 are tests.
+lengths and masses over six decades; 400 are in `make test-all`, 40 in `make test`.
 `make hostile` restores and replays damaged snapshots and recordings, whose checksums are right, under the address sanitizer: each
-is refused and changes nothing, or makes a valid world. 1000 and 20 000 of them are tests.
+is refused and changes nothing, or makes a valid world. 1000 and 20 000 of them are in `make test-all`, a tenth in `make test`.
 """
 
 STYLE: dict[str, Any] = {

@@ -10,7 +10,7 @@ from iota.world.callbacks import Hook
 
 # Keys of the page, which actions may replace: web/src/page/page_commands.ts and web/src/ui.
 PAGE_KEYS = {
-    " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next look", "f": "fly", "g": "grid",
+    " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next style", "f": "fly", "g": "grid",
     "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "i": "profile",
     "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing", "o": "select several",
     "ArrowRight": "select next", "ArrowDown": "select next", "ArrowLeft": "select previous", "ArrowUp": "select previous",
@@ -42,9 +42,10 @@ class Action:
 
 
 class Actions:
-    """By name, in the order of creation."""
+    """By name, in the order of creation. version: rises with each new one."""
 
     def __init__(self) -> None:
+        self.version = 0
         self._by_name: dict[str, Action] = {}
 
     def check(self, name: str, key: str | None, button: str | None, on: str) -> None:
@@ -61,6 +62,7 @@ class Actions:
 
     def add(self, action: Action) -> None:
         self._by_name[action.name] = action
+        self.version += 1
 
     def get(self, name: str) -> Action | None:
         return self._by_name.get(name)

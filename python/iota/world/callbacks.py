@@ -98,7 +98,7 @@ def told(error: BaseException) -> str:
     """'ZeroDivisionError: division by zero'; with a near name for what a handle of the engine does not have."""
     text = traceback.format_exception_only(type(error), error)[-1].strip()
     if isinstance(error, AttributeError) and type(error.obj).__module__ == "iota._core" and "Did you mean" not in text:
-        text += near_attribute(type(error.obj), error.name or "")
+        text += near_attribute(error.name or "", [n for n in dir(type(error.obj)) if n[0] != "_"])
     return text
 
 

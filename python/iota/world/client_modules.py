@@ -34,7 +34,7 @@ def add_module(modules: list[Path], file: Path) -> None:
 
 
 def script_folder() -> Path:
-    """Of the running script; the present one in a notebook or at a prompt."""
+    """The folder of the running script; the current folder in a notebook or at a prompt."""
     file = getattr(sys.modules.get("__main__"), "__file__", None)
     return Path.cwd() if file is None else Path(file).resolve().parent
 

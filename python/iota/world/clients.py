@@ -67,10 +67,10 @@ class Client:
         """A haptic pulse in the user's hands, for this client alone; a phone vibrates on "both". strength: from 0 to 1.
         seconds: at most 5.
 
-            @world.on_contact(hammer)
+            @world.on_stop(hammer)
             def struck(event):
-                for client in world.clients:
-                    if world.held(client.id) == hammer:
+                for client in world.users.clients:
+                    if world.users.held(client.id) == hammer:
                         client.pulse("right", 0.8)
         """
         if hand not in ("left", "right", "both"):

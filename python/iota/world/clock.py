@@ -1,31 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paces fixed steps to real time. The engine itself reads no clock."""
+"""The time of a world: the length of its steps, its speed, its timed events."""
 
 from __future__ import annotations
 
 import math
-import time
+from collections.abc import Callable
+from typing import Any, TypeVar
 
-MAX_CATCH_UP = 4  # steps
+from iota._core import System
+from iota.world.callbacks import Hook
+from iota.world.costs import Costs
+from iota.world.parts import Part
+from iota.world.schedule import Schedule
+
+Callback = TypeVar("Callback", bound=Callable[..., Any])
 MAX_SPEED = 10.0
 
 
-class Clock:
-    """The number of due steps, and the time to sleep. Time that cannot be caught up is dropped: slow motion.
+class Clock(Part):
+    """Time: the length of a step, pauses, the speed, timed events.
 
-    paused: no step is due. reached: achieved share of the requested speed, smoothed; 1 if the machine keeps up.
+    world.clock.speed = 0.5
+
+    @world.clock.every(1.0)
+    def tick(): print(world.system.time)
     """
 
-    def __init__(self, dt: float, frame: float = 1 / 60) -> None:
+    def __init__(self, dt: float, system: System, schedule: Schedule, costs: Costs) -> None:
+        self._system, self._schedule, self._costs = system, schedule, costs
         self.dt, self.speed = dt, 1.0
-        self.frame = frame
-        self.paused = False
-        self.reached = 1.0
-        self.restart()
+        self._paused = False
+        self._reached = 1.0
 
     @property
     def dt(self) -> float:
-        """Length of a step, s; above 0, at most 1."""
+        """Length of a step, s; above 0, at most 1. A new value is used from the next step on."""
         return self._dt
 
     @dt.setter
@@ -45,41 +54,46 @@ class Clock:
             raise ValueError(f"speed must be from 0 to {MAX_SPEED:g} times real time, not {value}")
         self._speed = float(value)
 
-    def restart(self) -> None:
-        self._last = self._next_frame = time.perf_counter()
-        self._owed = 0.0
+    @property
+    def paused(self) -> bool:
+        """While True, no steps are made; users' hands and edits of the script still act."""
+        return self._paused
 
-    def due(self) -> int:
-        """The number of steps to take now."""
-        now = time.perf_counter()
-        passed, self._last = now - self._last, now
-        if not self._runs():
-            self._owed = 0.0
-            return 0
-        self._owed += passed * self.speed / self.dt
-        steps = int(self._owed)
-        self._owed -= steps
-        taken = min(steps, MAX_CATCH_UP)
-        if steps:
-            self.reached += 0.02 * (taken / steps - self.reached)
-        return taken
+    @paused.setter
+    def paused(self, value: bool) -> None:
+        self._paused = value
 
-    def frame_due(self) -> bool:
-        """True once a frame."""
-        now = time.perf_counter()
-        if now < self._next_frame:
-            return False
-        self._next_frame = max(self._next_frame + self.frame, now)
-        return True
+    @property
+    def reached_speed(self) -> float:
+        """Achieved share of that speed, smoothed; below 1 the world runs in slow motion."""
+        return self._reached
 
-    def sleep(self) -> None:
-        """Sleeps until the next step or frame is due."""
-        now = time.perf_counter()
-        until = self._next_frame
-        if self._runs():
-            until = min(until, self._last + (1 - self._owed) * self.dt / self.speed)
-        if until > now:
-            time.sleep(until - now)
+    @property
+    def costs(self) -> dict[str, float]:
+        """Seconds that each part of the world has taken since it was made: "simulator", "floor", "pages", "script: ..." for each
+        of the script's functions. `iota profile` prints them as a table, with the parts of the simulator."""
+        return dict(self._costs.seconds)
 
-    def _runs(self) -> bool:
-        return not self.paused and self.speed > 0
+    def at(self, time: float) -> Callable[[Callback], Callback]:
+        """Decorator: calls a function once at a simulated time (s). If registered before `run`, it is restored by a
+        reset."""
+        return self._timer(time, None)
+
+    def after(self, delay: float) -> Callable[[Callback], Callback]:
+        """Decorator: calls a function once, `delay` simulated seconds from now."""
+        return self._timer(self._system.time + delay, None)
+
+    def every(self, period: float, start: float | None = None) -> Callable[[Callback], Callback]:
+        """Decorator: calls a function every `period` simulated seconds, first at `start` (default: one period from now)."""
+        return self._timer(self._system.time + period if start is None else start, period)
+
+    def _timer(self, time: float, period: float | None) -> Callable[[Callback], Callback]:
+        def register(function: Callback) -> Callback:
+            self._schedule.add(time, Hook.of(function), period)
+            return function
+
+        return register
+
+    def _take_pace(self, share: float) -> None:
+        """share: of the due steps, those that were taken."""
+        self._reached += 0.02 * (share - self._reached)

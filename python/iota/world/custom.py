@@ -14,7 +14,7 @@ MOST_VALUES = 65_536  # bytes, as JSON
 
 
 class Custom(Thing):
-    """An object of a class that a module of the script defines, see `World.custom`. values: its data, a dictionary of what JSON
+    """An object of a class that a module of the script defines, see `Drawings.custom`. values: its data, a dictionary of what JSON
     can hold; assign a new one to change it. at, rotation: its frame, as of a shape."""
 
     kind = "custom"
@@ -43,7 +43,7 @@ class Custom(Thing):
 
 
 class Sound(Thing):
-    """A sound of the script, see `World.sound`. reach: distance up to which it is not fainter, m; 0: half the diagonal of the
+    """A sound of the script, see `Drawings.sound`. reach: distance up to which it is not fainter, m; 0: half the diagonal of the
     scene."""
 
     kind = "sound"

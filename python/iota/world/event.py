@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Broken, ContactEvent, System, Vec3
+from iota._core import Body, Broken, StopEvent, System, Vec3
 from iota.world.notices import Notices
 
 
 @dataclass(frozen=True)
 class Hand:
-    """What a pointer is besides a ray. rotation: of the hand or controller, quaternion x y z w; its ray is along -z. buttons: how
+    """The state of a pointer besides its ray. rotation: of the hand or controller, quaternion x y z w; its ray is along -z. buttons: how
     far each is pressed, 0 to 1, in the order of WebXR or of the gamepad. axes: x and y of each stick, -1 to 1, as browsers have
     them. joints: of a bare hand, (25, 3) in the order of WebXR, world, m; otherwise (0, 3)."""
 
@@ -35,7 +35,7 @@ class Hand:
 
     @property
     def stick(self) -> tuple[float, float]:
-        """Of a controller, or the left one of a gamepad: to the right and away, -1 to 1."""
+        """The stick of a controller, or the left one of a gamepad: to the right and away, -1 to 1."""
         return (self.axes[0], -self.axes[1]) if len(self.axes) > 1 else (0.0, 0.0)
 
 
@@ -46,8 +46,8 @@ class Event:
 
     point: where a pointer hit the body, or the place of a hand, world, m; None without a hit. origin, direction: of the
     pointer's ray, if known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a drag
-    or hover, "start" or "end" of a contact. hold: number of the hand. key: that was pressed or released. contact,
-    broken: the ContactEvent or Broken. hand: of a moved pointer. reason: why a drag ended: "released", "left" (the page was
+    or hover, "start" or "end" of a stop. hold: number of the hand. key: that was pressed or released. stop,
+    broken: the StopEvent or Broken. hand: of a moved pointer. reason: why a drag ended: "released", "left" (the page was
     closed), "destroyed" (the body; then target is None) or "reset" (also by undo and rewind)."""
 
     system: System
@@ -61,7 +61,7 @@ class Event:
     phase: str = ""
     hold: int = 0
     key: str = ""
-    contact: ContactEvent | None = None
+    stop: StopEvent | None = None
     broken: Broken | None = None
     hand: Hand | None = None
     reason: str = ""

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 from iota._core import Body, Vec3
 from iota.looks import Look, capsule
-from iota.world.drawing import Drawing
+from iota.world.drawings import Drawings
 from iota.world.frames import into_frame, relative_turn
-from iota.world.scene import listed
+from iota.world.scene import Scene
 from iota.world.shown import Marker
+from iota.world.visuals import listed
 
 SEEN_THROUGH = "a0"  # of a color #rrggbbaa
 
@@ -20,13 +21,13 @@ Pose = tuple[Vec3, Sequence[float]]
 class Ghost:
     """A body's shape, seen through, on a frame of its own."""
 
-    def __init__(self, world: Drawing, body: Body, color: str) -> None:
+    def __init__(self, drawings: Drawings, scene: Scene, body: Body, color: str) -> None:
         self.body = body
-        self.frame = world.frame()
+        self.frame = drawings.frame()
         self._color = ""
         self._markers: list[Marker] = [
-            world.shape(look, position=tuple(position), rotation=rotation, on=self.frame)
-            for look, (position, rotation) in _shapes_of(world, body)
+            drawings.shape(look, position=tuple(position), rotation=rotation, on=self.frame)
+            for look, (position, rotation) in _shapes_of(scene, body)
         ]
         self.paint(color)
 
@@ -48,7 +49,7 @@ class Ghost:
         self.frame.destroy()
 
 
-def _shapes_of(world: Drawing, body: Body) -> list[tuple[Look, Pose]]:
+def _shapes_of(scene: Scene, body: Body) -> list[tuple[Look, Pose]]:
     """Its shapes as they are drawn, and their poses in its frame."""
     middle, turn = body.center_of_mass, body.orientation
     if body.solids:
@@ -59,11 +60,10 @@ def _shapes_of(world: Drawing, body: Body) -> list[tuple[Look, Pose]]:
             )
             for solid in body.solids
         ]
-    state = world._state
     length = max((abs(p.position - body.particles[0].position) for p in body.particles), default=0.0)
-    styles = state.scene.looks_of(body) or {}
-    drawn = styles.get(state.style or "", styles.get("*", next(iter(styles.values()), [])))
+    styles = scene.look_of(body) or {}
+    drawn = styles.get(scene.style or "", styles.get("*", next(iter(styles.values()), [])))
     looks = [look for look in listed(drawn) if look.shape is not None]
     if not looks:
-        looks = [capsule(state.thickness_of(body), length=max(length, 1e-6 * state.thickness_of(body)))]
+        looks = [capsule(scene.thickness_of(body), length=max(length, 1e-6 * scene.thickness_of(body)))]
     return [(look.of_length(length or look.length), (Vec3(*look.offset), tuple(look.rotation))) for look in looks]

@@ -75,7 +75,8 @@ class Keeper:
 
 
 def parts_of(system: System) -> list[Part]:
-    """All bodies but those of sparks."""
+    """All bodies but those of sparks. `System.islands` would not do: it is empty before the first step, and does not join what
+    only forces connect that a step holds constant."""
     root: dict[Body, Body] = {body: body for body in system.bodies if not body.is_spark}
 
     def find(body: Body) -> Body:
@@ -104,7 +105,7 @@ def parts_of(system: System) -> list[Part]:
 
 
 def description(body: Body) -> str:
-    """What it is, and where."""
+    """The shapes, masses and places of a body as text."""
     solids = [(repr(solid.shape), *solid.position, *solid.orientation) for solid in body.solids]
     particles = [(particle.mass, *particle.position, *particle.velocity) for particle in body.particles]
     return repr((particles, solids))

@@ -12,7 +12,7 @@ from iota._core import Body, Constraint, Group, Particle
 from iota.simulator import SimulatedBody
 from iota.world.callbacks import Hook, twice
 
-KINDS = ("click", "press", "release", "drag", "hover", "pointer", "key", "join", "leave", "frame", "contact", "break")
+KINDS = ("click", "press", "release", "drag", "hover", "pointer", "key", "join", "leave", "frame", "stop", "break")
 
 
 @dataclass(frozen=True)
@@ -110,6 +110,8 @@ class Listeners:
 
     def __init__(self) -> None:
         self._by_kind: dict[str, list[Listener]] = {kind: [] for kind in KINDS}
+        self.on_step: list[Hook] = []
+        self.on_reset: list[Hook] = []
         self.drags: dict[tuple[int, int], Drag] = {}  # by client and hold
         self.taken_away: list[
             tuple[tuple[int, int], Drag, str]
@@ -125,11 +127,16 @@ class Listeners:
 
     def remove(self, function: Callable[..., Any]) -> bool:
         """Removes a function from all events; False if it is not known."""
-        before = sum(map(len, self._by_kind.values()))
+        before = self._count()
         for kind, listeners in self._by_kind.items():
             self._by_kind[kind] = [each for each in listeners if each.hook.function != function]
+        self.on_step = [each for each in self.on_step if each.function != function]
+        self.on_reset = [each for each in self.on_reset if each.function != function]
         self.version += 1
-        return sum(map(len, self._by_kind.values())) < before
+        return self._count() < before
+
+    def _count(self) -> int:
+        return sum(map(len, self._by_kind.values())) + len(self.on_step) + len(self.on_reset)
 
     def take_away(self, reason: str, hands: Iterable[tuple[int, int]] | None = None) -> None:
         """Ends drags of these hands, or all, without their users."""

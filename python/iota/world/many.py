@@ -35,7 +35,7 @@ class _Along(Thing):
         raise NotImplementedError
 
     def _thickness(self, lengths: Rows) -> Rows:
-        """Of each, relative to the look's."""
+        """The thickness of each, relative to that of the look."""
         raise NotImplementedError
 
     def _record(self) -> dict[str, Any] | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @dataclass
 class RunOptions:
     """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`.
-    record: a file for what pages show, see `World.record`. kept: a file for the state in which a world ends and the next
+    record: a file for what pages show, see `Pages.record`. kept: a file for the state in which a world ends and the next
     one begins, see `iota.world.keeping`. names: of the module whose build() made the World. `ran`, `summary`: set by the
     World that ran."""
 

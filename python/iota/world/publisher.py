@@ -16,6 +16,7 @@ from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
+from iota.world.visuals import part_of
 
 
 class Publisher:
@@ -27,24 +28,24 @@ class Publisher:
         self._folder = ExitStack()  # of the page, if it is not the built one
         self._source = source_of(state.system)
         self._told: dict[str, dict[str, Any]] = {}
+        self._version: tuple[int, ...] | None = None  # of the state that was told
         self.room = room
         self.url = server.url if is_alone else server.url_of(room.world)
         self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.clients.send_pulse, state.clients.send_camera = room.pulse, self._tell_camera
         state.things.effect = room.effect
-        state.scene.tell_anew()
+        state.visuals.tell_anew()
         state.things.tell_anew()
-        state.is_changed = True
 
     @classmethod
-    def open(cls, state: State, host: str, port: int, lan: bool | Lan) -> Publisher:
-        """Starts a server. Raises OSError if the port is in use, PageMissingError if the page is not built."""
+    def open(cls, state: State, host: str, port: int, lan: bool | Lan, files: Sequence[Path]) -> Publisher:
+        """Starts a server. files: modules of the script. Raises OSError if the port is in use, PageMissingError if the page is not built."""
         with ExitStack() as stack:
             folder: Path | None = None
             modules: list[str] = []
-            if state.client_modules:
-                folder, modules = stack.enter_context(page_with(state.client_modules))
+            if files:
+                folder, modules = stack.enter_context(page_with(files))
             server = Server(host, port, folder=folder, lan=lan)
             publisher = cls(state, server, server.open("default"), is_alone=True, modules=modules)
             publisher._folder = stack.pop_all()
@@ -52,10 +53,7 @@ class Publisher:
 
     @classmethod
     def join(cls, state: State, server: Server, id: str) -> Publisher:
-        """Opens a world on a server, which may have others. Raises ValueError for an id in use, and for a world with
-        client modules."""
-        if state.client_modules:
-            raise ValueError("a world with client modules needs a server of its own, as its page loads them")
+        """Opens a world on a server, which may have others. Raises ValueError for an id in use."""
         return cls(state, server, server.open(id), is_alone=False)
 
     def announce_lan(self, shows_code: bool) -> list[str]:
@@ -76,9 +74,9 @@ class Publisher:
     def frame(self) -> None:
         """Sends one frame: changes and poses."""
         state = self._state
-        if state.is_changed:
+        if self._version != state.version:
+            self._version = state.version
             self._tell_settings()
-            state.is_changed = False
         clock = state.clock
         self.room.set_state(
             paused=clock.paused,
@@ -88,7 +86,7 @@ class Publisher:
             costs=list(state.step_costs.ms.items()),
         )
         state.things.tell(self.room, state.system.structure_version, partial(state.notices.warn_once, keep=True))
-        self._source.publish(self.room, state.shows_edits)
+        self._source.publish(self.room, state.scene.shows_edits)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
 
@@ -99,14 +97,14 @@ class Publisher:
 
     def _tell_settings(self) -> None:
         state = self._state
-        looks = state.styles
+        scene, styles = state.scene, state.visuals.styles
         is_new = self._tell_if_new(
             "set_settings",
             title=state.title,
-            looks=looks,
-            look=state.style or (looks[0] if looks else ""),
-            camera=places_of(state.camera),
-            ground=state.ground,
+            styles=styles,
+            style=scene.style or (styles[0] if styles else ""),
+            camera=places_of(scene.camera),
+            ground=scene.ground,
             modules=self._modules,
         )
         for client in state.clients.by_id.values() if is_new else ():
@@ -116,8 +114,11 @@ class Publisher:
         clicks, hovers, moves = (listeners.has(kind) for kind in ("click", "hover", "pointer"))
         self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, moves=moves, keys=list(listeners.keys))
         self._tell_if_new("set_actions", actions=[action.describe() for action in state.actions])
-        state.scene.tell(self.room, state.statics)
-        for texture in state.scene.textures():
+        state.visuals.tell(self.room)
+        self.room.set_statics(
+            [part_of(s.look.describe(), offset=tuple(s.position), rotation=s.rotation) for s in scene.statics]
+        )
+        for texture in state.visuals.textures():
             state.things.images.use(texture.name, texture)
 
     def _tell_camera(self, client: int, camera: Camera | None) -> None:
@@ -138,5 +139,5 @@ class Publisher:
 
 
 def places_of(camera: Camera | None) -> tuple[Vec3, Vec3] | None:
-    """Of the camera and of its target."""
+    """The places of the camera and of its target."""
     return None if camera is None else (Vec3(*camera.position), Vec3(*camera.target))

@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The looks of bodies: the classes given by the script, as sent to pages."""
+"""How bodies are drawn, what is fixed beside them, and the first view."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
-from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus, Vec3
+import numpy as np
+
+from iota._core import Body, System, Vec3
 from iota.arguments import SHORT
-from iota.looks import Look, Looks, color_number
+from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody
-from iota.textures import Texture
-from iota.world.things import vector
+from iota.world.frames import turn_from_x
+from iota.world.images import Images
+from iota.world.parts import Part
+from iota.world.things import unit_quaternion, vector
+from iota.world.visuals import TIES, Visuals
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ def camera_or_none(given: Any) -> Camera | None:
 
 @dataclass(frozen=True, eq=False)
 class Static:
-    """A fixed shape without physics, see `World.add_static`; the ground is one too, of a HalfSpace. position: m. rotation:
+    """A fixed shape without physics, see `Scene.add_static`; the ground is one too, of a HalfSpace. position: m. rotation:
     quaternion x y z w."""
 
     look: Look
@@ -49,89 +54,139 @@ class Static:
     rotation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)
 
 
-def listed(style: Look | list[Look]) -> list[Look]:
-    return style if isinstance(style, list) else [style]
+class Scene(Part):
+    """How bodies are drawn, shapes without physics that stand beside them, and the first view.
+
+    world.scene.draw(wheel, looks.solid("brass"))
+    """
+
+    def __init__(
+        self,
+        system: System,
+        visuals: Visuals | None = None,
+        images: Images | None = None,
+        style: str | None = None,
+        ground: float | None = None,
+    ) -> None:
+        self._system = system
+        self._visuals = Visuals() if visuals is None else visuals
+        self._images = Images() if images is None else images
+        self._style, self._ground = style, ground
+        self._camera: Camera | None = None
+        self._statics: list[Static] = []
+        self._usual_thickness: float | None = None
+        self._shows_edits = True
+
+    @property
+    def camera(self) -> Camera | None:
+        """The first view; None: everything is visible."""
+        return self._camera
+
+    @camera.setter
+    def camera(self, camera: Camera | None) -> None:
+        self._camera = camera_or_none(camera)
+        self._visuals.version += 1
+
+    @property
+    def shows_edits(self) -> bool:
+        """Whether joins and breaks show a ring of light, with a sound, by themselves. False where a script's mechanism makes
+        them all the time, as that of the study ladder; `Drawings.effect` still shows what users should see."""
+        return self._shows_edits
+
+    @shows_edits.setter
+    def shows_edits(self, shows: bool) -> None:
+        self._shows_edits = shows
+
+    @property
+    def style(self) -> str | None:
+        """The style that pages start with, as given to `World`; None: the first of `styles`."""
+        return self._style
+
+    @property
+    def styles(self) -> list[str]:
+        """The names of styles that looks are given for, in the order of their first use."""
+        return self._visuals.styles
+
+    @property
+    def ground(self) -> float | None:
+        """Height of the ground, m; None without one, and before the world begins if it was to be found."""
+        return self._ground
+
+    @property
+    def statics(self) -> Sequence[Static]:
+        """What `add_static` and `add_strut` returned, in the order of creation."""
+        return self._statics
+
+    def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
+        """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between
+        which users switch on the page. Every second body is odd, for looks with a turn.
+
+            world.draw(wheel, looks.solid("brass"))
+            world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
+        """
+        drawn = list(bodies) if isinstance(bodies, Iterable) else [bodies]
+        for body in drawn:
+            if not isinstance(body, Body | SimulatedBody):
+                raise TypeError(f"draw: bodies must be a body or several, not {SHORT.repr(body)}")
+        self._visuals.assign(drawn, self._visuals.name_of(by_style(look)))
+
+    def look_of(self, body: Body) -> Looks | None:
+        """The looks that `draw` gave to a body, for each style; None without one. A body that another one absorbed keeps
+        its own."""
+        return self._visuals.looks_of(body)
+
+    def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
+        """Sets the looks of springs, ropes or rods between bodies, as `draw`; an empty list hides them."""
+        if kind not in TIES:
+            raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
+        self._visuals.assign_ties(kind, by_style(look))
+
+    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Static:
+        """Adds a shape without physics: a beam, a stand. Walks end at it, and `Queries.ray` meets it. position: m. rotation:
+        quaternion x y z w."""
+        if not isinstance(look, Look) or look.shape is None:
+            raise TypeError(f"add_static: look must be a Look with a shape, not {SHORT.repr(look)}")
+        added = Static(look, vector(position), unit_quaternion(rotation))
+        self._statics.append(added)
+        if look.texture is not None:
+            self._images.use(look.texture.name, look.texture)
+        self._visuals.version += 1
+        return added
+
+    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> Static:
+        """Adds a look without physics from `start` to `end` (m): its local x runs along the line, and a cylinder or
+        capsule without a length gets that of the line."""
+        a, b = Vec3(*start), Vec3(*end)
+        length = abs(b - a)
+        if not length > 0:
+            raise ValueError(f"a strut needs two different ends, not {a} twice")
+        direction = (b - a) * (1 / length)
+        return self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
+
+    def thickness_of(self, body: Body) -> float:
+        """Radius with which a body of particles is drawn, m: of its look, or the page's default."""
+        thickness = self._visuals.thickness_of(body)
+        if thickness is not None:
+            return thickness
+        return self.usual_thickness if len(body.particles) > 1 else 2 * self.usual_thickness
+
+    @property
+    def usual_thickness(self) -> float:
+        """Radius of rods without a look, m."""
+        if self._usual_thickness is None:
+            self._usual_thickness = usual_thickness(self._system)
+        return self._usual_thickness
 
 
-def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnPart:
-    """Encodes a result of `Look.describe` for pages. place: replaces its offset and rotation."""
-    where = described | place
-    color = described.get("color")
-    return DrawnPart(
-        described.get("kind", "solid"),
-        described.get("sizes", []),
-        look=style,
-        material=described["material"],
-        color=None if color is None else color_number(color),
-        offset=tuple(where["offset"]),
-        rotation=tuple(where["rotation"]),
-        turn=described.get("turn", 0.0),
-        vertices=described.get("vertices", []),
-        triangles=described.get("triangles", []),
+def usual_thickness(system: System) -> float:
+    """Default radius of rods of this system, m, as in src/net/presenter.cpp: by their median length or the size of the
+    scene."""
+    places = system.positions
+    lengths = sorted(
+        abs(particles[1].position - particles[0].position)
+        for body in system.bodies
+        if not body.is_spark and len(particles := body.particles) == 2
     )
-
-
-class Scene:
-    """Classes of bodies and their looks."""
-
-    def __init__(self) -> None:
-        self.classes: dict[str, Looks] = {}
-        self._class_of: dict[Body | SimulatedBody, tuple[str, int]] = {}
-        self._untold: dict[Body | SimulatedBody, tuple[str, int]] = {}
-        self._drawn: set[Body | SimulatedBody] = set()
-
-    def assign(self, bodies: Iterable[Body | SimulatedBody], name: str) -> None:
-        for index, body in enumerate(bodies):
-            self._class_of[body] = self._untold[body] = (name, index % 2)
-            self._drawn.add(body)
-
-    def looks_of(self, body: Body) -> Looks | None:
-        return self.classes[self._class_of[body][0]] if body in self._class_of else None
-
-    def dress_alike(self, body: Body, like: Body) -> None:
-        """Gives a body the look of another one."""
-        if like in self._class_of:
-            name, odd = self._class_of[like]
-            self._class_of[body] = self._untold[body] = (name, 1 - odd)
-            self._drawn.add(body)
-
-    def thickness_of(self, body: Body) -> float | None:
-        """Radius of a body's look, m, if it is round about the body's line; None otherwise."""
-        if body not in self._class_of:
-            return None
-        radii = []
-        for drawn in self.classes[self._class_of[body][0]].values():
-            for look in listed(drawn):
-                if isinstance(look.shape, Capsule | Cylinder | Sphere):
-                    radii.append(look.shape.radius)
-                elif isinstance(look.shape, Torus):
-                    radii.append(look.shape.radius + look.shape.tube)
-        return min(radii, default=None)
-
-    def take_drawn(self) -> set[Body | SimulatedBody]:
-        """The bodies that were given a look since the last call."""
-        drawn, self._drawn = self._drawn, set()
-        return drawn
-
-    def textures(self) -> Iterator[Texture]:
-        """The images on them."""
-        for looks in self.classes.values():
-            for drawn in looks.values():
-                yield from (look.texture for look in listed(drawn) if look.texture is not None)
-
-    def tell_anew(self) -> None:
-        """Forgets what was sent: the next room is empty."""
-        self._untold = dict(self._class_of)
-
-    def tell(self, room: Room, statics: Iterable[Static] = ()) -> None:
-        """Sends all that was not sent yet. statics: shapes without physics."""
-        for name, looks in self.classes.items():
-            parts = [part_of(look.describe(), style) for style, drawn in looks.items() for look in listed(drawn)]
-            room.set_class(name, parts)
-        for body, (name, odd) in self._untold.items():
-            if isinstance(body, SimulatedBody):
-                room.assign_slot(body.slot, body.generation, name, odd=bool(odd))
-            else:
-                room.assign(body, name, odd=bool(odd))
-        self._untold.clear()
-        room.set_statics([part_of(s.look.describe(), offset=tuple(s.position), rotation=s.rotation) for s in statics])
+    middle = lengths[len(lengths) // 2] if lengths else 0.0
+    extent = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
+    return 0.06 * middle or 0.02 * extent or 0.03

@@ -13,7 +13,7 @@ from iota.world.lan import Lan, address
 class Server(_core.Server):
     """Serves the page for several worlds on one port; pass it to `World.serve` or `World.start`.
 
-    A page chooses a world by `world=ID` in its address, see `World.url`; without it, it shows the first. hello_time: s,
+    A page chooses a world by `world=ID` in its address, see `Pages.url`; without it, it shows the first. hello_time: s,
     from the upgrade of a connection to its first frame. folder: of the page, None: the built one. lan: for other machines too,
     by https, see `lan_url`; True, or a `Lan` with a certificate of your own. Raises OSError if the port is in use.
 

@@ -206,7 +206,7 @@ def part_of_look(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, A
     shape = {"kind": described["kind"], "sizes": described["sizes"]}
     shape |= {"vertices": described.get("vertices", ()), "triangles": described.get("triangles", ())}
     own = any_color(described.get("color")) if color == NO_COLOR else color
-    part = {"look": "*", "shape": shape, "turn": 0.0, "material": described["material"], "color": own}
+    part = {"style": "*", "shape": shape, "turn": 0.0, "material": described["material"], "color": own}
     return part | {"offset": described["offset"], "rotation": described["rotation"]}
 
 

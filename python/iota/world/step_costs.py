@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of a step cost, for pages that show it."""
+"""The costs of the parts of a step, for pages that show them."""
 
 from __future__ import annotations
 

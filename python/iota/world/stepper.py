@@ -17,7 +17,6 @@ from iota.world.event import Event
 from iota.world.floor import Floor
 from iota.world.keeping import Keeper
 from iota.world.scene import Camera
-from iota.world.schedule import Schedule
 from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
 from iota.world.summary import RunSummary, Tally
@@ -32,9 +31,6 @@ class Stepper:
 
     def __init__(self, state: State, guard: Guard) -> None:
         self._state, self._guard = state, guard
-        self.schedule = Schedule()
-        self.on_step: list[Hook] = []
-        self.on_reset: list[Hook] = []
         self._off: set[Hook] = set()  # functions that raised since the last reset
         self._floor: Floor | None = None
         self._start: bytes | None = None
@@ -51,17 +47,17 @@ class Stepper:
         """Starts a run; `reset` returns to this state. kept: a file of `keep`, which the run goes on from as far as it fits."""
         state = self._state
         self._tally = Tally(state.system)
-        if state.ground is not None and isinstance(state.system, System):
-            self._floor = Floor(state.system, state.ground, state.thickness_of)
-        self._start, self._camera = state.system.snapshot(), state.camera
-        self.schedule.begin()
+        if state.scene.ground is not None and isinstance(state.system, System):
+            self._floor = Floor(state.system, state.scene.ground, state.scene.thickness_of)
+        self._start, self._camera = state.system.snapshot(), state.scene.camera
+        state.schedule.begin()
         if kept is None or not isinstance(state.system, System):
             return
         self._keeper = Keeper(kept, state.system)
         start = state.system.time
         told = self._keeper.take()
         if state.system.time != start:
-            self.schedule.skip(state.system.time)
+            state.schedule.skip(state.system.time)
         if told:
             print_on_terminal(f"iota: {told} r on the page resets it\n")
             state.notices.send("The script was saved", told, "A reset begins the world anew.", keep=True)
@@ -79,11 +75,11 @@ class Stepper:
     def step(self) -> StepReport:
         """Takes one step."""
         state = self._state
-        for task in self.schedule.due(state.system.time + 1e-9):
+        for task in state.schedule.due(state.system.time + 1e-9):
             again = task.period is not None
             if not self._call(f"The timed event {task.hook.name!r}", task.hook, "time", again) and again:
-                self.schedule.drop(task.hook)
-        for hook in self.on_step:
+                state.schedule.drop(task.hook)
+        for hook in state.listeners.on_step:
             if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
                 self._off.add(hook)
         dt, began = state.clock.dt, time.perf_counter()
@@ -130,7 +126,7 @@ class Stepper:
     def _tell_impact(self, floor: Floor) -> None:
         """The sound of what falls on the floor, as loud as it is fast; as many as ears tell apart."""
         system, impact = self._state.system, floor.impact
-        if impact is None or not self._state.shows_edits or 0 <= system.time - self._impact_at < IMPACTS_EVERY:
+        if impact is None or not self._state.scene.shows_edits or 0 <= system.time - self._impact_at < IMPACTS_EVERY:
             return
         self._impact_at = system.time
         # A fall from half the size of the scene or higher is as loud as usual.
@@ -139,16 +135,16 @@ class Stepper:
         self._state.things.play("impact", impact.position, impact.speed / max(usual, impact.speed))
 
     def _tell_what_happened(self) -> None:
-        """Calls the script's functions for contacts and breaks."""
+        """Calls the script's functions for stops and breaks."""
         system, listeners = self._state.system, self._state.listeners
-        if listeners.has("contact"):
-            for contact in system.contacts:
-                joint = contact.constraint
+        if listeners.has("stop"):
+            for stop in system.stops:
+                joint = stop.constraint
                 if not joint.alive:  # destroyed by an earlier function
                     continue
-                phase, place = "start" if contact.met else "end", contact.position
-                for each in listeners.of_any("contact", (joint, joint.a, joint.b)):
-                    self._tell(each.hook, "contact", target=joint.a, contact=contact, phase=phase, point=place)
+                phase, place = "start" if stop.met else "end", stop.position
+                for each in listeners.of_any("stop", (joint, joint.a, joint.b)):
+                    self._tell(each.hook, "stop", target=joint.a, stop=stop, phase=phase, point=place)
         if listeners.has("break"):
             for broken in system.broken:
                 things = _broken_things(broken)
@@ -163,15 +159,14 @@ class Stepper:
         """Returns to the start of the run, with the camera and the timed events of then."""
         if self._start is None:
             return
-        self._state.system.restore(self._start)
-        self._state.camera = self._camera
-        self._state.forget_holds()
+        self._state.history.restore(self._start)
+        self._state.scene.camera = self._camera
         if self._floor is not None:
             self._floor.forget()
-        self.schedule.rewind()
+        self._state.schedule.rewind()
         self._off.clear()
         self._state.notices.over()
-        for hook in self.on_reset:
+        for hook in self._state.listeners.on_reset:
             self._call(f"on_reset ({hook.name})", hook, "reset")
 
     def _call(self, what: str, hook: Hook, name: str, again: bool = False, **more: Any) -> bool:

@@ -179,7 +179,7 @@ class Things:
         """Raises ValueError for more than pages can draw."""
         if len(self._ids) >= MOST_THINGS:
             raise ValueError(
-                f"a world has at most {MOST_THINGS} things of its script; draw many by one array: world.points, world.shapes"
+                f"a world has at most {MOST_THINGS} things of its script; draw many by one array: world.points, world.drawings.shapes"
             )
         free = self._free.get(thing.kind)
         if free:
@@ -219,7 +219,7 @@ class Things:
         return next((thing for thing, known in self._ids.items() if known == id and thing.kind == kind), None)
 
     def play(self, kind: str, at: Vec3, volume: float) -> None:
-        """An effect on all pages, see `World.effect`."""
+        """An effect on all pages, see `Drawings.effect`."""
         if self.effect is not None:
             self.effect(kind, at, volume)
 
@@ -328,7 +328,7 @@ def place(value: Any) -> Place:
 
 
 def place_of(value: Any) -> Vec3:
-    """Where a particle, a body (its center of mass) or a place is now, m."""
+    """The present place of a particle, of the center of mass of a body, or of a place, m."""
     found = getattr(value, "position", getattr(value, "center_of_mass", value))
     if isinstance(value, Frame | FramePoint | Bond) or isinstance(found, str):
         raise TypeError(f"must be a particle, a body or a place, not {type(value).__name__}")

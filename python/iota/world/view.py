@@ -14,7 +14,7 @@ class View(ABC):
     """Shows a running world to one user, and passes on what that user does: `World.run(view=...)`.
 
     All are called on the thread that runs the world, with that `iota.World`. What a view needs is what scripts use too: `world.system` with its
-    bodies and their particles and solids, `world.actions`, `world.act`, `world.paused`, `world.reset()`, and
+    bodies and their particles and solids, `world.controls.actions`, `world.controls.act`, `world.clock.paused`, `world.reset()`, and
     `system.grip` for a hand.
     """
 

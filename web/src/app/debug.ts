@@ -27,8 +27,8 @@ export interface IotaDebug {
   readonly selected: number;
   /** -1: none. */
   readonly held: number;
-  readonly look: string;
-  readonly looks: readonly string[];
+  readonly style: string;
+  readonly styles: readonly string[];
   readonly frameMs: number;
   /** Time of our script in a frame, ms. */
   readonly scriptMs: number;
@@ -47,7 +47,7 @@ export interface IotaDebug {
   bodyRotation(body: number): [number, number, number, number];
   /** css px of a body's origin; null behind the camera. */
   screenPosition(body: number): [number, number] | null;
-  setLook(look: string): void;
+  setStyle(style: string): void;
   select(body: number): void;
   /** Draws one frame and returns it as the address of a JPEG; afterwards the page draws only on this call. */
   filmFrame(): string;
@@ -58,9 +58,9 @@ export interface IotaDebug {
   lastFilmFrame(): string;
   /** The parts of the page, for the console and for modules of the script. */
   readonly page: Page;
-  /** Defines a class of objects that the script makes with `World.custom`; see README.md. */
+  /** Defines a class of objects that the script makes with `Drawings.custom`; see README.md. */
   define(name: string, made: CustomClass): void;
-  /** What the page itself uses of three.js, so that a module of the script needs no copy of its own. */
+  /** The parts of three.js that the page itself uses, so that a module of the script needs no copy of its own. */
   readonly three: typeof three;
 }
 
@@ -90,8 +90,8 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     get structureVersion() { return page.world.structureVersion; },
     get selected() { return page.selection.selected; },
     get held() { return page.selection.held; },
-    get look() { return page.world.look; },
-    get looks() { return page.world.settings.looks; },
+    get style() { return page.world.style; },
+    get styles() { return page.world.settings.styles; },
     get frameMs() { return page.viewer.timing.frameMs; },
     get scriptMs() { return page.viewer.timing.scriptMs; },
     get roundTripMs() { return page.session.connection.roundTripMs; },
@@ -116,7 +116,7 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
       const box = canvas.getBoundingClientRect();
       return [box.left + ((point.x + 1) / 2) * box.width, box.top + ((1 - point.y) / 2) * box.height];
     },
-    setLook: (look) => page.world.setLook(look),
+    setStyle: (style) => page.world.setStyle(style),
     select: (body) => page.selection.select(body),
     define: (name, made) => void import("../scene/entities/custom.ts").then(({ defineClass }) => defineClass(name, made)),
     filmFrame: () => takeFilmFrame(page),

@@ -37,7 +37,7 @@ export class Pointer {
   depth = 0;
   /** When it was pressed or released last, ms of performance.now(); 0: its owner does not know, so that it is when it is told of. */
   at = 0;
-  /** Of a hand or controller, for scripts: x y z w in the world; how far its buttons are pressed; its sticks; its joints in the world, m. */
+  /** The state of a hand or controller, for scripts: x y z w in the world; how far its buttons are pressed; its sticks; its joints in the world, m. */
   readonly rotation: [number, number, number, number] = [0, 0, 0, 1];
   readonly buttons: number[] = [];
   readonly axes: number[] = [];

@@ -52,7 +52,7 @@ export class Framing implements FramePart, PageListener {
   private falling_ = false;
   /** The connection was lost since the last look: another scene is of another script, though that may have the same title. */
   private rejoined_ = false;
-  /** Of the window that the first view was worked out for. */
+  /** The aspect ratio of the window for which the first view was calculated. */
   private aspect_ = 0;
 
   constructor(world: World, viewer: Viewer, navigation: Navigation) {

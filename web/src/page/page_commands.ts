@@ -102,16 +102,16 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       run: () => changeSpeed(1),
     },
     {
-      name: "look",
-      help: "next look",
+      name: "style",
+      help: "next style",
       keys: ["l"],
       places: ["bar", "panel"],
-      title: () => `Look: ${world.look}`,
-      label: () => world.look,
-      offered: () => world.settings.looks.length > 1,
+      title: () => `Style: ${world.style}`,
+      label: () => world.style,
+      offered: () => world.settings.styles.length > 1,
       run: () => {
-        const { looks } = world.settings;
-        if (looks.length > 0) world.setLook(looks[(looks.indexOf(world.look) + 1) % looks.length]);
+        const { styles } = world.settings;
+        if (styles.length > 0) world.setStyle(styles[(styles.indexOf(world.style) + 1) % styles.length]);
       },
     },
     {

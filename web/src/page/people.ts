@@ -10,7 +10,7 @@ import { others } from "./highlights.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
-/** Of a user, m: radius of a head, of a hand. */
+/** Radius of the head of a user, m, and of a hand. */
 const headRadius = 0.1;
 const handRadius = 0.04;
 /** A head that is nearer to the own eyes is not drawn: who looks from the same place would be in it. */
@@ -21,7 +21,7 @@ const glideSeconds = 0.08;
 /** A scene from this to that size is walked in at its real size, any other at that of a table, as in a headset. */
 const realSizes = [0.12, 20] as const;
 
-/** Of a meter of a user before a flat screen, m of the world. */
+/** The length of one meter of a user before a flat screen, m of the world. */
 export function scaleOf(size: number): number {
   return size >= realSizes[0] && size <= realSizes[1] ? 1 : size / 0.5;
 }

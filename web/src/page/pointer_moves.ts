@@ -16,7 +16,7 @@ export class PointerMoves {
   private readonly parts_: Pick<PageParts, "world" | "session" | "gestures" | "viewer">;
   /** The last message of each pointer, by its name. */
   private readonly told_ = new Map<string, string>();
-  /** Those that were told last with something pressed. */
+  /** The pointers whose latest report had something pressed. */
   private readonly pressed_ = new Set<Pointer>();
   private last_ = 0;
   private readonly a_ = new Vector3();
@@ -52,7 +52,7 @@ export class PointerMoves {
     return move(pointer.name, this.placeOf_(pointer), pointer.origin, pointer.direction, pointer.rotation, buttons, pointer.axes, pointer.joints);
   }
 
-  /** Of a hand its tip; of a mouse or finger the held or hovered point, or the point of its ray beside the middle of the view. */
+  /** The place of a pointer: the tip of a hand; for a mouse or finger the held or hovered point, or the point of its ray beside the middle of the view. */
   private placeOf_({ grab, hovered, hit, tip, origin, direction, drag }: Pointer): ArrayLike<number> {
     if (drag === "ray") return tip;
     if (grab !== null) return grab.target;

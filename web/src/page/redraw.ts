@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // When a picture is due: after a change, until all easing has ended.
 
-/** Of the frames' own time, s. */
+/** How long frames are drawn after the last change, in the frames' own time, s. */
 const drawOn = 0.7;
 
 export class Redraw {

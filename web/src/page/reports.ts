@@ -128,7 +128,7 @@ export class Reports implements PageListener, FramePart {
   }
 }
 
-/** Of its last press or release, ms. */
+/** The time of its last press or release, ms. */
 function timeOf({ at }: Pointer): number {
   return at > 0 ? at : performance.now();
 }

@@ -217,7 +217,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     grab.isGone = false;
     // In the poses that came with it: the drawn ones are older, and a new body has none before its first picture.
     toBody(poses.newest, hold.body, hold.point[0], hold.point[1], hold.point[2], grab.localPoint);
-    // What was selected by the hand stays what it holds.
+    // A selection that is the body in this hand follows to the body that the hand holds now.
     const wasSelected = !wasGone && before === this.selected_ && this.more_.size === 0;
     if (this.selected_ < 0 || wasSelected) this.select(grab.body);
   }

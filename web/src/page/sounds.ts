@@ -21,7 +21,7 @@ export class Sounds {
   private readonly records_: WatchedRecords<SoundEntity>;
   private readonly events_: Events;
   private readonly noise_: AudioBuffer;
-  /** Of the script, by name; null: it cannot be played. */
+  /** The sounds of the script, by name; null: the sound cannot be played. */
   private readonly buffers_ = new Map<string, Promise<AudioBuffer | null>>();
   private seen_ = 0;
   private voices_ = 0;
@@ -110,7 +110,7 @@ export class Sounds {
     [listener.upX.value, listener.upY.value, listener.upZ.value] = place.set(0, 1, 0).applyQuaternion(turn).toArray();
   }
 
-  /** Where a sound goes in; beyond `reach` m (0: the size of the scene) it is fainter. */
+  /** The node that a sound is connected to. Beyond `reach` m (0: the size of the scene) it is fainter. */
   private voice_(volume: number, position?: Readonly<Vec3>, reach = 0): GainNode {
     const context = this.context_;
     const gain = context.createGain();
@@ -174,7 +174,7 @@ async function decode(context: AudioContext, file: Uint8Array): Promise<AudioBuf
   return context.decodeAudioData(bytes.buffer);
 }
 
-/** Of a file, by its header, s. Rejects for a file that is not a sound. */
+/** The length of a sound file, by its header, s. Rejects a file that is not a sound. */
 async function lengthOf(bytes: Uint8Array<ArrayBuffer>): Promise<number> {
   const address = URL.createObjectURL(new Blob([bytes]));
   try {

@@ -47,7 +47,7 @@ export function smooth(mean: number, value: number): number {
 export class Viewer {
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
-  /** Where the viewer stands; identity on a flat screen, moved by locomotion in a headset. */
+  /** The place of the viewer: identity on a flat screen, moved by locomotion in a headset. */
   readonly rig = new Group();
   /** The user's own room in a headset: what is in it has the size that the user sees. Its scale is meters of the world in one of the user's. */
   readonly room = new Group();
@@ -58,7 +58,7 @@ export class Viewer {
   /** While a film is made, frames are drawn on request, none is skipped, and nothing covers the picture. */
   filming = false;
 
-  /** Where the user of a headset is, world, m: the head, and three numbers for each hand; null and none before a flat screen. */
+  /** The place of a headset's user in the world, m: the head, and three numbers for each hand. Null and none before a flat screen. */
   readonly user = { head: null as Vector3 | null, hands: [] as number[] };
 
   /** Distance from the camera to what it looks at, m. */

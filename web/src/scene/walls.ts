@@ -10,7 +10,7 @@ export interface Solid {
   /** The middle of a ball around it, world, m, and its radius. */
   readonly middle: Vector3;
   readonly reach: number;
-  /** Of a place of the world from its surface, negative inside, m; its slope is at most 1. */
+  /** The distance of a place of the world from the surface, m, negative inside; its slope is at most 1. */
   distance(x: number, y: number, z: number): number;
 }
 

@@ -260,7 +260,7 @@ export class Overlay implements PageListener, FramePart {
     this.closeMenu_();
   }
 
-  /** What is selected, and the script's buttons: those for the world always, those for a body while one is selected. */
+  /** Shows the selection and the script's buttons: those for the world always, those for a body while one is selected. */
   private refreshStrip_(): void {
     const { world: { entities: { body } }, selection, commands } = this.page_;
     const { size: more } = selection.several;

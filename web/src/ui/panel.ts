@@ -23,7 +23,7 @@ interface ShownPlot {
   readonly legend: HTMLElement;
 }
 
-/** Where the panel would cover much of the world it is folded, and opens at a touch. */
+/** In narrower windows the panel would cover much of the world: it is folded there, and opens at a touch. */
 const roomy = "(min-width: 900px)";
 
 export class Panel implements FramePart {

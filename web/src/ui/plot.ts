@@ -29,7 +29,7 @@ export function briefly(value: number): string {
   return String(Number(value.toPrecision(3)));
 }
 
-/** Where the line of zero begins, css px: beside a number (its lower edge and width) that it would strike through. */
+/** The start of the line of zero, css px: it begins beside a number (its lower edge and width) that it would strike through. */
 export function startOfZero(y: number, numbers: readonly { readonly at: number; readonly width: number }[]): number {
   const struck = numbers.filter(({ at }) => y > at - 10 && y < at + 2).map(({ width }) => width + 4);
   return edge + Math.max(0, ...struck);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the time of a shown frame goes: the world's steps and their parts, the network, the page's script and drawing, as a
+// The parts of the time of a shown frame: the world's steps and their parts, the network, the page's script and drawing, as a
 // bar and as numbers.
 
 import type { Page } from "../page/page.ts";
@@ -10,7 +10,7 @@ interface Part {
   readonly name: string;
   /** For its color. */
   readonly kind: "steps" | "step-part" | "network" | "script" | "drawing";
-  /** Of a frame. */
+  /** Time in a frame. */
   readonly ms: number;
 }
 

@@ -6,7 +6,7 @@ import type { Page } from "../page/page.ts";
 
 /** From the edges, css px. */
 const margin = 12;
-/** Of a pin and around it, css px. */
+/** The gap between a pin and what is around it, css px. */
 const gap = 16;
 
 export class Welcome {

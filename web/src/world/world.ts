@@ -33,7 +33,7 @@ export interface WorldListener {
 }
 
 const noSettings: WorldSettings = {
-  type: "worldSettings", title: "", looks: [], look: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false, ground: 0,
+  type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false, ground: 0,
   modules: [],
 };
 
@@ -41,13 +41,13 @@ export class World {
   settings: Readonly<WorldSettings> = noSettings;
   actions: readonly ActionEntry[] = [];
   clients: readonly ClientEntry[] = [];
-  /** Where users are that have said so; another array after a change. */
+  /** The places of users that have reported them; another array after a change. */
   people: readonly Person[] = [];
   paused = false;
   /** Times real time. */
   speed = 1;
   stepMs = 0;
-  /** Of a step, by its parts, while this page or another shows them. */
+  /** The costs of a step, by its parts, while this page or another shows them. */
   costs: readonly Cost[] = [];
   step = 0;
   /** Simulated, s. */
@@ -69,8 +69,8 @@ export class World {
 
   private readonly store_: EntityStore;
   private readonly listener_: WorldListener;
-  private look_ = "";
-  private lookChosen_ = false;
+  private style_ = "";
+  private styleChosen_ = false;
   private described_ = false;
   /** A connection's description is coming. */
   private joined_ = false;
@@ -96,15 +96,15 @@ export class World {
     return this.settings.hasGround ? this.settings.ground : null;
   }
 
-  /** Name of the look that this page draws. */
-  get look(): string {
-    return this.look_;
+  /** Name of the style that this page draws. */
+  get style(): string {
+    return this.style_;
   }
 
-  /** Switches to another look, on this page only. */
-  setLook(look: string): void {
-    this.lookChosen_ = true;
-    this.showLook_(look);
+  /** Switches to another style, on this page only. */
+  setStyle(style: string): void {
+    this.styleChosen_ = true;
+    this.showStyle_(style);
   }
 
   /** Handles all messages except poses; ignores messages that are not about the world. */
@@ -116,7 +116,7 @@ export class World {
         break;
       case "worldSettings":
         this.settings = message;
-        if (!this.lookChosen_ || !message.looks.includes(this.look_)) this.showLook_(message.look);
+        if (!this.styleChosen_ || !message.styles.includes(this.style_)) this.showStyle_(message.style);
         this.listener_.changed("settings");
         break;
       case "worldState":
@@ -169,10 +169,10 @@ export class World {
     this.entities.trace.takePoses(poses.time);
   }
 
-  private showLook_(look: string): void {
-    if (look === this.look_) return;
-    this.look_ = look;
-    this.entities.style.showLook(look);
+  private showStyle_(style: string): void {
+    if (style === this.style_) return;
+    this.style_ = style;
+    this.entities.visual.showStyle(style);
     this.listener_.changed("look");
   }
 

@@ -12,7 +12,7 @@ export interface IotaXR {
   readonly presenting: boolean;
   enter(): Promise<void>;
   leave(): Promise<void>;
-  /** Where the user's space lies in the world: m, rad about y, and meters of the world in one of the user's. */
+  /** The pose of the user's space in the world: m, rad about y, and meters of the world in one of the user's. */
   rig(): { position: [number, number, number]; yaw: number; scale: number };
   /** World, m. */
   head(): [number, number, number];

@@ -12,7 +12,7 @@ import { rayOnPlate, Spot, type Plate } from "./plate.ts";
 type Side = "left" | "right";
 
 const walkSpeed = 1.2;
-/** Of the left hand that shows its wrist panel. */
+/** The place of the left wrist, relative to the head, while it shows its panel, m. */
 const wristAt = new Vector3(-0.16, -0.2, -0.42);
 const handAt = { left: new Vector3(-0.2, -0.26, -0.4), right: new Vector3(0.2, -0.24, -0.4) } as const;
 /** Distance at which the ray of a hand meets the line of sight under the mouse if there is no body or panel, m. */
@@ -51,7 +51,7 @@ export class DeskControls implements FramePart {
   private readonly flat_ = new Vector3();
   private readonly aim_ = new Quaternion();
   private readonly wrist_ = new Quaternion();
-  /** Of the left wrist of a bare hand, in the frame of its ray. */
+  /** The orientation of the left wrist of a bare hand in the frame of its ray. */
   private readonly wristInRay_ = new Quaternion();
   private readonly wristOfRay_ = new Quaternion();
   private readonly ofRay_ = new Quaternion();

@@ -173,7 +173,7 @@ export class Headset implements PageListener, FramePart {
     await this.session_?.end();
   }
 
-  /** What is written above a hand that holds; empty: nothing. */
+  /** The text above a hand that holds something; empty: none. */
   forceText(input: Input): string {
     return this.views_.get(input.pointer.name)?.force.text ?? "";
   }

@@ -25,7 +25,7 @@ export class Input {
   readonly pointer: Pointer;
   /** null: a controller, or a pinch with only a ray. */
   readonly joints: HandJoints | null;
-  /** Of the target ray: -z ahead; in the reference space. */
+  /** The pose of the target ray in the reference space: -z points ahead. */
   readonly rayLocal = new Matrix4();
   /** The same in the world. */
   readonly ray = new Matrix4();

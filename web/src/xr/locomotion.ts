@@ -38,9 +38,9 @@ export class Locomotion {
   turnBy: (typeof turns)[number] = 30;
   /** The view is turning by itself. */
   gliding = false;
-  /** Of the user's floor above the ground that is stood on, m of the user's: who sits is raised, who is before a low scene is lowered. */
+  /** The height of the user's floor above the ground under it, m of the user's: a seated user is raised, a user before a low scene is lowered. */
   lift = 0;
-  /** Where to face at the end of a teleport, rad to the left of the head's direction. */
+  /** The direction to face at the end of a teleport, rad to the left of the head's direction. */
   facing = 0;
 
   /** Stop a teleport, and are landed on; null: nothing does. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the commands are on the wrist panel: the page's in a row, the script's actions, controls and plots below, and getting about at the foot.
+// The layout of the wrist panel: the page's commands in a row, the script's actions, controls and plots below, and locomotion at the foot.
 
 import { isChoice, type Entry, type ScriptCommand } from "../commands/command.ts";
 import type { Commands } from "../commands/commands.ts";
@@ -18,7 +18,7 @@ export interface PanelPlot extends Rect {
   readonly plot: PlotEntity;
 }
 
-/** Of entries, or of plots, which are as high as two rows of entries. */
+/** A row of entries, or of plots, which is as high as two rows of entries. */
 type Row = readonly Entry[] | { readonly plots: readonly PlotEntity[] };
 
 export interface Layout {
@@ -103,7 +103,7 @@ function inPieces<T>(list: readonly T[], length: number): T[][] {
   return Array.from({ length: Math.ceil(list.length / length) }, (_, piece) => list.slice(length * piece, length * (piece + 1)));
 }
 
-/** What a script has put on the panel besides its actions. */
+/** The controls and plots that a script has put on the panel besides its actions. */
 export interface Shown {
   readonly controls?: readonly (readonly Entry[])[];
   readonly plots?: readonly PlotEntity[];

@@ -8,7 +8,7 @@ export interface Plate {
   /** m, of its own frame. */
   width: number;
   height: number;
-  /** Of its picture: pixels a meter. */
+  /** The resolution of its picture, pixels a meter. */
   density: number;
 }
 

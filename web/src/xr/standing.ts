@@ -4,7 +4,7 @@
 
 import type { Vec3 } from "../protocol/generated.ts";
 
-/** Of a world: where it is first seen from, how high its ground is (m; null: none), and how many of its meters are one of the user's. */
+/** The first view of a world: from where it is seen, how high its ground is (m; null: none), and how many of its meters are one of the user's. */
 export interface Standing {
   readonly scale: number;
   readonly eye: Readonly<Vec3>;
@@ -18,7 +18,7 @@ export interface Rig {
   readonly rotation: { y: number };
 }
 
-/** Of a step from the scene, m of the user's. */
+/** The shortest distance from the scene at which a user first stands, m of the user's. */
 const nearest = 0.9;
 /** A step is shorter than a camera's distance, as a headset has a wider view than a screen. */
 const ofCamera = 0.75;

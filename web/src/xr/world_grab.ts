@@ -26,7 +26,7 @@ export class WorldGrab {
   /** Places in the world that the hands hold, m. */
   private readonly heldLeft_ = new Vector3();
   private readonly heldRight_ = new Vector3();
-  /** Where the hands are in the room, m of the user's. */
+  /** The present places of the hands in the room, m of the user's. */
   private readonly nowLeft_ = new Vector3();
   private readonly nowRight_ = new Vector3();
   private readonly middle_ = new Vector3();

@@ -29,7 +29,7 @@ type PanelPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "vi
 
 /** px */
 const labelSize = 44;
-/** Of that size. */
+/** The smallest size of a label, as a part of that. */
 const smallestLabel = 0.65;
 
 export class WristPanel {

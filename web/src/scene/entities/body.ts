@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also has the packed
+// Draws all bodies: one instanced mesh for each part of each visual, tints that ease, outlines. It also has the packed
 // data for picking, so that a pick agrees with the picture. An edit touches only the instances of its bodies.
 
 import { Group, Matrix4, Vector3, type Color } from "three";
@@ -13,7 +13,7 @@ import { grown, mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
 import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
-import type { Styles, StyleUser } from "./style.ts";
+import type { Visuals, VisualUser } from "./visual.ts";
 
 /** Up to this number of bodies, outlines are round; above, they have too many vertices. */
 const fineUpTo = 160;
@@ -42,7 +42,7 @@ const tintSeconds = 0.07;
 /** Numbers of a placement: offset xyz, rotation xyzw, scale along x. */
 const placementSize = 8;
 
-/** All instances of one part of one style. */
+/** All instances of one part of one visual. */
 class Batch {
   readonly pool: InstancePool;
   private readonly shape_: Shape;
@@ -134,7 +134,7 @@ interface Body {
 const noInstances: readonly Instance[] = [];
 const noShapes: readonly PlacedShape[] = [];
 
-export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
+export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   readonly root = new Group();
   readonly poses: PoseBuffer;
   pickable = new Uint32Array(0);
@@ -148,10 +148,10 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** Rises when the script gives a body another name. */
   renamed = 0;
 
-  private readonly styles_: Styles;
+  private readonly visuals_: Visuals;
   private readonly bodyGone_: (body: number) => void;
   private readonly bodies_ = new Map<number, Body>();
-  /** By style: a batch for each of its parts. */
+  /** By visual: a batch for each of its parts. */
   private readonly batches_ = new Map<number, Batch[]>();
   private readonly outlines_: Outline[] = [];
   private painted_: ReadonlyMap<number, Color> = new Map();
@@ -170,11 +170,11 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   private tintNow_ = new Float32Array(0);
 
   /** `bodyGone` is called for each body that is destroyed, before its slot can be used again. */
-  constructor(poses: PoseBuffer, styles: Styles, bodyGone: (body: number) => void) {
+  constructor(poses: PoseBuffer, visuals: Visuals, bodyGone: (body: number) => void) {
     this.poses = poses;
-    this.styles_ = styles;
+    this.visuals_ = visuals;
     this.bodyGone_ = bodyGone;
-    styles.addUser(this);
+    visuals.addUser(this);
   }
 
   get position(): Float32Array {
@@ -208,8 +208,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   change(entity: BodyEntity): void {
     const body = this.bodies_.get(entity.id.slot);
     if (body === undefined) return;
-    const { kind, style, odd, length } = body.entity;
-    if (entity.kind === kind && entity.style === style && entity.odd === odd && entity.length === length) {
+    const { kind, visual, odd, length } = body.entity;
+    if (entity.kind === kind && entity.visual === visual && entity.odd === odd && entity.length === length) {
       if (entity.name !== body.entity.name) this.renamed++;
       body.entity = entity;
       return;
@@ -281,16 +281,16 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     return this.poses.known[body] === 1 ? (this.bodies_.get(body)?.shapes ?? noShapes) : noShapes;
   }
 
-  // --- StyleUser
+  // --- VisualUser
 
-  restyle(style: number): void {
-    const bodies = this.bodiesOf_(style);
-    for (const batch of this.batches_.get(style) ?? []) batch.pool.dispose();
-    this.batches_.delete(style);
+  redraw(visual: number): void {
+    const bodies = this.bodiesOf_(visual);
+    for (const batch of this.batches_.get(visual) ?? []) batch.pool.dispose();
+    this.batches_.delete(visual);
     for (const body of bodies) this.addInstances_(body);
   }
 
-  restyleAll(): void {
+  redrawAll(): void {
     for (const batches of this.batches_.values()) for (const batch of batches) batch.pool.dispose();
     this.batches_.clear();
     for (const body of this.bodies_.values()) {
@@ -356,9 +356,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     const entity = this.bodies_.get(body)?.entity;
     if (entity === undefined) return "";
     if (entity.name !== "") return entity.name;
-    const name = this.styles_.nameOf(entity.style);
+    const name = this.visuals_.nameOf(entity.visual);
     // Names that the world or the server makes up mean nothing to users.
-    return `${/^class \d+$|^\(/.test(name) ? "body" : name} ${body}`;
+    return `${/^visual \d+$|^\(/.test(name) ? "body" : name} ${body}`;
   }
 
   addOutline(outline: Outline): void {
@@ -390,18 +390,18 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
 
   // --- inside
 
-  /** Adds a body's parts to the batches of its style. */
+  /** Adds a body's parts to the batches of its visual. */
   private addInstances_(body: Body): void {
-    const { id: { slot }, style, kind, odd, length } = body.entity;
+    const { id: { slot }, visual, kind, odd, length } = body.entity;
     this.listed_ = false;
-    const shapes = kind === BodyKind.inactive ? [] : this.styles_.shapesOf(style);
+    const shapes = kind === BodyKind.inactive ? [] : this.visuals_.shapesOf(visual);
     if (shapes.length === 0) {
       body.shapes = noShapes;
       body.instances = noInstances;
       return;
     }
     const placed = shapes.map((shape) => placeShape(shape, odd, length > 0 ? length : null));
-    const batches = this.batchesOf_(style, placed);
+    const batches = this.batchesOf_(visual, placed);
     body.shapes = placed;
     body.instances = placed.map((part, index) => new Instance(batches[index], batches[index].add(slot, part)));
     const color = this.painted_.get(slot);
@@ -420,18 +420,18 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     body.instances = noInstances;
   }
 
-  /** Bodies with a style, also one that has not arrived. */
-  private bodiesOf_(style: number): readonly Body[] {
-    const drawn = this.batches_.get(style)?.at(0)?.pool;
-    if (drawn === undefined) return [...this.bodies_.values()].filter((body) => body.entity.style === style);
+  /** Bodies with a visual, also one that has not arrived. */
+  private bodiesOf_(visual: number): readonly Body[] {
+    const drawn = this.batches_.get(visual)?.at(0)?.pool;
+    if (drawn === undefined) return [...this.bodies_.values()].filter((body) => body.entity.visual === visual);
     return Array.from(drawn.members.subarray(0, drawn.count), (slot) => this.bodies_.get(slot)).filter((body) => body !== undefined);
   }
 
-  private batchesOf_(style: number, placed: readonly PlacedShape[]): readonly Batch[] {
-    let batches = this.batches_.get(style);
+  private batchesOf_(visual: number, placed: readonly PlacedShape[]): readonly Batch[] {
+    let batches = this.batches_.get(visual);
     if (batches === undefined) {
       batches = placed.map(({ shape }) => new Batch(shape, this.root));
-      this.batches_.set(style, batches);
+      this.batches_.set(visual, batches);
     }
     return batches;
   }

@@ -245,7 +245,7 @@ export class CustomView implements EntityView<CustomEntity>, Cover {
     return this.inverse_.copy(holder.matrix).invert();
   }
 
-  /** Where `ray_` meets it, m; beyond its bounds: Infinity. */
+  /** The distance along `ray_` to the shown thing, m; Infinity if the ray does not meet it within bounds. */
   private alongRay_(shown: Shown, start: number): number {
     const { ray_: ray, point_: point, triangle_: triangle } = this;
     let best = Infinity;

@@ -25,7 +25,7 @@ import { PaintView } from "./paint.ts";
 import { ShapeSetView } from "./shape_set.ts";
 import { StrutView } from "./strut.ts";
 import { SurfaceView } from "./surface.ts";
-import { Styles } from "./style.ts";
+import { Visuals } from "./visual.ts";
 import { TieView } from "./tie.ts";
 import { TraceView } from "./trace.ts";
 import { TubeView } from "./tube.ts";
@@ -50,18 +50,18 @@ export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords
 
 /** In the order of their frames: bodies are interpolated before things on them are drawn. */
 export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: EntityHost) {
-  const style = new Styles(warn);
-  const body = new BodyView(poses, style, bodyGone);
+  const visual = new Visuals(warn);
+  const body = new BodyView(poses, visual, bodyGone);
   const canHold = (slot: number) => body.canHold(slot);
   const surface = new SurfaceView(poses, canHold);
   const tube = new TubeView(poses, canHold);
   body.covers.push(surface, tube);
   return {
     frame: new FrameView(poses),
-    style,
+    visual,
     body,
     membership: new Memberships(),
-    tie: new TieView(poses, style),
+    tie: new TieView(poses, visual),
     joint: new JointView(),
     nail: new NailView(poses),
     particleSet: new ParticleSetView(),

@@ -14,7 +14,7 @@ import type { EntityView } from "./entity.ts";
 /** px of the drawn text. */
 const fontSize = 44;
 const padding = { x: 22, y: 12 };
-/** Of one line; each further one adds `lineHeight`. */
+/** The height of a plate with one line; each further line adds `lineHeight`. */
 const plateHeight = fontSize + 2 * padding.y;
 const lineHeight = 1.15 * fontSize;
 const mostWidth = 2048;

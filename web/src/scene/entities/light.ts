@@ -9,7 +9,7 @@ import { textOf } from "../parts.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import type { EntityView } from "./entity.ts";
 
-/** Of the page's own lamp, as in `stage.ts`: irradiance in the units of three.js. */
+/** The irradiance of the page's own lamp, as in `stage.ts`, in the units of three.js. */
 const usual = 3.2;
 /** Dark ones beyond this number are given up; the script may have as many bright ones. */
 const mostLamps = 8;

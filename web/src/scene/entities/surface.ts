@@ -21,7 +21,7 @@ interface Surface {
   readonly mesh: Mesh<BufferGeometry, MeshStandardMaterial>;
   /** Whether its points are on several bodies; otherwise it is rigid. */
   readonly bends: boolean;
-  /** Of a rigid one, about its origin, m. */
+  /** The radius of a rigid surface about its origin, m. */
   readonly reach: number;
 }
 

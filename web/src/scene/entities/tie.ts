@@ -12,14 +12,14 @@ import { makeCoil } from "../shapes/coil.ts";
 import { makeGeometry, sizeOf, type Shape } from "../shapes/shape.ts";
 import { shapeKind } from "../shapes/shape_list.ts";
 import type { EntityView } from "./entity.ts";
-import type { Styles, StyleUser } from "./style.ts";
+import type { Visuals, VisualUser } from "./visual.ts";
 
 /** Straight pieces of a rope, along a parabola when it is slack. */
 const ropePieces = 12;
 
-/** All ties of one kind and style. */
+/** All ties of one kind and visual. */
 interface Batch {
-  readonly style: number;
+  readonly visual: number;
   readonly pool: InstancePool;
   /** Length of the geometry, m. */
   readonly length: number;
@@ -27,20 +27,20 @@ interface Batch {
 
 interface Tie {
   entity: TieEntity;
-  /** Null: its style has no shape. */
+  /** Null: its visual has no shape. */
   batch: Batch | null;
   index: number;
 }
 
 const along = new Vector3(1, 0, 0);
 
-export class TieView implements EntityView<TieEntity>, StyleUser {
+export class TieView implements EntityView<TieEntity>, VisualUser {
   readonly root = new Group();
 
   private readonly poses_: PoseBuffer;
-  private readonly styles_: Styles;
+  private readonly visuals_: Visuals;
   private readonly ties_ = new Map<number, Tie>();
-  /** By style and kind. */
+  /** By visual and kind. */
   private readonly batches_ = new Map<string, Batch>();
   private readonly from_ = new Vector3();
   private readonly to_ = new Vector3();
@@ -51,10 +51,10 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
   private readonly turn_ = new Quaternion();
   private readonly matrix_ = new Matrix4();
 
-  constructor(poses: PoseBuffer, styles: Styles) {
+  constructor(poses: PoseBuffer, visuals: Visuals) {
     this.poses_ = poses;
-    this.styles_ = styles;
-    styles.addUser(this);
+    this.visuals_ = visuals;
+    visuals.addUser(this);
   }
 
   // --- EntityView
@@ -85,14 +85,14 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     for (const { pool } of this.batches_.values()) pool.upload();
   }
 
-  // --- StyleUser
+  // --- VisualUser
 
-  restyle(style: number): void {
-    for (const [key, batch] of this.batches_) if (batch.style === style) this.dispose_(key, batch);
-    for (const tie of this.ties_.values()) if (tie.entity.style === style) this.add_(tie);
+  redraw(visual: number): void {
+    for (const [key, batch] of this.batches_) if (batch.visual === visual) this.dispose_(key, batch);
+    for (const tie of this.ties_.values()) if (tie.entity.visual === visual) this.add_(tie);
   }
 
-  restyleAll(): void {
+  redrawAll(): void {
     for (const [key, batch] of this.batches_) this.dispose_(key, batch);
     for (const tie of this.ties_.values()) this.add_(tie);
   }
@@ -100,11 +100,11 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
   // --- inside
 
   private add_(tie: Tie): void {
-    const { id, style, kind } = tie.entity;
-    const shape = this.styles_.shapesOf(style).at(0);
+    const { id, visual, kind } = tie.entity;
+    const shape = this.visuals_.shapesOf(visual).at(0);
     tie.batch = null;
     if (shape === undefined) return;
-    const key = `${style} ${kind}`;
+    const key = `${visual} ${kind}`;
     tie.batch = this.batches_.get(key) ?? this.makeBatch_(tie.entity, shape);
     this.batches_.set(key, tie.batch);
     tie.index = tie.batch.pool.add(id.slot);
@@ -116,7 +116,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     if (moved !== undefined) moved.index = index;
   }
 
-  private makeBatch_({ kind, style, length: atRest }: TieEntity, shape: Shape): Batch {
+  private makeBatch_({ kind, visual, length: atRest }: TieEntity, shape: Shape): Batch {
     const rope = kind === TieKind.rope;
     const pieces = rope ? ropePieces : 1;
     const radius = sizeOf(shape, "radius");
@@ -126,7 +126,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
       ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
       : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, rope ? "coarse" : "tiny");
     const pool = new InstancePool(geometry, materialOf(shape), 16, pieces).addTo(this.root);
-    return { style, pool, length };
+    return { visual, pool, length };
   }
 
   private dispose_(key: string, batch: Batch): void {

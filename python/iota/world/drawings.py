@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drawing of things without physics in a World, and controls for users. Each call returns a handle; assigning an
-attribute updates the page."""
+"""Things without physics in a World. Each call returns a handle; assigning an attribute updates the page."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -15,8 +14,10 @@ from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
 from iota.sounds import sound_file
 from iota.textures import texture_of
-from iota.world.custom import Custom, Sound
+from iota.world.custom import Custom, Sound, checked_volume
 from iota.world.many import Arrows, Segments
+from iota.world.notices import Notices
+from iota.world.parts import Part
 from iota.world.shown import (
     Arrow,
     Axes,
@@ -35,9 +36,9 @@ from iota.world.shown import (
     Viewpoint,
 )
 from iota.world.skins import Skin
-from iota.world.state import State
-from iota.world.things import Attachable, Frame, Place, Thing
-from iota.world.widgets import Button, Callback, Checkbox, Choice, Plot, Slider, TextField
+from iota.world.things import Attachable, Frame, Place, Thing, Things, vector
+
+EFFECTS = ("break", "join", "grab", "impact")
 
 Color = Any  # "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None
 
@@ -60,9 +61,9 @@ def _triangles_of(surface: Any) -> tuple[Any, Any]:
     return surface.vertices, [(face[0], b, c) for face in surface.faces for b, c in pairwise(face[1:])]
 
 
-class Drawing:
-    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames, objects of own classes,
-    sounds; buttons, sliders, check boxes, choices, texts and plots.
+class Drawings(Part):
+    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames,
+    objects of own classes, sounds.
 
     A place is a particle, a body, a bond, a frame or a point of the world (m). A thing on one of these moves with it,
     without cost, stays on it when bodies are cut and joined, and ends with it. `handle.destroy()` removes a thing from
@@ -72,14 +73,13 @@ class Drawing:
         label.text = "still the top"
     """
 
-    _state: State
+    def __init__(self, things: Things, notices: Notices) -> None:
+        self._things, self._notices = things, notices
 
     @property
     def things(self) -> list[Thing]:
-        """All things made by the functions below, in the order of creation."""
-        return list(self._state.things)
-
-    # --- drawn things -----------------------------------------------------------------------------------------------
+        """All things made by the functions below, and all controls, in the order of creation."""
+        return list(self._things)
 
     def label(
         self,
@@ -91,11 +91,11 @@ class Drawing:
     ) -> Label:
         """Text at a place (for a bond its middle); "\\n" begins a new line. offset: world, m. height: of a capital, m; 0: a
         constant size on the screen."""
-        return Label(self._state.things, text=text, at=at, offset=offset, height=height, color=color)
+        return Label(self._things, text=text, at=at, offset=offset, height=height, color=color)
 
     def line(self, *points: Any, radius: float = 0.0, color: Color = None, closed: bool = False) -> Line:
         """A line through particles, bodies and places, or through an array of shape (n, 3). radius: m; 0: a few pixels."""
-        return Line(self._state.things, points=_listed(points), radius=radius, color=color, closed=closed)
+        return Line(self._things, points=_listed(points), radius=radius, color=color, closed=closed)
 
     def arrow(
         self,
@@ -106,38 +106,38 @@ class Drawing:
         color: Color = None,
     ) -> Arrow:
         """An arrow from `at` to `to`, or along `vector` (world, m). radius: of its shaft, m; 0: by its length."""
-        return Arrow(self._state.things, at=at, to=to, vector=vector, radius=radius, color=color)
+        return Arrow(self._things, at=at, to=to, vector=vector, radius=radius, color=color)
 
     def arrows(self, starts: Any, vectors: Any, radius: float = 0.0, color: Any = None, at: Place = None) -> Arrows:
         """Many arrows. starts, vectors: arrays of shape (n, 3), m, in the frame of `at`. radius: of their shafts, m; 0: each by
         its length. color: one, an array of shape (n, 3) from 0 to 1, or a list of n colors. Assigning an array changes
         all of them.
 
-        wind = world.arrows(places, 0.1 * velocities)
+        wind = world.drawings.arrows(places, 0.1 * velocities)
         wind.vectors = 0.2 * velocities
         """
-        return Arrows(self._state.things, starts=starts, vectors=vectors, radius=radius, color=color, at=at)
+        return Arrows(self._things, starts=starts, vectors=vectors, radius=radius, color=color, at=at)
 
     def segments(self, starts: Any, ends: Any, radius: float, color: Any = None, at: Place = None) -> Segments:
         """Many straight lines. starts, ends: arrays of shape (n, 3), m, in the frame of `at`. radius: m. color: as of
         `arrows`. Assigning an array changes all of them."""
-        return Segments(self._state.things, starts=starts, ends=ends, radius=radius, color=color, at=at)
+        return Segments(self._things, starts=starts, ends=ends, radius=radius, color=color, at=at)
 
     def axes(self, at: Place = None, length: float = 0.2, rotation: Sequence[float] = (0, 0, 0, 1)) -> Axes:
         """x, y and z of a body or of the world as red, green and blue arrows. length: m. rotation: quaternion x y z w."""
-        return Axes(self._state.things, at=at, length=length, rotation=rotation)
+        return Axes(self._things, at=at, length=length, rotation=rotation)
 
     def trace(
         self, at: Place, seconds: float = 0.0, radius: float = 0.0, color: Color = None, capacity: int = 2000
     ) -> Trace:
         """The past path of a particle or body, as recorded by each page. seconds: of simulated time, 0: the newest
         `capacity` points."""
-        return Trace(self._state.things, at=at, seconds=seconds, radius=radius, color=color, capacity=capacity)
+        return Trace(self._things, at=at, seconds=seconds, radius=radius, color=color, capacity=capacity)
 
     def points(self, points: Any, radius: Any = 0.02, color: Any = None, at: Place = None) -> Points:
         """Many balls. points: array of shape (n, 3), m, in the frame of `at`. radius: m, one or n. color: one, an array of shape
         (n, 3) from 0 to 1, or a list of n colors. Assigning an array moves all of them."""
-        return Points(self._state.things, points=points, radius=radius, color=color, at=at)
+        return Points(self._things, points=points, radius=radius, color=color, at=at)
 
     def shape(
         self,
@@ -150,7 +150,7 @@ class Drawing:
         """A look of `iota.looks` without physics, on a body or in the world. position: m and rotation: quaternion x y z
         w, in the frame of the body or world."""
         return Marker(
-            self._state.things,
+            self._things,
             look=look,
             position=position,
             rotation=rotation,
@@ -171,26 +171,26 @@ class Drawing:
         z w. sizes: factors of the look's size, one, (n,) or (n, 3) along its axes. color: one, a list of n or an array
         (n, 3) from 0 to 1. Assigning an array changes all of them.
 
-        bricks = world.shapes(looks.box((0.2, 0.1, 0.1)), places)
+        bricks = world.drawings.shapes(looks.box((0.2, 0.1, 0.1)), places)
         bricks.positions = places + (0, 1, 0)
         """
         return Shapes(
-            self._state.things, look=look, positions=positions, rotations=rotations, sizes=sizes, color=color, at=at
+            self._things, look=look, positions=positions, rotations=rotations, sizes=sizes, color=color, at=at
         )
 
     def strut(self, at: Place, to: Place, look: Look, color: Color = None) -> Strut:
         """A look from one place to another: its x axis runs along the line, and it is stretched to its length.
 
-        world.strut(piston, crank, looks.cylinder(0.02, "steel"))
+        world.drawings.strut(piston, crank, looks.cylinder(0.02, "steel"))
         """
-        return Strut(self._state.things, at=at, to=to, look=look, color=color)
+        return Strut(self._things, at=at, to=to, look=look, color=color)
 
     def tube(
         self, *points: Any, radius: float, material: str = "rope", color: Color = None, closed: bool = False
     ) -> Tube:
         """A round tube along a smooth curve through particles, bodies and places, or through an array of shape (n, 3)."""
         return Tube(
-            self._state.things,
+            self._things,
             points=_listed(points),
             radius=radius,
             material=material_of(material),
@@ -223,7 +223,7 @@ class Drawing:
         if triangles is None:
             points, triangles = _triangles_of(points)
         return Surface(
-            self._state.things,
+            self._things,
             points=points,
             triangles=triangles,
             at=at,
@@ -238,7 +238,7 @@ class Drawing:
         """Draws the result of `iota.shapelib.read_model`: each surface in the color of its material, as metal if it is, with its
         image if it has one. at: origin and frame of all. Warns of what was left out when the file was read.
 
-        world.model(iota.shapelib.read_model("chair.glb"), at=body)
+        world.drawings.model(iota.shapelib.read_model("chair.glb"), at=body)
         """
         shown = []
         for surface in surfaces:
@@ -246,7 +246,7 @@ class Drawing:
                 raise TypeError(f"a model is a result of iota.shapelib.read_model, not of {SHORT.repr(surface)}")
             for note in surface.notes:
                 warnings.warn(note, stacklevel=2)
-                self._state.notices.warn_once(note)
+                self._notices.warn_once(note)
             image = {"texture": surface.texture, "coordinates": surface.coordinates}
             shown.append(self.surface(surface, at=at, color=surface.color, material=surface.material, **image))
         return shown
@@ -263,43 +263,43 @@ class Drawing:
         splits and merges with them. radius: around a single one, m. cell: of its grid of samples, m; None: a third of
         the radius; a smaller one is smoother and slower. Raises ValueError where the grid would be too large.
 
-        world.skin(block.points, 0.1, color="#4c9a52cc")
+        world.drawings.skin(block.points, 0.1, color="#4c9a52cc")
         """
-        return Skin(self._state.things, particles=particles, radius=radius, cell=cell, color=color, material=material)
+        return Skin(self._things, particles=particles, radius=radius, cell=cell, color=color, material=material)
 
     def paint(self, bodies: Any, color: Any) -> Paint:
         """Colors of bodies, instead of those of their materials. color: one, one for each body, or an array (n, 3) from
         0 to 1.
 
-        world.paint(links, "#e8452c")
+        world.drawings.paint(links, "#e8452c")
         """
-        return Paint(self._state.things, bodies=bodies, color=color)
+        return Paint(self._things, bodies=bodies, color=color)
 
     def frame(self, at: Place = None, rotation: Sequence[float] = (0, 0, 0, 1)) -> Frame:
         """A frame for other things, like a body: they move, hide and end with it. rotation: quaternion x y z w.
 
-        hand = world.frame((0, 1, 0))
-        world.shape(looks.sphere(0.1), on=hand, position=(0.2, 0, 0))
+        hand = world.drawings.frame((0, 1, 0))
+        world.drawings.shape(looks.sphere(0.1), on=hand, position=(0.2, 0, 0))
         hand.at = (0, 2, 0)
         """
-        return Frame(self._state.things, at=at, rotation=rotation)
+        return Frame(self._things, at=at, rotation=rotation)
 
     def viewpoint(self, name: str, position: Place, target: Place) -> Viewpoint:
         """A viewpoint that users go to by a key, 1 for the first, or the page's bar. On a particle, body or frame the
         camera moves with it.
 
-        world.viewpoint("from above", (0, 8, 0.1), (0, 0, 0))
-        world.viewpoint("driver", car.attachment((0, 1.2, 0)), car.attachment((3, 1, 0)))
+        world.drawings.viewpoint("from above", (0, 8, 0.1), (0, 0, 0))
+        world.drawings.viewpoint("driver", car.attachment((0, 1.2, 0)), car.attachment((3, 1, 0)))
         """
-        return Viewpoint(self._state.things, name=name, position=position, target=target)
+        return Viewpoint(self._things, name=name, position=position, target=target)
 
     def stage(self, sky: Color = None, horizon: Color = None, ground: Color = None, light: float = 1.0) -> Stage:
         """Surroundings instead of the page's own: colors of the sky overhead, the horizon and the ground, and a factor
         for the light of all lamps.
 
-        world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
+        world.drawings.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
         """
-        return Stage(self._state.things, sky=sky, horizon=horizon, ground=ground, light=light)
+        return Stage(self._things, sky=sky, horizon=horizon, ground=ground, light=light)
 
     def light(
         self,
@@ -317,12 +317,12 @@ class Drawing:
         half the diagonal of the scene) as the page's own lamp; the sun is so everywhere. angle: of a spot, from its axis
         to its edge, rad. shadow: of a spot or the sun. Raises ValueError for a ninth light, and a third with shadows.
 
-        world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.1)
-        world.light("spot", at=(0, 3, 0), color="#ffd9a0", reach=3, shadow=True)
-        world.light("point", at=firefly, color="#b8ff60", reach=0.3)
+        world.drawings.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.1)
+        world.drawings.light("spot", at=(0, 3, 0), color="#ffd9a0", reach=3, shadow=True)
+        world.drawings.light("point", at=firefly, color="#b8ff60", reach=0.3)
         """
         return Light(
-            self._state.things,
+            self._things,
             kind,
             shadow,
             at=at,
@@ -340,91 +340,35 @@ class Drawing:
         rotation: Sequence[float] = (0, 0, 0, 1),
         values: Mapping[str, Any] | None = None,
     ) -> Custom:
-        """An object of a class of your own: a module of `World.client_module` defines how it is drawn, its bounds, what a ray or a
+        """An object of a class of your own: a module of `Pages.client_module` defines how it is drawn, its bounds, what a ray or a
         hand meets, and what happens when it is selected; see web/README.md. On a body it stands for it: a hit holds
         and selects the body. Recordings carry no code and show none of these. rotation: quaternion x y z w. values: the
         object's data.
 
-        world.client_module("flower.js")  # has iota.define("flower", {...})
-        flower = world.custom("flower", at=stem, values={"petals": 7})
+        world.pages.client_module("flower.js")  # has iota.define("flower", {...})
+        flower = world.drawings.custom("flower", at=stem, values={"petals": 7})
         flower.values = {"petals": 8}
         """
-        return Custom(self._state.things, class_name=class_name, at=at, rotation=rotation, values=values or {})
-
-    # --- sounds ---------------------------------------------------------------------------------------------------
+        return Custom(self._things, class_name=class_name, at=at, rotation=rotation, values=values or {})
 
     def sound(self, source: Any, rate: float = 44_100, reach: float = 0.0) -> Sound:
         """A sound of your own: a WAV, MP3, Ogg or FLAC file of at most 1 MiB and a minute, or an array of samples from -1 to 1,
         (n,) or (n, 2), `rate` of them a second. reach: distance up to which it is not fainter, m; 0: half the diagonal of
         the scene. Raises ValueError for a file that cannot be used.
 
-        bell = world.sound("bell.ogg")
-        world.on_contact(gong)(lambda event: bell.play(event.contact.position, volume=0.5))
+        bell = world.drawings.sound("bell.ogg")
+        world.on_stop(gong)(lambda event: bell.play(event.stop.position, volume=0.5))
         """
-        return Sound(self._state.things, sound_file(source, rate), reach=reach)
+        return Sound(self._things, sound_file(source, rate), reach=reach)
 
-    # --- controls for users -----------------------------------------------------------------------------------
+    def effect(
+        self, kind: Literal["break", "join", "grab", "impact"], position: Sequence[float], volume: float = 1.0
+    ) -> None:
+        """The sound and the pulse in users' hands of a break, a join, a grab or an impact at a place (m), on all pages; with a
+        ring of light, but for an impact. volume: from 0 to 10. For sounds of your own see `sound`.
 
-    def button(self, label: str, help: str = "") -> Callable[[Callback], Button]:
-        """Decorator: a button that calls a function. Returns its handle."""
-
-        def register(function: Callback) -> Button:
-            made = Button(self._state.things, label, help=help)
-            made.on_change(function)
-            return made
-
-        return register
-
-    def slider(
-        self,
-        label: str,
-        minimum: float,
-        maximum: float,
-        value: float | None = None,
-        step: float = 0.0,
-        unit: str = "",
-        help: str = "",
-    ) -> Slider:
-        """A number from `minimum` to `maximum` in whole `step`s, 0: any. value: initial, None: the minimum.
-
-        gravity = world.slider("gravity", 0, 20, 9.81, unit="m/s²")
-
-        @gravity.on_change
-        def changed(): system.gravity = (0, -gravity.value, 0)
+            world.on_stop(door_hinge)(lambda event: world.drawings.effect("impact", event.stop.position))
         """
-        first = minimum if value is None else value
-        return Slider(self._state.things, label, minimum, maximum, first, step=step, unit=unit, help=help)
-
-    def checkbox(self, label: str, value: bool = False, help: str = "") -> Checkbox:
-        """On or off."""
-        return Checkbox(self._state.things, label, value=value, help=help)
-
-    def choice(self, label: str, options: Sequence[str], value: str | None = None, help: str = "") -> Choice:
-        """One of several texts. value: initial, None: the first of them."""
-        return Choice(self._state.things, label, options, value, help=help)
-
-    def text(self, label: str, value: str = "", help: str = "") -> TextField:
-        """A text field of one line."""
-        return TextField(self._state.things, label, value=value, help=help)
-
-    def plot(
-        self,
-        label: str,
-        curves: Callable[[], float] | Mapping[str, Callable[[], float]] | Sequence[str] | None = None,
-        unit: str = "",
-        seconds: float = 10.0,
-    ) -> Plot:
-        """Curves over the last `seconds` of simulated time. curves: a function, or several by name, called once a
-        frame; or names of curves that the script feeds by `plot.add(time, value, ...)`.
-
-        world.plot("energy", {"kinetic": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J")
-        """
-        if isinstance(curves, Mapping):
-            named: dict[str, Callable[[], float] | None] = dict(curves)
-        elif curves is None or callable(curves):
-            named = {label: curves}
-        else:
-            if not all(isinstance(name, str) for name in curves):
-                raise TypeError(f"curves must be a function, several by name, or names, not {SHORT.repr(curves)}")
-            named = dict.fromkeys(curves)
-        return Plot(self._state.things, label, named, unit, seconds)
+        if kind not in EFFECTS:
+            raise ValueError(f"kind must be one of {', '.join(map(repr, EFFECTS))}, not {kind!r}")
+        self._things.play(kind, vector(position), checked_volume(volume))

@@ -6,46 +6,34 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from iota.world.actions import Action
-from iota.world.callbacks import Hook
-from iota.world.listeners import Listener, bodies_of, things_of
-from iota.world.state import State
+from iota.world.callbacks import Hook, add_once
+from iota.world.listeners import Listener, Listeners, bodies_of, things_of
+from iota.world.parts import Part
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 
 
-class Listening:
+class Events(Part):
     """Decorators for functions that are called on events of users or of the simulation. They take one `Event`, or
     nothing; the event has the client, the body and the place.
 
     on: a body, several, a class of bodies (a Group of the system: those with a particle in it when it happens),
-    "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` removes the
-    function.
+    "anything" (any body) or "nothing" (no body was hit). `world.events.forget(function)` removes
+    the function.
     """
 
-    _state: State
+    def __init__(self, listeners: Listeners) -> None:
+        self._listeners = listeners
 
-    def action(
-        self,
-        name: str,
-        key: str | None = None,
-        help: str = "",
-        button: str | None = None,
-        on: str = "body",
-        label: str | None = None,
-    ) -> Callable[[Callback], Callback]:
-        """Decorator: lets users call a function by a key, a controller's face button ("a" or "b") or the page's panel.
+    def on_step(self, function: Callback) -> Callback:
+        """Decorator: calls a function before each step."""
+        add_once(self._listeners.on_step, function, "on_step")
+        return function
 
-        on: "body" (the event has the held or selected body; without one the user is told so) or "world".
-        """
-        self._state.actions.check(name, key, button, on)
-
-        def register(function: Callback) -> Callback:
-            self._state.actions.add(Action(name, Hook.of(function), key, button, help, label or name, on))
-            self._state.is_changed = True
-            return function
-
-        return register
+    def on_reset(self, function: Callback) -> Callback:
+        """Decorator: calls a function after each reset, for the script's own state."""
+        add_once(self._listeners.on_reset, function, "on_reset")
+        return function
 
     def on_click(self, on: Any = "anything") -> Any:
         """Decorator: a short press, by mouse, finger, controller or hand.
@@ -93,7 +81,7 @@ class Listening:
 
     def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
         """Decorator: a key is pressed, or released; the page then does not use this key. key: by its name in browsers:
-        "k", " ", "ArrowUp", "Enter". Actions also have a button and a line in the help: see `action`."""
+        "k", " ", "ArrowUp", "Enter". Actions also have a button and a line in the help: see `Controls.action`."""
         if not isinstance(key, str) or not key:
             raise ValueError(f"a key needs a name, as 'k' or 'ArrowUp', not {key!r}")
         return self._add("key", key=key, on_release=release)
@@ -110,17 +98,17 @@ class Listening:
         """Decorator: calls a function before each frame for pages, 60 times a second, also while paused."""
         return self._add("frame")(function)
 
-    def on_contact(self, on: Any = "anything") -> Any:
+    def on_stop(self, on: Any = "anything") -> Any:
         """Decorator: a one-sided constraint begins (event.phase "start") or ceases ("end") to carry a load: surfaces
         meet or part, a rope becomes taut or slack, a joint reaches or leaves a stop. Called between two steps;
-        event.contact has the constraint and stop, event.point the place. on: a body, a constraint, several, or
+        event.stop has the constraint and the coordinate, event.point the place. on: a body, a constraint, several, or
         "anything".
 
-        @world.on_contact(door_hinge)
+        @world.on_stop(door_hinge)
         def stopped(event):
-            if event.phase == "start" and event.contact.stop == "angle": print("shut")
+            if event.phase == "start" and event.stop.coordinate == "angle": print("shut")
         """
-        return self._hear("contact", on)
+        return self._hear("stop", on)
 
     def on_break(self, on: Any = "anything") -> Any:
         """Decorator: a constraint, bond, hinge or nail broke because of its load: event.broken has it and the load. on:
@@ -129,8 +117,7 @@ class Listening:
 
     def forget(self, function: Callable[..., Any]) -> bool:
         """Removes a function registered by the decorators above; False for an unknown function."""
-        self._state.is_changed = True
-        return self._state.listeners.remove(function)
+        return self._listeners.remove(function)
 
     def _listen(self, kind: str, on: Any, **more: Any) -> Any:
         if callable(on):  # without parentheses
@@ -144,8 +131,7 @@ class Listening:
 
     def _add(self, kind: str, **more: Any) -> Callable[[Callback], Callback]:
         def register(function: Callback) -> Callback:
-            self._state.listeners.add(Listener(kind, Hook.of(function), **more))
-            self._state.is_changed = True
+            self._listeners.add(Listener(kind, Hook.of(function), **more))
             return function
 
         return register

@@ -176,7 +176,7 @@ def test_far_ends_are_drawn_together_no_faster_than_eyes_follow(chain: list[iota
     system.gravity = (0, 0, 0)
     world = iota.World(system, ground=None)
     world.offer("join")
-    world.act("join", chain[3])
+    world.controls.act("join", chain[3])
     gaps = [abs(end.position - own.position)]
     while system.closing_count and system.time < 5:
         world.step()
@@ -205,7 +205,7 @@ def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run
     world = iota.World(system, ground=None)
     world.draw([box, rod], looks.capsule(0.02, "brass"))
     world.offer("copy")
-    world.paused = True
+    world.clock.paused = True
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["body"]) == 2)
         for slot in slots:
@@ -223,8 +223,8 @@ def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run
 
         first, second, third, fourth = world.call(figures)
         assert first == third and second == fourth
-        styles = [page.style_of(slot)["name"] for slot in page.entities["body"]]
-        assert styles[1] == styles[3]
+        visuals = [page.visual_of(slot)["name"] for slot in page.entities["body"]]
+        assert visuals[1] == visuals[3]
         apart = world.call(lambda: abs(system.bodies[2].center_of_mass - system.bodies[0].center_of_mass))
         assert 0.2 < apart < 1
 
@@ -256,7 +256,7 @@ def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, ru
     slot = cable.slot
     world = iota.World(system, ground=None)
     joined: list[iota.Particle] = []
-    world.socket(place, [plug], within=0.2, on_snap=joined.append)
+    world.tools.socket(place, [plug], within=0.2, on_snap=joined.append)
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["body"]) == 2)
         assert not page.entities["marker"], "nobody holds a plug"
@@ -298,7 +298,7 @@ def test_a_socket_pulls_a_held_plug_that_is_near_with_a_bounded_force(
     plug = system.body().particle((1, 1, 0))
     slot = plug.body.slot
     world = iota.World(system, ground=None)
-    world.socket(place, [plug], within=0.2, pull=pull)
+    world.tools.socket(place, [plug], within=0.2, pull=pull)
     forces: list[float] = []
 
     @world.on_frame
@@ -324,7 +324,7 @@ def test_a_socket_pulls_a_held_plug_that_is_near_with_a_bounded_force(
         page.send("grab_end", hold=1)
         page.wait_for(lambda: world.call(lambda: not list(system.bonds)))
     with pytest.raises(ValueError, match="pull must be a finite force"):
-        world.socket(place, [plug], pull=-1)
+        world.tools.socket(place, [plug], pull=-1)
 
 
 def test_a_world_goes_back_by_a_second_at_a_time_to_where_it_was(system: iota.System, run_world: Runner) -> None:
@@ -345,11 +345,11 @@ def test_a_world_goes_back_by_a_second_at_a_time_to_where_it_was(system: iota.Sy
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: now()[0] > 3)
         page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(now()[1], 1, 0))
-        page.wait_for(lambda: world.call(lambda: world.held() is not None))
-        world.call(lambda: setattr(world, "paused", True))
+        page.wait_for(lambda: world.call(lambda: world.users.held() is not None))
+        world.call(lambda: setattr(world.clock, "paused", True))
         before, time_now, x = go_back()
         assert 0.9 <= before - time_now <= 1.6 and x == pytest.approx(0.5 * time_now, abs=1e-6)
-        assert world.call(lambda: world.held() is None), "the hands of that time are not those of now"
+        assert world.call(lambda: world.users.held() is None), "the hands of that time are not those of now"
         while now()[0] > 0.1:
             before, time_now, x = go_back()
             assert x == pytest.approx(0.5 * time_now, abs=1e-6)
@@ -367,7 +367,7 @@ def test_a_plug_that_leaves_the_hand_without_being_let_go_leaves_no_ghost(
     plug = system.body().particle((0.3, 1, 0))
     slot = plug.body.slot
     world = iota.World(system, ground=None)
-    world.socket(place, [plug], within=0.2, pull=1.0)
+    world.tools.socket(place, [plug], within=0.2, pull=1.0)
     with PageClient(run_world(world)) as page:
         page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=(0.3, 1, 0))
         page.wait_for(lambda: page.entities["marker"])
@@ -382,7 +382,7 @@ def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner)
         system.step(1 / 120)
     weight = 9.81 * sum(link.mass for link in chain)
     world = iota.World(system)
-    forces = world.show_forces(scale=1.0)
+    forces = world.tools.show_forces(scale=1.0)
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["arrow"]) == 1 + 2 * 5)
         nail = next(arrow for arrow in page.entities["arrow"].values() if arrow["color"] == 0xD0402B)
@@ -395,7 +395,7 @@ def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner)
 
 def test_articulates_have_colors_of_their_own_also_after_a_break(chain: list[iota.Body], run_world: Runner) -> None:
     world = iota.World(chain[0].system)
-    shown = world.show_articulates()
+    shown = world.tools.show_articulates()
 
     def colors(page: PageClient) -> dict[int, int]:
         return {
@@ -420,7 +420,7 @@ def test_a_carried_body_follows_the_hand_exactly_with_all_that_hangs_on_it_and_i
     links = iota.builder.chain(3, 0.6, top=(0, 2, 0), nailed=False).realize(system).bodies
     other = system.body(shape=iota.Sphere(0.1), mass=1.0, position=(3, 2, 0))
     world = iota.World(system, ground=0.0)
-    carry = world.carry(links[0])
+    carry = world.tools.carry(links[0])
     start = links[0].center_of_mass
     with PageClient(run_world(world)) as page:
         grip = (start.x, start.y + 0.05, start.z)
@@ -441,7 +441,7 @@ def test_a_carried_body_follows_the_hand_exactly_with_all_that_hangs_on_it_and_i
         assert world.call(lambda: sum(link.velocity.x for link in links)) > 0.3
         # Others are still pulled by a spring; a reset takes all out of the hand.
         page.send("grab_start", hold=2, body=page.body(other.slot), local_point=(0, 0, 0), target=(3, 2, 0))
-        page.wait_for(lambda: world.call(lambda: world.held() == other))
+        page.wait_for(lambda: world.call(lambda: world.users.held() == other))
         assert world.call(lambda: other.kind) == "dynamic"
         page.send("grab_start", hold=3, body=page.body(links[0].slot), local_point=(0, 0, 0), target=grip)
         page.wait_for(lambda: world.call(lambda: links[0].kind == "scripted"))

@@ -6,18 +6,22 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property
 from time import perf_counter
 from typing import Any
 
 from iota._core import Body, Bond, Particle, System, Vec3
 from iota.world.clients import alive
-from iota.world.drawing import Drawing
+from iota.world.controls import Controls
+from iota.world.drawings import Drawings
 from iota.world.event import Event
+from iota.world.events import Events
 from iota.world.ghosts import Ghost
+from iota.world.history import History
 from iota.world.joining import Joins, hinge_above, nearest_ends
-from iota.world.listening import Listening
+from iota.world.parts import Part
+from iota.world.scene import Scene
 from iota.world.shown import Arrow, Label, Line
+from iota.world.visuals import Visuals
 
 REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
@@ -35,27 +39,25 @@ PARTS_COLORS = (
 )  # of articulates
 
 
-class Interacting(Drawing, Listening):
-    """Common interactions, by one call each."""
+class Tools(Part):
+    """Common interactions and displays, by one call each.
 
-    # Of World, whose module imports this one.
+    world.tools.offer("break", "join")
+    """
 
-    @property
-    def system(self) -> System:
-        raise NotImplementedError
-
-    def undo(self) -> bool:
-        raise NotImplementedError
-
-    def redo(self) -> bool:
-        raise NotImplementedError
-
-    def on_reset(self, function: Callable[[], Any]) -> Callable[[], Any]:
-        raise NotImplementedError
-
-    @cached_property
-    def _joins(self) -> Joins:
-        return Joins()
+    def __init__(
+        self,
+        system: System,
+        visuals: Visuals,
+        scene: Scene,
+        drawings: Drawings,
+        controls: Controls,
+        events: Events,
+        history: History,
+    ) -> None:
+        self._system, self._visuals, self._scene, self._history = system, visuals, scene, history
+        self._drawings, self._controls, self._events = drawings, controls, events
+        self._joins = Joins()
 
     def offer(self, *parts: str) -> None:
         """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) the held or selected body, measure
@@ -65,10 +67,10 @@ class Interacting(Drawing, Listening):
 
         world.offer("break", "join")
         """
-        for name in parts or PARTS:
-            if not isinstance(name, str) or name not in PARTS:
-                raise ValueError(f"there are {', '.join(map(repr, PARTS))}, not {name!r}")
-            PARTS[name](self)
+        for name in parts or OFFERS:
+            if not isinstance(name, str) or name not in OFFERS:
+                raise ValueError(f"there are {', '.join(map(repr, OFFERS))}, not {name!r}")
+            OFFERS[name](self)
 
     def socket(
         self,
@@ -82,7 +84,7 @@ class Interacting(Drawing, Listening):
         plug is held, its body is shown as it would be once joined, amber when a release would join it. on_snap gets the joined plug. pull: largest force that
         draws a held plug to the place, N; it acts within twice the distance.
 
-        world.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
+        world.tools.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
         """
         return Socket(self, place, plugs, within, on_snap, pull)
 
@@ -90,22 +92,22 @@ class Interacting(Drawing, Listening):
         """Arrows for the forces of nails (red) and hinges (blue) on bodies (None: all), of length force times
         `scale` (m/N; None: the largest is a fifth of the scene). `forces.destroy()` removes them.
 
-        forces = world.show_forces()
+        forces = world.tools.show_forces()
         """
-        return Forces(self, bodies, scale)
+        return Forces(self._system, self._drawings, self._events, bodies, scale)
 
     def show_articulates(self) -> Articulates:
         """Colors bodies by the articulate that they are in: those that hinges connect have one color, another after a break or
         a join. `articulates.destroy()` removes the colors."""
-        return Articulates(self)
+        return Articulates(self._system, self._drawings, self._events)
 
     def carry(self, bodies: Any = "anything") -> Carry:
         """Lets users move bodies exactly, whatever hangs on them, instead of pulling at them by a spring: while held they are
         scripted. A release throws them. bodies: one, several, or "anything". `carry.destroy()` ends it.
 
-        world.carry(chess_pieces)
+        world.tools.carry(chess_pieces)
         """
-        return Carry(self, bodies)
+        return Carry(self._events, bodies)
 
 
 def named(body: Body) -> str:
@@ -113,25 +115,27 @@ def named(body: Body) -> str:
     return body.name or "this body"
 
 
-# --- parts --------------------------------------------------------------------------------------------------------------
+# --- offers --------------------------------------------------------------------------------------------------------------
 
 
-def _break(world: Interacting) -> None:
-    @world.action(
+def _break(tools: Tools) -> None:
+    @tools._controls.action(
         "break", key="b", button="b", help="separates the held or selected body from the one above, or calls a join off"
     )
     def break_it(event: Event) -> None:
-        pair = hinge_above(event.body) or world._joins.under_way(event.body)
+        pair = hinge_above(event.body) or tools._joins.under_way(event.body)
         if pair is None:
             event.notice("Nothing to break", f"No hinge is above {named(event.body)}.")
             return
         above, own = pair
-        with world.system.edit():
+        with tools._system.edit():
             above.separate(own)
 
 
-def _join(world: Interacting) -> None:
-    @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
+def _join(tools: Tools) -> None:
+    @tools._controls.action(
+        "join", key="c", button="a", help="joins the held or selected part to the nearest loose end"
+    )
     def join(event: Event) -> None:
         pair = nearest_ends(event.body)
         if pair is None:
@@ -139,34 +143,33 @@ def _join(world: Interacting) -> None:
                 "Nothing to join", f"Everything is connected already, or {named(event.body)} has no loose end."
             )
             return
-        with world.system.edit():
-            world._joins.begin(*pair, shortest=0.3)
+        with tools._system.edit():
+            tools._joins.begin(*pair, shortest=0.3)
 
 
-def _copy(world: Interacting) -> None:
-    @world.action("copy", key="n", help="copies the held or selected body")
+def _copy(tools: Tools) -> None:
+    @tools._controls.action("copy", key="n", help="copies the held or selected body")
     def copy_it(event: Event) -> None:
-        with world.system.edit():
+        with tools._system.edit():
             made = copy_body(event.body)
-        world._state.scene.dress_alike(made, event.body)
-        world._state.is_changed = True
+        tools._visuals.dress_alike(made, event.body)
 
 
-def _undo(world: Interacting) -> None:
-    @world.action("undo", key="z", help="undoes the last edit", on="world")
+def _undo(tools: Tools) -> None:
+    @tools._controls.action("undo", key="z", help="undoes the last edit", on="world")
     def undo(event: Event) -> None:
-        if not world.undo():
+        if not tools._history.undo():
             event.notice("Nothing to undo")
 
 
-def _redo(world: Interacting) -> None:
-    @world.action("redo", key="y", help="repeats the undone edit", on="world")
+def _redo(tools: Tools) -> None:
+    @tools._controls.action("redo", key="y", help="repeats the undone edit", on="world")
     def redo(event: Event) -> None:
-        if not world.redo():
+        if not tools._history.redo():
             event.notice("Nothing to redo")
 
 
-def _measure(world: Interacting) -> None:
+def _measure(tools: Tools) -> None:
     first: list[Body] = []
     shown: list[tuple[Body, Body, Line, Label]] = []
 
@@ -177,7 +180,7 @@ def _measure(world: Interacting) -> None:
             line.destroy()
             label.destroy()
 
-    @world.action("measure", key="v", help="the distance of two bodies: press it on one, then on the other")
+    @tools._controls.action("measure", key="v", help="the distance of two bodies: press it on one, then on the other")
     def measure(event: Event) -> None:
         if shown or not first or first[0] == event.body or not first[0].alive:
             clear()
@@ -185,12 +188,12 @@ def _measure(world: Interacting) -> None:
             title = f"Measure from {event.body.name or 'here'}"
             event.notice(title, "Select the other body and press v again.")
             return
-        line = world.line(first[0], event.body, color=READY)
-        label = world.label("", at=event.body, color="#23272b")
+        line = tools._drawings.line(first[0], event.body, color=READY)
+        label = tools._drawings.label("", at=event.body, color="#23272b")
         shown.append((first[0], event.body, line, label))
         follow()
 
-    @world.on_frame
+    @tools._events.on_frame
     def follow() -> None:
         for a, b, _, label in shown:
             if a.alive and b.alive:
@@ -198,43 +201,42 @@ def _measure(world: Interacting) -> None:
                 label.text = f"{abs(apart):.4g} m"
                 label.offset = apart * -0.5
 
-    world.on_reset(clear)
+    tools._events.on_reset(clear)
 
 
-def _rewind(world: Interacting) -> None:
+def _rewind(tools: Tools) -> None:
     kept: deque[tuple[float, Any, int]] = deque()  # simulated time, snapshot, its bytes
     every = REWIND_EVERY
 
-    @world.on_frame
+    @tools._events.on_frame
     def keep() -> None:
         nonlocal every
-        now = world.system.time
+        now = tools._system.time
         while kept and kept[-1][0] > now:  # after an undo
             kept.pop()
         if kept and now - kept[-1][0] < every:
             return
         start = perf_counter()
-        snapshot = world.system.snapshot()
+        snapshot = tools._system.snapshot()
         every = max(REWIND_EVERY, (perf_counter() - start) / REWIND_SHARE)
         kept.append((now, snapshot, len(snapshot) if isinstance(snapshot, bytes) else 0))
         while kept[0][0] < now - REWIND_LONGEST or (sum(size for *_, size in kept) > REWIND_BYTES and len(kept) > 1):
             kept.popleft()
 
-    @world.action("rewind", key="Backspace", help="goes back by a second, up to ten", on="world")
+    @tools._controls.action("rewind", key="Backspace", help="goes back by a second, up to ten", on="world")
     def rewind(event: Event) -> None:
-        now = world.system.time
+        now = tools._system.time
         while len(kept) > 1 and kept[-1][0] > now - REWIND:
             kept.pop()
         if not kept or kept[-1][0] >= now:
             event.notice("Nothing to go back to")
             return
-        world.system.restore(kept[-1][1])
-        world._state.forget_holds()
+        tools._history.restore(kept[-1][1])
 
-    world.on_reset(kept.clear)
+    tools._events.on_reset(kept.clear)
 
 
-PARTS: dict[str, Callable[[Interacting], None]] = {
+OFFERS: dict[str, Callable[[Tools], None]] = {
     "break": _break, "join": _join, "copy": _copy, "undo": _undo, "redo": _redo, "measure": _measure,
     "rewind": _rewind,
 }  # fmt: skip
@@ -273,7 +275,7 @@ class Socket:
 
     def __init__(
         self,
-        world: Interacting,
+        tools: Tools,
         place: Particle,
         plugs: Iterable[Particle],
         within: float,
@@ -286,16 +288,16 @@ class Socket:
             raise ValueError(f"pull must be a finite force of 0 N or more, not {pull}")
         self.pull = pull
         self._bond: Bond | None = None
-        self.place, self.within, self._world, self._on_snap = place, within, world, on_snap
+        self.place, self.within, self._tools, self._on_snap = place, within, tools, on_snap
         self.plugs = list(plugs)
         self._ghost: Ghost | None = None
-        self._drag = world.on_drag("anything")(self._dragged)
-        self._frame = world.on_frame(self._end_with_plug)
+        self._drag = tools._events.on_drag("anything")(self._dragged)
+        self._frame = tools._events.on_frame(self._end_with_plug)
 
     def destroy(self) -> None:
         """Removes the socket; joined plugs stay joined."""
-        self._world.forget(self._drag)
-        self._world.forget(self._frame)
+        self._tools._events.forget(self._drag)
+        self._tools._events.forget(self._frame)
         self._draw(None)
         self._show(None, FREE)
 
@@ -307,7 +309,7 @@ class Socket:
         if plug is None:
             return
         if self._ghost is None:
-            self._ghost = Ghost(self._world, plug.body, color)
+            self._ghost = Ghost(self._tools._drawings, self._tools._scene, plug.body, color)
         self._ghost.paint(color)
         self._ghost.follow(self.place.position - plug.position)
 
@@ -320,7 +322,7 @@ class Socket:
         if bond is None and plug is not None:
             # As strong from everywhere but close to the place, where it fades.
             law = "energy = pull*sqrt(r^2 + soft^2)"
-            bond = self._world.system.bond(plug, self.place, law, pull=self.pull, soft=0.2 * self.within)
+            bond = self._tools._system.bond(plug, self.place, law, pull=self.pull, soft=0.2 * self.within)
         self._bond = bond
 
     def _held(self, body: Body) -> Particle | None:
@@ -333,7 +335,7 @@ class Socket:
         """A plug that is destroyed in the hand, or taken out of it by a reset or an undo, is not let go of."""
         if self._ghost is None:
             return
-        plug, drags = self._ghost.body, self._world._state.listeners.drags.values()
+        plug, drags = self._ghost.body, self._tools._events._listeners.drags.values()
         held = [body for body in (alive(drag.body) for drag in drags) if body is not None]
         if not plug.alive or all(body.articulate != plug.articulate for body in held):
             self._draw(None)
@@ -351,8 +353,8 @@ class Socket:
         self._show(None if event.phase == "end" else plug, READY if apart <= self.within else FREE)
         if event.phase != "end" or event.reason == "reset" or apart > self.within:
             return
-        with self._world.system.edit():
-            self._world._joins.begin(self.place, plug, shortest=0.1)
+        with self._tools._system.edit():
+            self._tools._joins.begin(self.place, plug, shortest=0.1)
         if self._on_snap is not None:
             self._on_snap(plug)
 
@@ -360,23 +362,24 @@ class Socket:
 class Forces:
     """Arrows that follow the forces on bodies. scale: m/N."""
 
-    def __init__(self, world: Interacting, bodies: Iterable[Body] | None, scale: float | None) -> None:
+    def __init__(
+        self, system: System, drawings: Drawings, events: Events, bodies: Iterable[Body] | None, scale: float | None
+    ) -> None:
         self.scale = scale
-        self._world, self._bodies = world, None if bodies is None else list(bodies)
+        self._system, self._drawings, self._events = system, drawings, events
+        self._bodies = None if bodies is None else list(bodies)
         self._arrows: dict[tuple[Particle, str], Arrow] = {}
-        self._follow = world.on_frame(self._write)
+        self._follow = events.on_frame(self._write)
 
     def destroy(self) -> None:
         """Removes them from the page."""
-        self._world.forget(self._follow)
+        self._events.forget(self._follow)
         for arrow in self._arrows.values():
             arrow.destroy()
         self._arrows.clear()
 
     def _write(self) -> None:
-        bodies: Sequence[Body] = (
-            self._world.system.bodies if self._bodies is None else [b for b in self._bodies if b.alive]
-        )
+        bodies: Sequence[Body] = self._system.bodies if self._bodies is None else [b for b in self._bodies if b.alive]
         forces: dict[tuple[Particle, str], Vec3] = {}
         for body in bodies:
             for particle in body.particles:
@@ -387,32 +390,32 @@ class Forces:
         for gone in self._arrows.keys() - forces.keys():
             self._arrows.pop(gone).destroy()
         largest = max(map(abs, forces.values()), default=0.0)
-        scale = self.scale if self.scale is not None else 0.2 * _size(self._world) / (largest or 1.0)
+        scale = self.scale if self.scale is not None else 0.2 * _size(self._system) / (largest or 1.0)
         for key, force in forces.items():
             arrow = self._arrows.get(key)
             if arrow is None:
                 colors = {"nail": "#d0402b", "hinge": "#3f7fd0"}
-                arrow = self._arrows[key] = self._world.arrow(key[0], color=colors[key[1]])
+                arrow = self._arrows[key] = self._drawings.arrow(key[0], color=colors[key[1]])
             arrow.vector = force * scale
 
 
 class Articulates:
     """Colors of bodies by the articulate that they are in."""
 
-    def __init__(self, world: Interacting) -> None:
-        self._world = world
+    def __init__(self, system: System, drawings: Drawings, events: Events) -> None:
+        self._system, self._drawings, self._events = system, drawings, events
         self._version = -1
-        self._paint = world.paint([], PARTS_COLORS[0])
-        self._follow = world.on_frame(self._write)
+        self._paint = drawings.paint([], PARTS_COLORS[0])
+        self._follow = events.on_frame(self._write)
         self._write()
 
     def destroy(self) -> None:
         """Removes them."""
-        self._world.forget(self._follow)
+        self._events.forget(self._follow)
         self._paint.destroy()
 
     def _write(self) -> None:
-        system = self._world.system
+        system = self._system
         if system.structure_version == self._version:
             return
         self._version = system.structure_version
@@ -420,21 +423,21 @@ class Articulates:
         parts = [part for part in parts if part]
         self._paint.destroy()
         colors = [PARTS_COLORS[index % len(PARTS_COLORS)] for index, part in enumerate(parts) for _ in part]
-        self._paint = self._world.paint([body for part in parts for body in part], colors or PARTS_COLORS[0])
+        self._paint = self._drawings.paint([body for part in parts for body in part], colors or PARTS_COLORS[0])
 
 
 class Carry:
     """Bodies that follow hands exactly."""
 
-    def __init__(self, world: Interacting, bodies: Any) -> None:
-        self._world = world
+    def __init__(self, events: Events, bodies: Any) -> None:
+        self._events = events
         # By client and hold: the body, its center relative to the hand, its kind before.
         self._held: dict[tuple[int, int], tuple[Body, Vec3, Any]] = {}
-        self._drag = world.on_drag(bodies, grab=False)(self._dragged)
+        self._drag = events.on_drag(bodies, grab=False)(self._dragged)
 
     def destroy(self) -> None:
         """Users pull at the bodies again; those in hands are let go."""
-        self._world.forget(self._drag)
+        self._events.forget(self._drag)
         for hand in list(self._held):
             self._let_go(hand)
 
@@ -461,7 +464,7 @@ class Carry:
             now.kind = "dynamic" if kind == "resting" else kind
 
 
-def _size(world: Interacting) -> float:
+def _size(system: System) -> float:
     """Size of the scene, m."""
-    places: Any = world.system.positions
+    places: Any = system.positions
     return float(abs(places.max(axis=0) - places.min(axis=0)).max()) if len(places) else 1.0

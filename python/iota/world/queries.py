@@ -10,10 +10,11 @@ from typing import Any
 
 from iota._core import Body, HalfSpace, Places, Shape, System, Vec3
 from iota.looks import Look
-from iota.world.scene import Static
+from iota.world.parts import Part
+from iota.world.scene import Scene, Static
 from iota.world.shown import Surface
-from iota.world.state import State
-from iota.world.things import unit_quaternion, vector
+from iota.world.things import Things, unit_quaternion, vector
+from iota.world.visuals import Visuals
 
 Place = Sequence[float] | Vec3
 Fixed = Static | Surface
@@ -31,7 +32,7 @@ class Hit:
     fixed: Fixed | None = None
 
 
-class Asking:
+class Queries(Part):
     """Questions about places. They know the shapes of solid bodies exactly, and rods, ropes and balls of particles by the
     thickness with which they are drawn; and what is fixed without physics: the ground, shapes of `add_static` and
     `add_strut`, surfaces and models at a place of the world. Other drawn things are not met. bodies: only these;
@@ -39,26 +40,27 @@ class Asking:
     each question takes some 0.1 to 0.3 ms about 10 000 bodies or in a room of 300 000 triangles, the first one after a
     step 0.5 ms, and after bodies came or went tens of ms. They raise TypeError for a World of another Simulator."""
 
-    _state: State
-    _places: Places | None = None
-    _numbers: dict[Fixed, tuple[int, tuple[Any, ...]]]  # among the places; with the contents of then
-    _fixed: dict[int, Fixed]  # by number
-    _fixed_as_of: Any = None
-    _ground: Static | None = None
+    def __init__(self, system: System, scene: Scene, visuals: Visuals, things: Things) -> None:
+        self._system, self._scene, self._visuals, self._things = system, scene, visuals, things
+        self._places: Places | None = None
+        self._numbers: dict[Fixed, tuple[int, tuple[Any, ...]]] = {}  # among the places; with the contents of then
+        self._fixed: dict[int, Fixed] = {}  # by number
+        self._fixed_as_of: Any = None
+        self._ground: Static | None = None
 
     def ray(
         self, origin: Place, direction: Place, farthest: float = math.inf, bodies: Iterable[Body] | None = None
     ) -> Hit | None:
         """The first thing that a ray meets, within `farthest` m; None without one. Raises ValueError for a direction of zero.
 
-        hit = world.ray(eye, (0, -1, 0))
+        hit = world.queries.ray(eye, (0, -1, 0))
         """
         return self._hit(self._index().ray(Vec3(*origin), Vec3(*direction), farthest, _listed(bodies)))
 
     def nearest(self, place: Place, bodies: Iterable[Body] | None = None) -> Hit | None:
         """The thing whose surface is nearest to a place; None in an empty world.
 
-        hit = world.nearest(hand, bodies=world.system.bodies)  # not the ground
+        hit = world.queries.nearest(hand, bodies=world.system.bodies)  # not the ground
         """
         return self._hit(self._index().nearest(Vec3(*place), _listed(bodies)))
 
@@ -73,11 +75,11 @@ class Asking:
         rotation: Sequence[float] = (0, 0, 0, 1),
         bodies: Iterable[Body] | None = None,
     ) -> list[Body | Fixed]:
-        """What a shape at a place would touch: bodies, then what is fixed. shape: a convex one, as Box, Sphere, Capsule,
+        """Everything that a shape at a place would touch: bodies, then fixed shapes. shape: a convex one, as Box, Sphere, Capsule,
         Cylinder, Cone or Ellipsoid; ValueError for others. position: of its origin, m. rotation: quaternion x y z w. A torus
         among the bodies counts by triangles, within a hundredth of its wire.
 
-        if not world.overlap(iota.Box((0.6, 0.4, 0.4)), place): put_down(crate)
+        if not world.queries.overlap(iota.Box((0.6, 0.4, 0.4)), place): put_down(crate)
         """
         index = self._index()
         found = index.overlap(shape, Vec3(*position), unit_quaternion(rotation), _listed(bodies))
@@ -93,16 +95,16 @@ class Asking:
 
     def _index(self) -> Places:
         """With the thickness of all bodies that were given another look since the last question."""
-        state = self._state
+        scene = self._scene
         if self._places is None:
-            if not isinstance(state.system, System):
+            if not isinstance(self._system, System):
                 raise TypeError("questions about places need a System; this world has a simulator of its own")
-            self._places, self._numbers, self._fixed = Places(state.system), {}, {}
-            self._places.set_usual_thickness(state.usual_thickness, 2 * state.usual_thickness)
-        for body in state.scene.take_drawn():
+            self._places = Places(self._system)
+            self._places.set_usual_thickness(scene.usual_thickness, 2 * scene.usual_thickness)
+        for body in self._visuals.take_drawn():
             if isinstance(body, Body) and body.alive:
-                self._places.set_thickness(body, state.thickness_of(body))
-        as_of = (len(state.statics), state.ground, state.things.changes[Surface])
+                self._places.set_thickness(body, scene.thickness_of(body))
+        as_of = (len(scene.statics), scene.ground, self._things.changes[Surface])
         if as_of != self._fixed_as_of:
             self._fixed_as_of = as_of
             self._know_fixed(self._places)
@@ -122,13 +124,13 @@ class Asking:
 
     def _wanted(self) -> dict[Fixed, tuple[Any, ...]]:
         """All that is fixed, each with what makes it another one if it is assigned anew."""
-        state = self._state
-        wanted: dict[Fixed, tuple[Any, ...]] = {each: () for each in state.statics if each.look.shape is not None}
-        if state.ground is not None:
-            if self._ground is None or self._ground.position.y != state.ground:
-                self._ground = Static(Look(HalfSpace((0, 1, 0))), Vec3(0, state.ground, 0))
+        scene = self._scene
+        wanted: dict[Fixed, tuple[Any, ...]] = {each: () for each in scene.statics if each.look.shape is not None}
+        if scene.ground is not None:
+            if self._ground is None or self._ground.position.y != scene.ground:
+                self._ground = Static(Look(HalfSpace((0, 1, 0))), Vec3(0, scene.ground, 0))
             wanted[self._ground] = ()
-        for thing in state.things:
+        for thing in self._things:
             if isinstance(thing, Surface) and thing.visible and thing.is_in_world:
                 wanted[thing] = (thing.points, thing.triangles, thing.at)
         return wanted

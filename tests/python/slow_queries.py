@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers to questions about places without an index, one body after the other: the twin of iota.world.asking."""
+"""Answers to questions about places without an index, one body after the other: the twin of iota.world.queries."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, HalfSpace, Mesh, Vec3
-from iota.world.asking import Hit, Place
 from iota.world.frames import axes_of
+from iota.world.queries import Hit, Place
 from iota.world.world import World
 
 CLOSE = 1e-6  # of the body's size: a ray that comes so near has met it
 MOST_MARCHES = 256
 
 
-class SlowAsking:
+class SlowQueries:
     def __init__(self, world: World) -> None:
-        self._state = world._state
+        self._system, self._scene = world.system, world.scene
 
     def ray(
         self, origin: Place, direction: Place, farthest: float = math.inf, bodies: Iterable[Body] | None = None
     ) -> Hit | None:
         """The first body that a ray meets, within `farthest` m; None without one. Raises ValueError for a direction of zero.
 
-        hit = world.ray(eye, (0, -1, 0))
+        hit = world.queries.ray(eye, (0, -1, 0))
         """
         start, along = np.array(list(Vec3(*origin))), np.array(list(Vec3(*direction)))
         length = float(np.linalg.norm(along))
@@ -82,12 +82,12 @@ class SlowAsking:
     def _shapes(self, bodies: Iterable[Body] | None) -> Iterator[_Shape]:
         """The solids of bodies, and the lines of their particles."""
         if bodies is None:
-            bodies = [body for body in self._state.system.bodies if body.kind != "inactive" and not body.is_spark]
+            bodies = [body for body in self._system.bodies if body.kind != "inactive" and not body.is_spark]
         for body in bodies:
             for solid in body.solids:
                 yield _Solid(body, solid)
             if not body.solids and body.particles:
-                yield _Line(body, self._state.thickness_of(body))
+                yield _Line(body, self._scene.thickness_of(body))
 
 
 class _Shape:

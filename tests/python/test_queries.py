@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from slow_asking import SlowAsking
+from slow_queries import SlowQueries
 
 import iota
 
@@ -39,16 +39,16 @@ def test_a_ray_meets_the_first_body_at_its_surface() -> None:
         ((0, 9, 0.5), (0, -1, 0), rod, (0, 2.02, 0.5)),
         ((0, 0.1, 0), (1, 0, 0), ball, (0, 0.1, 0)),
     ):
-        hit = world.ray(origin, direction)
+        hit = world.queries.ray(origin, direction)
         assert hit is not None and hit.body == body
         assert hit.point == pytest.approx(point, abs=1e-5)
         assert hit.distance == pytest.approx(math.dist(origin, point), abs=1e-5)
-    assert world.ray((-5, 0, 0), (1, 0, 0), bodies=[box]).body == box
-    assert world.ray((-5, 0, 0), (1, 0, 0), farthest=4.4) is None
-    assert world.ray((-5, 0.51, 0), (1, 0, 0)) is None
-    assert world.ray((0, 9, 1.03), (0, -1, 0), bodies=[rod]) is None
+    assert world.queries.ray((-5, 0, 0), (1, 0, 0), bodies=[box]).body == box
+    assert world.queries.ray((-5, 0, 0), (1, 0, 0), farthest=4.4) is None
+    assert world.queries.ray((-5, 0.51, 0), (1, 0, 0)) is None
+    assert world.queries.ray((0, 9, 1.03), (0, -1, 0), bodies=[rod]) is None
     with pytest.raises(ValueError, match="direction"):
-        world.ray((0, 0, 0), (0, 0, 0))
+        world.queries.ray((0, 0, 0), (0, 0, 0))
 
 
 def test_random_rays_at_a_ball_meet_it_where_the_quadratic_equation_says() -> None:
@@ -64,7 +64,7 @@ def test_random_rays_at_a_ball_meet_it_where_the_quadratic_equation_says() -> No
         under = 0.25 - origin @ origin + middle * middle
         if abs(under) < 1e-4:
             continue
-        hit = world.ray(origin, along, bodies=[ball])
+        hit = world.queries.ray(origin, along, bodies=[ball])
         assert (hit is not None) == (under > 0 and middle > 0)
         if hit is not None:
             met += 1
@@ -74,17 +74,17 @@ def test_random_rays_at_a_ball_meet_it_where_the_quadratic_equation_says() -> No
 
 def test_the_nearest_body_and_those_within_a_distance_are_by_their_surfaces() -> None:
     world, ball, box, rod = make_world()
-    hit = world.nearest((0, 1.4, 0.2))
+    hit = world.queries.nearest((0, 1.4, 0.2))
     assert hit.body == rod and hit.distance == pytest.approx(0.58)
     assert hit.point == pytest.approx((0, 1.98, 0.2), abs=1e-5)
-    inside = world.nearest((0.1, 0, 0))
+    inside = world.queries.nearest((0.1, 0, 0))
     assert inside.body == ball and inside.distance == pytest.approx(-0.4)
     assert inside.point == pytest.approx((0.5, 0, 0), abs=1e-5)
-    assert world.within((1.4, 0, 0), 0.88) == []
-    assert world.within((1.4, 0, 0), 0.905) == [ball, box]
-    assert world.within((0, 1, 0), 0.5001) == [ball]
-    assert world.within((0, 1, 0), 0.99) == [ball, rod]
-    assert iota.World(iota.System(), ground=None).nearest((0, 0, 0)) is None
+    assert world.queries.within((1.4, 0, 0), 0.88) == []
+    assert world.queries.within((1.4, 0, 0), 0.905) == [ball, box]
+    assert world.queries.within((0, 1, 0), 0.5001) == [ball]
+    assert world.queries.within((0, 1, 0), 0.99) == [ball, rod]
+    assert iota.World(iota.System(), ground=None).queries.nearest((0, 0, 0)) is None
 
 
 def make_crowd(count: int) -> iota.World:
@@ -111,22 +111,22 @@ def make_crowd(count: int) -> iota.World:
 
 def test_a_crowd_in_motion_is_answered_as_one_body_after_the_other() -> None:
     world, random = make_crowd(80), np.random.default_rng(5)
-    slow = SlowAsking(world)
+    slow = SlowQueries(world)
     met = 0
     for round in range(6):
         for _ in range(15):
             place, aim = random.uniform(-4, 4, 3), world.system.bodies[random.integers(70)].position
             along = np.array(list(aim)) - place + 0.1 * random.normal(size=3)
-            hit, expected = world.ray(place, along), slow.ray(place, along)
+            hit, expected = world.queries.ray(place, along), slow.ray(place, along)
             assert (hit is None) == (expected is None)
             if hit is not None and expected is not None:
                 met += 1
                 assert hit.body == expected.body and hit.distance == pytest.approx(expected.distance, abs=1e-4)
-            near, expected = world.nearest(place), slow.nearest(place)
+            near, expected = world.queries.nearest(place), slow.nearest(place)
             assert near is not None and expected is not None
             assert near.body == expected.body and near.distance == pytest.approx(expected.distance, abs=1e-9)
             assert near.point == pytest.approx(expected.point, abs=1e-9)
-            assert world.within(place, 0.8) == slow.within(place, 0.8)
+            assert world.queries.within(place, 0.8) == slow.within(place, 0.8)
         for _ in range(20):
             world.system.step(1 / 60)
         if round == 1:
@@ -154,13 +154,13 @@ def test_ten_thousand_bodies_take_less_than_a_tenth_of_asking_a_thousand_one_by_
     world = iota.World(system, ground=None)
     few = iota.System(gravity=(0, 0, 0))
     few.particle_array(np.random.default_rng(1).uniform(-5, 5, (1000, 3)))
-    slow = SlowAsking(iota.World(few, ground=None))
+    slow = SlowQueries(iota.World(few, ground=None))
     for name, arguments in (
         ("ray", ((-9, 0, 0), (1, 0.1, 0.1))),
         ("nearest", ((1, 2, 3),)),
         ("within", ((1, 2, 3), 0.5)),
     ):
-        quick = least(partial(getattr(world, name), *arguments), 30)
+        quick = least(partial(getattr(world.queries, name), *arguments), 30)
         assert quick < 0.1 * least(partial(getattr(slow, name), *arguments), 3), name
 
 
@@ -172,27 +172,27 @@ def test_the_ground_a_wall_and_a_room_from_a_file_are_met_too() -> None:
     side = world.surface(np.array(corners), faces)
     ball = world.system.body(shape=iota.Sphere(0.2), position=(0, 1, 0))
     for along, fixed, distance in (((1, 0, 0), wall, 1.9), ((0, 0, 1), None, None), ((-1, 0, 0), side, 3)):
-        hit = world.ray((0, 0.5, 0), along)
+        hit = world.queries.ray((0, 0.5, 0), along)
         assert hit is None if fixed is None else (hit.body, hit.fixed) == (None, fixed)
         assert hit is None or hit.distance == pytest.approx(distance, abs=1e-6)
-    down = world.ray((0.5, 0, 0), (0, -1, 0))
+    down = world.queries.ray((0.5, 0, 0), (0, -1, 0))
     assert down.distance == pytest.approx(1) and isinstance(down.fixed.look.shape, iota.HalfSpace)
-    assert world.nearest((0, 2.8, 1)).fixed is beam
-    assert world.nearest((0, 2.8, 1), bodies=world.system.bodies).body == ball
-    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0)) == [ball, wall, side]
-    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0), bodies=[ball]) == [ball]
+    assert world.queries.nearest((0, 2.8, 1)).fixed is beam
+    assert world.queries.nearest((0, 2.8, 1), bodies=world.system.bodies).body == ball
+    assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0)) == [ball, wall, side]
+    assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0), bodies=[ball]) == [ball]
     half = math.sqrt(0.5)
-    assert world.overlap(iota.Box((8, 0.1, 0.1)), (0, 1.3, 0), (0, half, 0, half)) == []
+    assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1.3, 0), (0, half, 0, half)) == []
 
     side.at = (-1, 0, 0)
-    assert world.ray((0, 0.5, 0), (-1, 0, 0)).distance == pytest.approx(4)
+    assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)).distance == pytest.approx(4)
     side.at = ball
-    assert world.ray((0, 0.5, 0), (-1, 0, 0)) is None, "what is on a body is no wall"
+    assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)) is None, "what is on a body is no wall"
     side.at = None
     side.destroy()
-    assert world.ray((0, 0.5, 0), (-1, 0, 0)) is None
+    assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)) is None
     with pytest.raises(ValueError, match="convex"):
-        world.overlap(iota.Torus(1, 0.1), (0, 0, 0))
+        world.queries.overlap(iota.Torus(1, 0.1), (0, 0, 0))
 
 
 def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:
@@ -205,4 +205,4 @@ def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:
         def restore(self, snapshot: bytes) -> None: ...
 
     with pytest.raises(TypeError, match="simulator of its own"):
-        iota.World(Nothing(), ground=None).nearest((0, 0, 0))
+        iota.World(Nothing(), ground=None).queries.nearest((0, 0, 0))

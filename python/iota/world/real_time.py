@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Paces fixed steps to real time. The engine itself reads no clock."""
+
+from __future__ import annotations
+
+import time
+
+from iota.world.clock import Clock
+
+MAX_CATCH_UP = 4  # steps
+
+
+class RealTime:
+    """The number of due steps, and the time to sleep. Time that cannot be caught up is dropped: slow motion."""
+
+    def __init__(self, clock: Clock, frame: float = 1 / 60) -> None:
+        self._clock = clock
+        self.frame = frame
+        self.restart()
+
+    def restart(self) -> None:
+        self._last = self._next_frame = time.perf_counter()
+        self._owed = 0.0
+
+    def due(self) -> int:
+        """The number of steps to take now."""
+        now = time.perf_counter()
+        passed, self._last = now - self._last, now
+        if not self._runs():
+            self._owed = 0.0
+            return 0
+        self._owed += passed * self._clock.speed / self._clock.dt
+        steps = int(self._owed)
+        self._owed -= steps
+        taken = min(steps, MAX_CATCH_UP)
+        if steps:
+            self._clock._take_pace(taken / steps)
+        return taken
+
+    def frame_due(self) -> bool:
+        """True once a frame."""
+        now = time.perf_counter()
+        if now < self._next_frame:
+            return False
+        self._next_frame = max(self._next_frame + self.frame, now)
+        return True
+
+    def sleep(self) -> None:
+        """Sleeps until the next step or frame is due."""
+        now = time.perf_counter()
+        until = self._next_frame
+        if self._runs():
+            until = min(until, self._last + (1 - self._owed) * self._clock.dt / self._clock.speed)
+        if until > now:
+            time.sleep(until - now)
+
+    def _runs(self) -> bool:
+        return not self._clock.paused and self._clock.speed > 0
