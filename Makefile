@@ -8,7 +8,7 @@ PORT ?= 8080
 ifneq ($(origin SECONDS),command line)
 SECONDS :=
 endif
-# Which suites `make test` runs; all when empty. `make test SUITES="cpp python"`
+# Which suites `make test` and `make test-all` run; all when empty. `make test SUITES="cpp python"`
 SUITES ?=
 # Arguments of bench/run_bench.py, `iota verify` and tools/soak.py.
 BENCH ?=
@@ -24,7 +24,7 @@ iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo films test bench verify soak hostile check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo films test test-all bench verify soak hostile check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -41,9 +41,13 @@ films: ## build, then record every study: build/films, docs/pictures/studies (FI
 	@$(PYTHON) tools/build.py films
 	@.venv/bin/python tools/make_films.py $(FILMS)
 
-test: ## build, then run every test of every language (SUITES="cpp python" for some)
+test: ## build, then run the tests of every language; a tenth of what only samples (SUITES="cpp python" for some)
 	@$(PYTHON) tools/build.py test
 	@.venv/bin/python tools/run_tests.py $(SUITES)
+
+test-all: ## the same with all samples, and with suites whose inputs have not changed
+	@$(PYTHON) tools/build.py test
+	@.venv/bin/python tools/run_tests.py --all $(SUITES)
 
 bench: ## build, then measure engine, packaged peers, server and page in one run (BENCH="--quick")
 	@$(PYTHON) tools/build.py bench

@@ -335,11 +335,17 @@ def link(name: Path, target: Path) -> None:
     name.symlink_to(goal)
 
 
-def version() -> str:
+def project(key: str) -> str:
+    """The name or the version in pyproject.toml."""
     for line in (ROOT / "pyproject.toml").read_text().splitlines():
-        if line.startswith("version = "):
+        if line.startswith(f"{key} = "):
             return line.split('"')[1]
-    raise StepError("pyproject.toml names no version")
+    raise StepError(f"pyproject.toml names no {key}")
+
+
+def name_in_files() -> str:
+    """The name that pip gives to the wheel and to its .dist-info folder."""
+    return project("name").replace("-", "_")
 
 
 def command_line() -> Step:
@@ -359,18 +365,18 @@ def command_line() -> Step:
     script = VENV / "bin" / "iota"
 
     def described() -> str:
-        project = (ROOT / "pyproject.toml").read_text()
-        lines = ["Metadata-Version: 2.1", "Name: iota", f"Version: {version()}"]
-        (needs,) = re.findall(r"^dependencies = (\[.*\])$", project, re.M)
+        settings = (ROOT / "pyproject.toml").read_text()
+        lines = ["Metadata-Version: 2.1", f"Name: {project('name')}", f"Version: {project('version')}"]
+        (needs,) = re.findall(r"^dependencies = (\[.*\])$", settings, re.M)
         lines += [f"Requires-Dist: {need}" for need in ast.literal_eval(needs)]
-        extras = project.partition("[project.optional-dependencies]\n")[2].partition("\n[")[0]
+        extras = settings.partition("[project.optional-dependencies]\n")[2].partition("\n[")[0]
         for extra, packages in re.findall(r"^(\w+) = (\[.*\])$", extras, re.M):
             lines.append(f"Provides-Extra: {extra}")
             lines += [f"Requires-Dist: {package}; extra == '{extra}'" for package in ast.literal_eval(packages)]
         return "\n".join([*lines, ""])
 
     def metadata() -> Path:
-        return site_packages() / f"iota-{version()}.dist-info"
+        return site_packages() / f"{name_in_files()}-{project('version')}.dist-info"
 
     def needed() -> bool:
         links = [name_of(part) for part in parts()]
@@ -385,12 +391,13 @@ def command_line() -> Step:
         for part in parts():
             link(name_of(part), part)
         packages = site_packages()
-        for old in packages.glob("iota-*.dist-info"):
+        # Up to version 0.1.0 the name was "iota": an environment of that time keeps no second entry.
+        for old in [*packages.glob("iota-0.1.0.dist-info"), *packages.glob(f"{name_in_files()}-*.dist-info")]:
             shutil.rmtree(old)
         (packages / "iota.pth").write_text(f"{PACKAGE.parent}\n")
         script.write_text(f"#!{PYTHON}\nimport sys\n\nfrom iota.cli import main\n\nsys.exit(main())\n")
         script.chmod(0o755)
-        # For `importlib.metadata`, `pip list` and `pip install 'iota[film]'`.
+        # For `importlib.metadata`, `pip list` and extras, as in `pip install 'iota-worlds[film]'`.
         metadata().mkdir()
         (metadata() / "METADATA").write_text(described())
         (metadata() / "INSTALLER").write_text("make\n")
@@ -438,7 +445,7 @@ def wheel() -> Step:
         write_stamp(stamp, now())
 
     def made() -> list[Path]:
-        return list(WHEELS.glob("iota-*.whl")) or [WHEELS / "none"]
+        return list(WHEELS.glob(f"{name_in_files()}-*.whl")) or [WHEELS / "none"]
 
     return Step("wheel", "packing the wheel", work, lambda: is_stale(stamp, now(), made()), "The log has pip's words.")
 

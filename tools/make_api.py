@@ -150,6 +150,8 @@ def members(where: str, node: ast.ClassDef) -> Iterator[tuple[str, ast.stmt, str
                 found.append((item.name, item))
             elif isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name):
                 found.append((item.target.id, item))
+            elif isinstance(item, ast.Assign) and isinstance(item.targets[0], ast.Name) and forwarded(item):
+                found.append((item.targets[0].id, item))
         for name, item in found:
             if name not in seen and not name.startswith("_"):
                 yield name, item, here
@@ -157,6 +159,16 @@ def members(where: str, node: ast.ClassDef) -> Iterator[tuple[str, ast.stmt, str
         for base in each.bases:
             if isinstance(base, ast.Name) and (what := find(here, base.id)) and isinstance(what[1], ast.ClassDef):
                 queue.append((what[0], what[1]))
+
+
+def forwarded(node: ast.Assign) -> str:
+    """'scene.draw' of 'draw = forward(Scene.draw)'; empty for other assignments."""
+    call = node.value
+    is_forward = isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "forward"
+    if not (is_forward and isinstance(call, ast.Call)):
+        return ""
+    part, _, name = ast.unparse(call.args[0]).partition(".")
+    return f"{part.lower()}.{name}"
 
 
 def comment(where: str, node: ast.stmt) -> str:
@@ -169,6 +181,7 @@ def class_text(where: str, node: ast.ClassDef) -> str:
     """Its docstring, constructor, attributes and methods."""
     out = [text_of(node)]
     properties: dict[str, str] = {}
+    forwards: list[str] = []
     methods: list[str] = []
     made = [item for item in node.body if isinstance(item, ast.FunctionDef) and item.name == "__init__"]
     for init in made:
@@ -186,6 +199,8 @@ def class_text(where: str, node: ast.ClassDef) -> str:
             properties[name] = (
                 f"| `{name}` | `{cell(shorter(ast.unparse(item.annotation)))}` | {cell(comment(here, item))} |"
             )
+        elif isinstance(item, ast.Assign):
+            forwards.append(f"| `{name}` | `{node.name.lower()}.{forwarded(item)}` |")
         elif isinstance(item, ast.FunctionDef):
             text = text_of(item)
             marks = decorators(item)
@@ -197,6 +212,8 @@ def class_text(where: str, node: ast.ClassDef) -> str:
                 methods.append(f"### `{signature(item, True)}`\n\n{text}".rstrip())
     if properties:
         out.append("\n".join(["| has | type | |", "|---|---|---|", *properties.values()]))
+    if forwards:
+        out.append("\n".join(["| calls | that of a part |", "|---|---|", *forwards]))
     return "\n\n".join(part for part in [*out, *methods] if part)
 
 

@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the test suites of every language and sums them in one closing line.
+"""Runs the test suites of every language, some beside each other, and sums them in one closing line.
 
-    tools/run_tests.py [SUITE ...]
+    tools/run_tests.py [--all] [SUITE ...]
 
 Counts come from each runner's machine-readable results in build/test-results. A suite that crashes, runs out of time or
 runs no test counts as one failure. The output of a suite is in build/logs/test-SUITE.log; the end of a failed one is
 shown. Exit code 0 only if nothing failed.
+
+Lanes: suites run beside each other on as many cores as each keeps busy, the longest first. The suites that draw run one
+after another, since software rendering needs several cores.
+
+Amounts: tests that sample (random scenes, edits, damaged bytes) try a tenth of what they try with --all, which sets
+IOTA_TEST_ALL (tests/cpp/amount.h, tests/python/amount.py). A suite with `inputs` runs when one of them has changed since
+it passed, when it is named, and with --all; the others run always.
 
 A browser test that fails is repeated once with its file, in a fresh browser: it draws in software on a few busy cores,
 so that some of its time limits pass by chance. What passed only then is named in the closing lines, and a defect of
@@ -20,17 +27,23 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import build
+
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "build" / "test-results"
 LOGS = ROOT / "build" / "logs"
 BIN = ROOT / ".venv" / "bin"
+STAMPS = ROOT / "build" / "stamps"
+CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
+SHOWN_SLOWEST = 10
 
 
 @dataclass
@@ -43,6 +56,8 @@ class Count:
     failures: list[str] = field(default_factory=list)
     #: Those that failed once and passed when they were repeated.
     repeated: list[str] = field(default_factory=list)
+    #: Seconds and name of each test.
+    durations: list[tuple[float, str]] = field(default_factory=list)
 
     def add(self, other: Count) -> None:
         self.passed += other.passed
@@ -50,6 +65,7 @@ class Count:
         self.skipped += other.skipped
         self.failures += other.failures
         self.repeated += other.repeated
+        self.durations += other.durations
 
     def fail(self, why: str) -> None:
         self.failed += 1
@@ -60,6 +76,7 @@ def read_gtest(result: Path) -> Count:
     count = Count()
     for suite in json.loads(result.read_text())["testsuites"]:
         for test in suite["testsuite"]:
+            count.durations.append((float(test.get("time", "0s").rstrip("s")), f"{suite['name']}.{test['name']}"))
             if test.get("failures"):
                 count.fail(f"{suite['name']}.{test['name']}")
             elif test.get("result") == "COMPLETED":
@@ -72,6 +89,7 @@ def read_gtest(result: Path) -> Count:
 def read_junit(result: Path) -> Count:
     count = Count()
     for case in ElementTree.parse(result).getroot().iter("testcase"):
+        count.durations.append((float(case.get("time", 0)), f"{case.get('classname')}.{case.get('name')}"))
         if case.find("failure") is not None or case.find("error") is not None:
             count.fail(f"{case.get('classname')}.{case.get('name')}")
         elif case.find("skipped") is not None:
@@ -85,6 +103,9 @@ def read_vitest(result: Path) -> Count:
     count = Count()
     for file in json.loads(result.read_text())["testResults"]:
         name = Path(file["name"]).name
+        count.durations += [
+            ((test.get("duration") or 0) / 1000, f"{name}: {test['fullName']}") for test in file["assertionResults"]
+        ]
         states = [(test["status"], test["fullName"]) for test in file["assertionResults"]]
         for state, title in states:
             if state == "failed":
@@ -101,7 +122,7 @@ def read_vitest(result: Path) -> Count:
 
 @dataclass(frozen=True)
 class Suite:
-    """One runner: `{result}` in its command is the path of its results for `read`.
+    """One runner: `{result}` in its command is the path of its results for `read`, and `{cores}` is `cores`.
 
     Without `read` the suite is one test that passes with exit code 0.
     """
@@ -113,6 +134,17 @@ class Suite:
     folder: Path = ROOT
     #: At most so many files with failed tests are run once more, each `FILE: TITLE` in the failures of `read`.
     repeats: int = 0
+    #: About how long it takes on two cores: the longest begins first.
+    about_s: float = 1
+    #: How many cores it keeps busy.
+    cores: int = 1
+    #: Never beside another suite that draws.
+    draws: bool = False
+    #: It is split into so many parts that run as suites (GoogleTest only).
+    shards: int = 1
+    #: All files that it depends on, if it runs only when one of them has changed.
+    inputs: Callable[[], list[Path]] | None = None
+    environment: dict[str, str] = field(default_factory=dict)
 
 
 def pytest(folder: str, *arguments: str) -> list[str]:
@@ -126,24 +158,90 @@ def vitest(*arguments: str) -> list[str]:
     return [str(BIN / "npx"), "--no-install", "vitest", "run", *arguments, *limits, *reporters]
 
 
+def built() -> list[Path]:
+    """Engine, server and bindings."""
+    return sorted(path for path in (ROOT / "build" / "python" / "iota").glob("*") if path.is_file())
+
+
+def web_sources() -> list[Path]:
+    return build.files_under(
+        ROOT / "web", skip=["node_modules", "dist", "dist.new", "dist.old", "test", "test-results"]
+    )
+
+
+def drawn_by() -> list[Path]:
+    """What pictures, studies and packages in a browser depend on."""
+    return [*built(), *build.files_under(ROOT / "python" / "iota", skip=["page"]), *web_sources()]
+
+
+def installed_by() -> list[Path]:
+    """What the wheel is made of and tested with; it is made again when one of its own inputs has changed."""
+    return [*build.files_under(ROOT / "build" / "wheel"), ROOT / "tests" / "packaging" / "test_wheel.py"]
+
+
+WEB = ROOT / "web"
+BROWSER = ["--config", "e2e/vitest.config.ts"]
+# These files are suites of their own, which run when something has changed.
+PICTURES = [f"e2e/{name}.test.ts" for name in ("studies", "first_pictures", "looks")]
+PACKAGES = ["e2e/packages.test.ts"]
+WHEEL = "tests/packaging/test_wheel.py"
+DRAWING_CORES = 1 if CORES < 4 else 2
+OTHER_CORES = min(4, max(1, CORES - DRAWING_CORES))
+
 SUITES = [
     Suite("folders", [str(BIN / "python"), "tools/folder_graph.py"], 60),
-    Suite("cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest),
+    Suite(
+        "cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest,
+        about_s=70, shards=min(4, CORES),
+    ),
     # Most tests keep one core busy; a few are long, so a worker that is done takes over tests of another.
-    Suite("python", pytest("tests/python", "-n=auto", "--maxprocesses=4", "--dist=worksteal"), 1200, read_junit),
-    Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, ROOT / "web"),
-    Suite("page", vitest(), 300, read_vitest, ROOT / "web"),
-    Suite("browser", vitest("--config", "e2e/vitest.config.ts"), 2400, read_vitest, ROOT / "web", repeats=4),
-    Suite("packaging", pytest("tests/packaging"), 900, read_junit),
-]
+    Suite(
+        "python", pytest("tests/python", "-n={cores}", "--dist=worksteal"), 1200, read_junit,
+        about_s=200, cores=OTHER_CORES,
+    ),
+    Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
+    Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),
+    Suite(
+        "browser", vitest(*BROWSER, *(f"--exclude={name}" for name in PICTURES + PACKAGES)), 2400, read_vitest, WEB,
+        repeats=4, about_s=400, cores=DRAWING_CORES, draws=True,
+    ),
+    Suite(
+        "pictures", vitest(*BROWSER, *PICTURES), 1200, read_vitest, WEB,
+        repeats=2, about_s=300, cores=DRAWING_CORES, draws=True, inputs=drawn_by,
+    ),
+    Suite(
+        "packages", vitest(*BROWSER, *PACKAGES), 600, read_vitest, WEB,
+        repeats=1, about_s=30, cores=DRAWING_CORES, draws=True, inputs=drawn_by,
+    ),
+    Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
+    Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
+]  # fmt: skip
+
+
+def in_shards(suite: Suite) -> list[Suite]:
+    """The suites that run: its shards, or itself."""
+    if suite.shards == 1:
+        return [suite]
+    return [
+        replace(
+            suite, name=f"{suite.name}-{shard + 1}", about_s=suite.about_s / suite.shards, shards=1,
+            environment={"GTEST_TOTAL_SHARDS": str(suite.shards), "GTEST_SHARD_INDEX": str(shard)},
+        )
+        for shard in range(suite.shards)
+    ]  # fmt: skip
+
+
+#: Set when the runs shall end before their time.
+stopped = threading.Event()
 
 
 def run(suite: Suite) -> Count:
     """Runs a suite to its end or its time limit and counts its tests."""
     result = RESULTS / f"{suite.name}.{'xml' if suite.read is read_junit else 'json'}"
     result.unlink(missing_ok=True)
-    command = [word.replace("{result}", str(result)) for word in suite.command]
-    environment = dict(os.environ, PATH=f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}", CI="true", NO_COLOR="1")
+    command = [word.replace("{result}", str(result)).replace("{cores}", str(suite.cores)) for word in suite.command]
+    path = f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}"
+    environment = dict(os.environ, PATH=path, CI="true", NO_COLOR="1", **suite.environment)
     count = Count()
     with (LOGS / f"test-{suite.name}.log").open("w") as log:
         try:
@@ -156,9 +254,7 @@ def run(suite: Suite) -> Count:
             count.fail(f"cannot be started: {error}")
             return count
         try:
-            code: int | None = process.wait(timeout=suite.limit_s)
-        except subprocess.TimeoutExpired:
-            code = None
+            code = wait(process, suite.limit_s)
         finally:
             end_group(process.pid)  # also browsers and servers left by a failed test
     if suite.read and result.is_file():
@@ -169,12 +265,23 @@ def run(suite: Suite) -> Count:
     elif suite.read is None and code == 0:
         count.passed += 1
     if code is None:
-        count.fail(f"did not end within {suite.limit_s} s")
+        count.fail("interrupted" if stopped.is_set() else f"did not end within {suite.limit_s} s")
     elif code != 0 and count.failed == 0:
         count.fail(f"ended with exit code {code}")
     elif count.passed + count.failed == 0:
         count.fail("ran no test")
     return count
+
+
+def wait(process: subprocess.Popen[bytes], limit_s: float) -> int | None:
+    """The exit code, or None if the time is over or the runs are stopped before the process ends."""
+    end = time.monotonic() + limit_s
+    while not stopped.is_set() and time.monotonic() < end:
+        try:
+            return process.wait(timeout=min(0.2, max(0.0, end - time.monotonic())))
+        except subprocess.TimeoutExpired:
+            pass
+    return process.poll()
 
 
 def run_with_repeats(suite: Suite) -> Count:
@@ -188,7 +295,7 @@ def run_with_repeats(suite: Suite) -> Count:
     if again.passed < len(repeated):
         return count
     ran = count.passed + count.failed
-    return Count(ran - again.failed, again.failed, count.skipped, again.failures, repeated)
+    return Count(ran - again.failed, again.failed, count.skipped, again.failures, repeated, count.durations)
 
 
 def end_group(leader: int) -> None:
@@ -201,17 +308,105 @@ def end_group(leader: int) -> None:
         time.sleep(wait_s)
 
 
-def show_failure(suite: Suite, count: Count) -> None:
+def end_text(suite: Suite, count: Count) -> list[str]:
+    """The end of the log of a failed suite, and the names of the failures."""
     again = LOGS / f"test-{suite.name}-again.log"
     log = again if suite.repeats and again.is_file() else LOGS / f"test-{suite.name}.log"
     lines = log.read_text(errors="replace").splitlines()
-    print(f"--- the end of {log.relative_to(ROOT)} ---", *lines[-SHOWN_LINES:], "---", sep="\n")
-    for name in count.failures:
-        print(f"  failed: {suite.name}: {name}")
+    failed = [f"  failed: {suite.name}: {name}" for name in count.failures]
+    return [f"--- the end of {log.relative_to(ROOT)} ---", *lines[-SHOWN_LINES:], "---", *failed]
 
 
-def main(names: list[str]) -> int:
-    known = {suite.name: suite for suite in SUITES}
+class Lanes:
+    """Runs suites beside each other, at most as many as there are cores for, each in a thread."""
+
+    def __init__(self, suites: list[Suite]) -> None:
+        self.waiting = sorted(suites, key=lambda suite: -suite.about_s)
+        self.running: list[Suite] = []
+        self.total = Count()
+        self.changed = threading.Condition()
+
+    def next(self) -> Suite | None:
+        """The longest waiting suite that there is room for; the first always has room."""
+        free = CORES - sum(suite.cores for suite in self.running)
+        drawing = any(suite.draws for suite in self.running)
+        for suite in self.waiting:
+            if not self.running or (suite.cores <= free and not (suite.draws and drawing)):
+                return suite
+        return None
+
+    def run(self) -> Count:
+        threads = []
+        try:
+            with self.changed:
+                while self.waiting or self.running:
+                    if suite := self.next():
+                        self.waiting.remove(suite)
+                        self.running.append(suite)
+                        threads.append(threading.Thread(target=self.run_one, args=(suite,)))
+                        threads[-1].start()
+                    else:
+                        self.changed.wait()
+        except BaseException:
+            stopped.set()
+            raise
+        finally:
+            for thread in threads:
+                thread.join()
+        return self.total
+
+    def run_one(self, suite: Suite) -> None:
+        began = time.monotonic()
+        count = Count()
+        try:
+            (LOGS / f"test-{suite.name}-again.log").unlink(missing_ok=True)
+            before = digest(suite)
+            count = run_with_repeats(suite)
+            if before and not count.failed and not count.repeated:
+                build.write_stamp(stamp(suite), before)
+        except Exception as error:
+            count.fail(f"the runner itself failed: {error!r}")
+        with self.changed:
+            self.tell(suite, count, time.monotonic() - began)
+            self.total.add(count)
+            self.running.remove(suite)
+            self.changed.notify()
+
+    def tell(self, suite: Suite, count: Count, elapsed: float) -> None:
+        skipped = f"{count.skipped:4} skipped" if count.skipped else " " * 12
+        lines = [f"{suite.name:12} {count.passed:5} passed {count.failed:4} failed {skipped} {elapsed:8.1f} s"]
+        if count.failed:
+            lines += end_text(suite, count)
+        lines += [f"  failed once, passed when repeated: {suite.name}: {name}" for name in count.repeated]
+        print(*lines, sep="\n", flush=True)
+
+
+def stamp(suite: Suite) -> Path:
+    return STAMPS / f"test-{suite.name}"
+
+
+def digest(suite: Suite) -> str:
+    """Of the files that the suite depends on and its command; nothing if it runs always."""
+    return build.digest(" ".join(suite.command), suite.inputs()) if suite.inputs else ""
+
+
+def is_unchanged(suite: Suite) -> bool:
+    return suite.inputs is not None and not build.is_stale(stamp(suite), digest(suite))
+
+
+def chosen(names: list[str], all_of_them: bool) -> list[Suite]:
+    """The named suites, or those with something new to test; the others are told."""
+    if names:
+        return [suite for suite in SUITES if suite.name in names]
+    unchanged = [] if all_of_them else [suite for suite in SUITES if is_unchanged(suite)]
+    for suite in unchanged:
+        print(f"{suite.name:12} passed before, and nothing it depends on has changed", flush=True)
+    return [suite for suite in SUITES if suite not in unchanged]
+
+
+def main(arguments: list[str]) -> int:
+    names = [name for name in arguments if name != "--all"]
+    known = [suite.name for suite in SUITES]
     for name in names:
         if name not in known:
             print(f"no suite is called {name!r}; there are: {' '.join(known)}", file=sys.stderr)
@@ -220,20 +415,18 @@ def main(names: list[str]) -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     RESULTS.mkdir(parents=True, exist_ok=True)
     LOGS.mkdir(parents=True, exist_ok=True)
-    total = Count()
-    for suite in [known[name] for name in names] or SUITES:
-        print(f"{suite.name:12} ", end="", flush=True)
-        began = time.monotonic()
-        (LOGS / f"test-{suite.name}-again.log").unlink(missing_ok=True)
-        count = run_with_repeats(suite)
-        skipped = f"{count.skipped:4} skipped" if count.skipped else " " * 12
-        elapsed = time.monotonic() - began
-        print(f"{count.passed:5} passed {count.failed:4} failed {skipped} {elapsed:8.1f} s", flush=True)
-        if count.failed:
-            show_failure(suite, count)
-        for name in count.repeated:
-            print(f"  failed once, passed when repeated: {suite.name}: {name}")
-        total.add(count)
+    began = time.monotonic()
+    everything = "--all" in arguments
+    parts = [part for suite in chosen(names, everything) for part in in_shards(suite)]
+    if everything:
+        parts = [replace(part, environment={**part.environment, "IOTA_TEST_ALL": "1"}) for part in parts]
+    if len(parts) == 1:
+        parts = [replace(parts[0], cores=min(4, CORES))]  # nothing else needs them
+    total = Lanes(parts).run()
+    print("slowest:")
+    for seconds, name in sorted(total.durations, reverse=True)[:SHOWN_SLOWEST]:
+        print(f"  {seconds:7.1f} s  {name}")
+    print(f"all together: {time.monotonic() - began:.0f} s")
     skipped = f", {total.skipped} skipped" if total.skipped else ""
     repeated = f", {len(total.repeated)} only when repeated" if total.repeated else ""
     print(f"{total.passed} passed{repeated}, {total.failed} failed{skipped}", flush=True)
