@@ -24,8 +24,9 @@ import sys
 import sysconfig
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 if sys.version_info < (3, 10):
@@ -50,13 +51,15 @@ class StepError(Exception):
 
 @dataclass
 class Step:
-    """One line of progress: runs `work(log)` unless `needed` finds no change."""
+    """One line of progress: runs `work(log)` unless `needed` finds no change. beside: the following steps do not need it, so
+    that it runs beside them (what waits for the network beside what computes)."""
 
     name: str
     title: str
     work: Callable[[Path], None]
     needed: Callable[[], bool]
     hint: str
+    beside: bool = False
 
 
 # --- digests and stamps ---------------------------------------------------------------------------------------------
@@ -509,7 +512,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         command_line(),
     ]
     if goal == "test":
-        steps.insert(2, python_environment("test", "verify", "shapelib", "film"))
+        steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film"), beside=True))
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
@@ -557,6 +560,40 @@ def report_failure(step: Step, error: Exception, log: Path) -> None:
     print(f"\nWhat to try: {step.hint}", file=sys.stderr)
 
 
+def run_steps(steps: Sequence[Step], beside: ThreadPoolExecutor) -> int:
+    """Runs the steps with a line of progress each; the exit code. A step beside others has a second line at its end."""
+    queue = list(enumerate(steps, 1))
+    for number, step in queue:
+        log = LOGS / f"{step.name}.log"
+        try:
+            if not step.needed():
+                continue
+            print(f"[{number}/{len(steps)}] {step.title} ...", end="", flush=True)
+            began = time.monotonic()
+            if step in steps:
+                log.unlink(missing_ok=True)
+            if step.beside:
+                ended = beside.submit(step.work, log)
+                queue.append((number, replace(step, work=end_of(ended), needed=lambda: True, beside=False)))
+                print(" beside the next steps", flush=True)
+                continue
+            step.work(log)
+            print(f" {time.monotonic() - began:.1f} s", flush=True)
+        except (StepError, OSError) as error:
+            print(" failed", flush=True)
+            report_failure(step, error, log)
+            return 1
+        except KeyboardInterrupt:
+            print(" interrupted", flush=True)
+            return 130
+    return 0
+
+
+def end_of(work: Future[None]) -> Callable[[Path], None]:
+    """The work of a step that waits for one beside it."""
+    return lambda _: work.result()
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Builds iota step by step.")
     parser.add_argument("goal", choices=["build", "films", "test", "bench", "verify", "soak", "wheel", "lint", "cpp"])
@@ -565,24 +602,8 @@ def main() -> int:
     with only_one():
         steps = steps_for(options.goal, options.preset)
         LOGS.mkdir(exist_ok=True)
-        for number, step in enumerate(steps, 1):
-            log = LOGS / f"{step.name}.log"
-            try:
-                if not step.needed():
-                    continue
-                print(f"[{number}/{len(steps)}] {step.title} ...", end="", flush=True)
-                log.unlink(missing_ok=True)
-                began = time.monotonic()
-                step.work(log)
-                print(f" {time.monotonic() - began:.1f} s", flush=True)
-            except (StepError, OSError) as error:
-                print(" failed", flush=True)
-                report_failure(step, error, log)
-                return 1
-            except KeyboardInterrupt:
-                print(" interrupted", flush=True)
-                return 130
-    return 0
+        with ThreadPoolExecutor() as beside:
+            return run_steps(steps, beside)
 
 
 if __name__ == "__main__":

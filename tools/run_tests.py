@@ -194,10 +194,11 @@ SUITES = [
         "cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest,
         about_s=70, shards=min(4, CORES),
     ),
-    # Most tests keep one core busy; a few are long, so a worker that is done takes over tests of another.
+    # A few tests are long, so a worker that is done takes over tests of another. At least two workers: many tests wait
+    # for a process or a browser, and so do those of the suite beside this one.
     Suite(
-        "python", pytest("tests/python", "-n={cores}", "--dist=worksteal"), 1200, read_junit,
-        about_s=200, cores=OTHER_CORES,
+        "python", pytest("tests/python", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
+        about_s=300, cores=OTHER_CORES,
     ),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
     Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),

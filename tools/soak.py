@@ -21,7 +21,15 @@ RUNS = {
     "edits": [str(ROOT / "build" / "iota_soak"), "edits", "10000000"],
     "verify": [str(ROOT / ".venv" / "bin" / "iota"), "verify", "--long"],
     "ladder": [
-        *("env", "IOTA_LADDER_MINUTES=10", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
+        *(
+            "env",
+            "IOTA_TEST_ALL=1",
+            "IOTA_LADDER_MINUTES=10",
+            str(ROOT / ".venv" / "bin" / "python"),
+            "-m",
+            "pytest",
+            "-q",
+        ),
         *(str(ROOT / "tests" / "python" / "test_study_ladder.py"), "-k", "never_stuck"),
     ],
     "studies": [

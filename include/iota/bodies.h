@@ -50,7 +50,7 @@ struct BodyEnergy {
 
 /// A solid of a body. A body that is combined from several has the solids of all.
 struct SolidView {
-  Shape shape;             ///< a Mesh made in another system, and restored here, comes back empty
+  Shape shape;
   Vec3 position;           ///< of the shape's origin, world, m
   Quaternion orientation;  ///< of the shape's frame
 };

@@ -11,8 +11,7 @@
 
 namespace iota {
 
-/// A whole system in bytes, except functions (of bonds, laws, fields and surfaces) and the triangles of
-/// meshes.
+/// A whole system in bytes, except functions (of bonds, laws, fields and surfaces).
 struct Snapshot {
   std::vector<std::byte> bytes;
   friend bool operator==(const Snapshot&, const Snapshot&) = default;

@@ -19,7 +19,7 @@ enum class BodyKind : std::uint8_t;  // of bodies.h
 
 /// A solid of a body.
 struct DrawnSolid {
-  Shape shape;  ///< a Mesh is empty if this system does not have its triangles
+  Shape shape;
   Vec3 position;
   Quaternion orientation;
 };

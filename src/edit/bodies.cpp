@@ -57,7 +57,7 @@ BodyId apply(Editor& e, const CreateSolid& c) {
   const std::uint32_t body = model.make_body(o.kind, o.damping);
   model::Solid solid;
   solid.shape = shape::to_data(c.shape);
-  if (const auto* mesh = std::get_if<Mesh>(&c.shape)) e.meshes.try_emplace(solid.shape.key, *mesh);
+  if (const auto* mesh = std::get_if<Mesh>(&c.shape)) model.meshes.add_use(solid.shape.key, *mesh);
   add_solid(model, body, solid, mass, properties.center, to_mat3(properties.mean_squares), pose);
   const Vec3 center = model.center_of_mass(body);
   model.for_each_particle_of(body, [&](std::uint32_t p) {

@@ -63,8 +63,7 @@ struct Editor {
   read::Orientations& orientations;
   const Parallel& parallel;
 
-  std::map<std::uint64_t, Mesh> meshes;  ///< for drawing, by content; not part of the saved state
-  std::optional<Batch> batch;            ///< the open batch
+  std::optional<Batch> batch;  ///< the open batch
   History undo, redo;
   /// Set while a replay may restore destroyed objects: their functions are then kept.
   bool keeps_functions = false;

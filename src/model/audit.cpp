@@ -63,7 +63,23 @@ void Audit::check_links() {
     for (const std::uint32_t p : s.points) require(is_point(p), "solid ", slot, " stands on stranger ", p);
     require_shape("solid", slot, s.shape);
   });
+  check_meshes();
   check_structure_lists();
+}
+
+void Audit::check_meshes() {
+  const std::uint32_t mesh_kind = shape::to_data(Mesh{}).kind;
+  std::map<std::uint64_t, std::uint32_t> found;
+  model_.solids.for_each([&](std::uint32_t slot, const Solid& s) {
+    if (s.shape.kind != mesh_kind) return;
+    ++found[s.shape.key];
+    require(model_.meshes.find(s.shape.key) != nullptr, "solid ", slot, " has a mesh that is not there");
+  });
+  model_.meshes.for_each([&](std::uint64_t key, const Mesh& mesh, std::uint32_t uses) {
+    const std::string complaint = complaint_about(key, mesh);
+    require(complaint.empty(), "mesh ", key, ": ", complaint);
+    require(found[key] == uses, "mesh ", key, " is of ", found[key], " solids, not of ", uses);
+  });
 }
 
 void Audit::check_structure_lists() {

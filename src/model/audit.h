@@ -73,6 +73,7 @@ class Audit {
   std::vector<std::string> complaints() && { return std::move(complaints_); }
 
  private:
+  void check_meshes();
   void check_particles();
   void check_structure_lists();
   /// Singly linked lists, each item in one; for_each_first(lead_to) calls that with the first item of each.

@@ -171,6 +171,7 @@ void Structure::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
     const auto& points = solids[solid].points;
     if (particle == none || std::find(points.begin(), points.end(), particle) != points.end()) {
       *link = solids[solid].next;
+      meshes.remove_use(solids[solid].shape.key);
       solids.destroy(solid);
     } else {
       link = &solids[solid].next;

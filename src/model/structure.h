@@ -8,6 +8,7 @@
 #include "model/attributes.h"
 #include "model/corrections.h"
 #include "model/end_table.h"
+#include "model/meshes.h"
 #include "model/scene_log.h"
 #include "shape/shape.h"
 
@@ -163,6 +164,7 @@ class Structure {
   Corrections corrections;         ///< of rings
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
+  Meshes meshes;  ///< of solids
   SlotTable<Twin, Id<"twin">> twins;
   SideTable<std::uint32_t> first_twin;  ///< of particles
   SlotTable<Attributes, Id<"attributes">> attributes;
@@ -450,6 +452,7 @@ void Structure::archive(Archive& ar) {
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
+  meshes.archive(ar);
 }
 
 }  // namespace iota::model

@@ -336,7 +336,6 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
        like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_style), &paint}}) {
     for (const DrawnSolid& solid : body.solids) {
       const Mesh* const mesh = std::get_if<Mesh>(&solid.shape);
-      if (mesh && mesh->triangles.empty()) continue;
       protocol::Part& part = parts.emplace_back(make_part(style, {}, first->material));
       part.color = first->color;
       part.offset = rounded(solid.position);

@@ -258,8 +258,6 @@ void Places::describe_solids(Known& body) {
   const Vec3 place = system_.bodies().center_of_mass(body.what.body);
   const Quaternion back = conjugate(system_.bodies().orientation(body.what.body));
   for (SolidView& view : views) {
-    const auto* const mesh = std::get_if<Mesh>(&view.shape);
-    if (mesh != nullptr && mesh->triangles.empty()) continue;  // this system does not have its triangles
     const Solid& solid = solids_.emplace_back(
         make_solid(std::move(view.shape), rotate(back, view.position - place), multiply(back, view.orientation)));
     body.reach = std::max(body.reach, reach_of(solid) + norm(solid.position));

@@ -6,7 +6,7 @@
 namespace iota::shape {
 
 /// The volume within a closed surface of triangles; from outside each triangle is counter-clockwise. Its origin is
-/// arbitrary. Its numbers are not sizes: a system keeps them outside its tables, under a key.
+/// arbitrary. Its numbers are not sizes: a system keeps them once, under a key.
 template <>
 struct Traits<Mesh> {
   static constexpr std::string_view name = "mesh", doc = "What a closed surface of triangles encloses.";

@@ -123,8 +123,7 @@ std::vector<SolidView> Bodies::solids(BodyId id) const {
     const model::Solid& solid = m.solids[slot];
     const model::SolidPose pose = solid_pose(m, slot);
     views.push_back({shape::from_data(solid.shape), pose.position, pose.orientation});
-    const auto mesh = core_.editor.meshes.find(solid.shape.key);
-    if (solid.shape.key != 0 && mesh != core_.editor.meshes.end()) views.back().shape = mesh->second;
+    if (const std::shared_ptr<const Mesh> mesh = m.meshes.find(solid.shape.key)) views.back().shape = *mesh;
   });
   return views;
 }

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from importlib.metadata import distribution
@@ -52,6 +53,27 @@ def test_a_failed_step_names_itself_its_reason_place_and_remedy(
     assert 'The step "pouring the tea" failed' in shown.err and "exit code 3" in shown.err
     assert "From pour.log" in shown.err and "error: no such thing" in shown.err and "\n  42\n" not in shown.err
     assert shown.err.endswith("What to try: Boil it.\n")
+
+
+def test_a_step_beside_others_runs_while_they_do_and_its_failure_is_told_at_its_end(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    poured = threading.Event()
+
+    def boil(log: Path) -> None:
+        assert poured.wait(10), "the next step runs meanwhile"
+        raise builder.StepError("it is cold")
+
+    steps = [
+        builder.Step("boil", "boiling", boil, lambda: True, "Light the fire.", beside=True),
+        builder.Step("pour", "pouring", lambda log: poured.set(), lambda: True, ""),
+    ]
+    monkeypatch.setattr(builder, "steps_for", lambda goal, preset: steps)
+    assert builder.main() == 1
+    shown = capsys.readouterr()
+    lines = shown.out.splitlines()
+    assert lines[0] == "[1/2] boiling ... beside the next steps" and lines[1].startswith("[2/2] pouring ... ")
+    assert lines[2] == "[1/2] boiling ... failed" and 'The step "boiling" failed: it is cold.' in shown.err
 
 
 def test_a_missing_program_is_named(

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import os
 
+TRIES_ALL = bool(os.environ.get("IOTA_TEST_ALL"))  # as set by `make test-all`
+
 
 def sampled(everything: int) -> int:
-    """Where IOTA_TEST_ALL is set, as by `make test-all`, `everything`; else a tenth, with the same seeds from the first on."""
-    return everything if os.environ.get("IOTA_TEST_ALL") else everything // 10
+    """`everything` where all is tried; else a tenth, with the same seeds from the first on."""
+    return everything if TRIES_ALL else everything // 10

@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 from page_client import PageClient
+from pages import listen_for_complaints, needs_browser, open_page
 
 import iota
-from iota.film import browser
-from iota.film.browser import open_browser
 
 HALO = """
 const { page, three } = globalThis.iota;
@@ -32,19 +31,15 @@ def make_world() -> tuple[iota.World, iota.Particle]:
     return iota.World(system, title="halo", ground=None), ball
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_a_module_of_the_script_draws_in_the_page(tmp_path: Path) -> None:
-    pytest.importorskip("playwright.sync_api")
     (tmp_path / "halo.js").write_text(HALO)
     world, _ = make_world()
     world.pages.client_module(tmp_path / "halo.js")
     url = world.start(port=0)
     try:
-        with open_browser("tests") as chromium:
-            page = chromium.new_page(viewport={"width": 320, "height": 240})
-            complaints: list[str] = []
-            page.on("pageerror", lambda error: complaints.append(str(error)))
-            page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
+        with open_page() as page:
+            complaints = listen_for_complaints(page)
             page.goto(url)
             halo = "iota.page.viewer.scene.getObjectByName('halo')?.position.x"
             page.wait_for_function(f"() => globalThis.iota?.connected && {halo} > 0.2", timeout=60_000)

@@ -9,11 +9,10 @@ from typing import Any
 
 import pytest
 from page_client import PageClient
+from pages import needs_browser, open_page
 
 import iota
 from iota._protocol import NO_BODY
-from iota.film import browser
-from iota.film.browser import open_browser
 
 Runner = Callable[[iota.World], str]
 
@@ -61,9 +60,8 @@ iota.define("broken", { make: () => { throw new Error("no petals"); } });
 """
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_a_class_of_a_module_draws_is_framed_met_and_selected(tmp_path: Path) -> None:
-    pytest.importorskip("playwright.sync_api")
     (tmp_path / "plate.js").write_text(CLASS)
     system = iota.System(gravity=(0, 0, 0))
     ball = system.body(shape=iota.Sphere(0.05), mass=1.0, position=(0, 1, 0))
@@ -74,8 +72,7 @@ def test_a_class_of_a_module_draws_is_framed_met_and_selected(tmp_path: Path) ->
     world.drawings.custom("broken", at=ball)
     url = world.start(port=0)
     try:
-        with open_browser("tests") as chromium:
-            page = chromium.new_page(viewport={"width": 640, "height": 360})
+        with open_page(640, 360, draws=True) as page:
             page.goto(url)
             page.wait_for_function(
                 "() => globalThis.iota?.page.world.entities.custom.view?.count === 1", timeout=60_000

@@ -12,10 +12,10 @@ from urllib.request import urlopen
 
 import pytest
 from page_client import CONSTANTS, SCHEMA, PageClient, decode, encode
+from pages import listen_for_complaints, needs_browser, open_page
 from websockets.sync.client import connect
 
 from iota import studies
-from iota.film import browser
 from iota.gallery import serving
 from iota.gallery.serving import Gallery, make_folder
 
@@ -90,14 +90,10 @@ def test_every_study_has_a_thumbnail_and_a_line(gallery: Gallery) -> None:
     assert b"gallery" in urlopen(base).read() and b"canvas" in urlopen(base + "world.html").read()
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_a_click_leads_to_a_world_and_a_button_back(gallery: Gallery) -> None:
-    sync = pytest.importorskip("playwright.sync_api")
-    with sync.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
-        page = chromium.new_page(viewport={"width": 390, "height": 844})
-        complaints: list[str] = []
-        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    with open_page(390, 844) as page:
+        complaints = listen_for_complaints(page)
         page.goto(gallery.url)
         page.locator("a", has_text="chain").first.wait_for()
         assert page.evaluate(r"!/\d \p{L}/u.test(document.querySelector('main').innerText)"), "units stay with numbers"
@@ -105,6 +101,8 @@ def test_a_click_leads_to_a_world_and_a_button_back(gallery: Gallery) -> None:
         page.wait_for_function(
             "() => globalThis.iota?.connected && iota.bodies().length === 24 && iota.step > 0", timeout=60_000
         )
+        page.mouse.move(100, 100)  # controls that faded away since cannot be pressed
+        page.mouse.move(200, 200)
         page.locator("#studies").click()
         page.wait_for_function("() => document.querySelectorAll('main a').length > 8")
         page.wait_for_function(
@@ -112,4 +110,3 @@ def test_a_click_leads_to_a_world_and_a_button_back(gallery: Gallery) -> None:
         )
         assert page.evaluate("document.documentElement.scrollWidth") == 390
         assert complaints == []
-        chromium.close()

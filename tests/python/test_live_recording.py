@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 from page_client import PageClient, decode
+from pages import listen_for_complaints, needs_browser, open_page
 
 import iota
-from iota.film import browser
 from iota.film.stream import unpack
 from iota.world.recording import StreamFile
 
@@ -97,9 +97,8 @@ world.run()
 """
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_the_recording_of_a_killed_server_plays_up_to_its_end(tmp_path: Path) -> None:
-    sync = pytest.importorskip("playwright.sync_api")
     script, file, page_file = tmp_path / "mine.py", tmp_path / "mine.iota", tmp_path / "mine.html"
     script.write_text(SCRIPT)
     words = [sys.executable, "-m", "iota", "run", str(script), "--port", "0", "--no-open", "--record", str(file)]
@@ -125,16 +124,12 @@ def test_the_recording_of_a_killed_server_plays_up_to_its_end(tmp_path: Path) ->
         timeout=60,
     )
     assert done.returncode == 0 and "ends early" in done.stderr and done.stderr.count("\n") == 1
-    with sync.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
-        page = chromium.new_context(offline=True, viewport={"width": 320, "height": 240}).new_page()
-        complaints: list[str] = []
-        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    with open_page(offline=True) as page:
+        complaints = listen_for_complaints(page)
         page.goto(page_file.as_uri())
         page.wait_for_function("() => globalThis.iota?.connected && iota.bodyPosition(0)?.[0] > 0.6", timeout=60_000)
         page.wait_for_function("() => iota.page.world.clients.length === 1", timeout=60_000)
         assert complaints == []
-        chromium.close()
 
 
 def test_a_recording_that_does_not_fit_on_the_disk_ends_and_the_world_goes_on(tmp_path: Path) -> None:

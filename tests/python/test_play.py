@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pages import listen_for_complaints, needs_browser, open_page
 
-from iota.film import Film, browser
+from iota.film import Film
 from iota.film.files import Failed
 from iota.film.stream import pack, unpack, write_stream
 
@@ -62,9 +63,8 @@ def test_a_file_that_cannot_be_played_is_reported_in_one_line(tmp_path: Path) ->
     assert not (tmp_path / "page.html").exists()
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_the_page_shows_the_scene_of_any_time_without_a_server(tmp_path: Path) -> None:
-    sync = pytest.importorskip("playwright.sync_api")
     script = tmp_path / "ball.py"
     script.write_text(
         textwrap.dedent(f"""
@@ -87,16 +87,13 @@ def test_the_page_shows_the_scene_of_any_time_without_a_server(tmp_path: Path) -
         done = iota(*arguments)
         assert done.returncode == 0 and done.stderr == "", done.stderr
     assert {file.suffix for file in tmp_path.iterdir() if file.is_file()} == {".py", ".iota", ".html"}
-    with sync.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
-        for file in (page_file, direct):
-            look(chromium, file)
-        chromium.close()
+    for file in (page_file, direct):
+        with open_page(offline=True) as page:
+            look(page, file)
 
 
-@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+@needs_browser
 def test_the_page_says_that_it_lacks_drawings_by_code_of_the_script(tmp_path: Path) -> None:
-    sync = pytest.importorskip("playwright.sync_api")
     (tmp_path / "flower.js").write_text('iota.define("flower", { make: () => new iota.three.Group() });')
     script = """
         import iota
@@ -108,27 +105,21 @@ def test_the_page_says_that_it_lacks_drawings_by_code_of_the_script(tmp_path: Pa
             return world
         """
     own = f"world.pages.client_module({str(tmp_path / 'flower.js')!r}); world.drawings.custom('flower')"
-    with sync.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
+    with open_page() as page:
         for name, line, told in (("own", own, ["flower.js"]), ("usual", "pass", [])):
             (tmp_path / f"{name}.py").write_text(textwrap.dedent(script).format(own=line))
             file = tmp_path / f"{name}.html"
             done = iota("record", tmp_path / f"{name}.py", "-o", file, "--seconds", "0.2", "--size", "64x48")
             assert done.returncode == 0, done.stderr
-            page = chromium.new_page()
             page.goto(file.as_uri())
             page.wait_for_function("() => globalThis.iota?.connected && iota.bodies().length > 0", timeout=60_000)
             shown = page.locator(".note:visible").all_inner_texts()
             assert len(shown) == len(told) and all(word in text for word, text in zip(told, shown, strict=True))
-        chromium.close()
 
 
-def look(chromium: Any, file: Path) -> None:
+def look(page: Any, file: Path) -> None:
     """Sets the slider to some times, there and back, and compares."""
-    context = chromium.new_context(offline=True, viewport={"width": 320, "height": 240})
-    page = context.new_page()
-    complaints: list[str] = []
-    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    complaints = listen_for_complaints(page)
     page.on("request", lambda request: complaints.append(request.url) if request.url.startswith("http") else None)
     page.goto(file.as_uri())
     page.wait_for_function("() => globalThis.iota?.connected && iota.bodies().length > 0", timeout=60_000)
@@ -144,4 +135,3 @@ def look(chromium: Any, file: Path) -> None:
     page.wait_for_timeout(2500)  # longer than between two signs of life
     assert page.evaluate("iota.connected") and complaints == []
     assert file.stem == "played" or page.title() == "a <b>ball</b>"
-    context.close()

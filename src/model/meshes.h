@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/archive.h"
+
+#include <iota/shapes.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace iota::model {
+
+/// The triangles of meshes, each mesh once, under the key of its content (shape::Data::key). It is kept while a solid
+/// has it, and saved with the tables. Copies of a model share the triangles, which never change.
+class Meshes {
+ public:
+  /// One more solid has the mesh.
+  void add_use(std::uint64_t key, const Mesh& mesh);
+  void remove_use(std::uint64_t key);
+  /// Null for an unknown key; 0 is that of shapes that are no mesh.
+  std::shared_ptr<const Mesh> find(std::uint64_t key) const;
+
+  /// visit(key, mesh, number of solids), in the order of keys.
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (const auto& [key, used] : by_key_) visit(key, *used.mesh, used.uses);
+  }
+
+  void archive(Writer&);
+  void archive(Reader&);
+
+ private:
+  struct Used {
+    std::shared_ptr<const Mesh> mesh;
+    std::uint32_t uses = 0;
+  };
+  std::map<std::uint64_t, Used> by_key_;
+};
+
+/// Why a solid cannot have the mesh, empty if it can: an index without a vertex, a key that is not of its content.
+std::string complaint_about(std::uint64_t key, const Mesh& mesh);
+
+}  // namespace iota::model
