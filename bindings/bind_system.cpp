@@ -260,7 +260,7 @@ void bind_time(nb::class_<SystemObject>& type) {
             const Snapshot snapshot = self.use_between_steps("snapshot").snapshot();
             return nb::bytes(snapshot.bytes.data(), snapshot.bytes.size());
           },
-          "The whole system in bytes, except functions of the script (of bonds, laws, fields, surfaces) and meshes.")
+          "The whole system in bytes, except functions of the script (of bonds, laws, fields, surfaces).")
       .def(
           "restore",
           [](SystemObject& self, const nb::bytes& data) {
@@ -268,7 +268,7 @@ void bind_time(nb::class_<SystemObject>& type) {
             self.use_between_steps("restore").restore(Snapshot{{bytes, bytes + data.size()}});
           },
           "snapshot"_a,
-          "Restores a snapshot; handles from then are valid again. Functions of the script and meshes stay those of\n"
+          "Restores a snapshot; handles from then are valid again. Functions of the script stay those of\n"
           "this system. Raises ValueError for bytes that are not a snapshot, or whose tables are inconsistent; the\n"
           "system is then unchanged.")
       .def(

@@ -164,7 +164,7 @@ class System {
   std::vector<IslandReport> islands() const;
   std::uint32_t structure_version() const;
   Snapshot snapshot() const;
-  /// Keeps the functions and meshes of this system. Throws std::invalid_argument for bytes that are not a snapshot or
+  /// Keeps the functions of this system. Throws std::invalid_argument for bytes that are not a snapshot or
   /// whose tables are inconsistent, even with a correct checksum; the system is then unchanged.
   void restore(const Snapshot&);
   std::uint64_t state_hash() const;

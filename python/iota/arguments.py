@@ -116,7 +116,7 @@ def refuse_reading(thing: object, name: str, elsewhere: Mapping[str, str] = Mapp
 
 
 def near_attribute(name: str, names: Iterable[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Where an attribute is, or a near one."""
+    """The place of an attribute, or of a near one."""
     if name in elsewhere:
         return f": it is {elsewhere[name]}"
     return "" if name[:1] == "_" else suggestion(name, list(names), elsewhere)

@@ -643,7 +643,8 @@ bool tell_overload(const Model& model, std::uint32_t slot, Outcome& outcome) {
   return true;
 }
 
-/// What began or ceased to carry a load since it was last told. `carries`: what will carry one after this step's edits.
+/// Tells the stops that began or ceased to carry a load since they were last told. `carries`: those that will carry one
+/// after this step's edits.
 void tell_stops(Model& model, std::uint32_t slot, Constraint::Bits carries, Outcome& outcome) {
   Constraint& c = model.constraints[slot];
   if (carries.bits == c.told.bits) return;

@@ -79,7 +79,7 @@ void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
 
 namespace {
 
-/// Of a pinned ring.
+/// Whether a pinned ring moves.
 bool is_moved(const Model& model, std::uint32_t slot, const Nail& nail) {
   const model::Ring& ring = model.rings[slot];
   return (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};

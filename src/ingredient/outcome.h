@@ -12,7 +12,7 @@ class Model;
 
 namespace iota::ingredient {
 
-/// What a step has led to: the answers of all ingredients to one question, by the loads and ages at the end of the step
+/// The outcome of a step: the answers of all ingredients to one question, by the loads and ages at the end of the step
 /// and before any edit. The step then makes the edits, in the order of these lists.
 struct Outcome {
   std::vector<ConstraintId> failed;  ///< the function of a surface has failed: to be switched off

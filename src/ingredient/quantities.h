@@ -23,7 +23,7 @@ double worst_gap(const Scope&);
 inline double worst_gap(const model::Model& model) { return worst_gap(Scope(model)); }
 double worst_gap(const model::Model&, std::span<const std::uint32_t> bodies);
 
-/// What a step reports of a part of the model.
+/// A step reports this of a part of the model.
 struct Book {
   Energies energies;
   double worst_gap = 0;  ///< m

@@ -27,7 +27,7 @@ class FreeParticles {
   }
   std::uint32_t resting() const { return resting_; }  ///< number of resting ones in the last step
 
-  /// Those that rested when the last step began: it did not look at them. visit(body)
+  /// visit(body): of the particles that rested when the last step began; it did not look at them.
   std::uint32_t still() const { return static_cast<std::uint32_t>(still_.size()); }
   template <class Visit>
   void for_each_still(Visit visit) const {

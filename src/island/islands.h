@@ -23,7 +23,7 @@ class Islands {
   void renew();
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
-  /// Those of them that are not still: a step costs what moves, not what rests.
+  /// The islands that are not still: a step costs what moves, not what rests.
   std::span<Island* const> awake(const model::Model&);
   /// Number of awake islands of a task: all if threads would not be faster.
   std::size_t grain(const Parallel&) const;
@@ -35,8 +35,8 @@ class Islands {
   /// Bodies that sleep, free particles included, in the latest step.
   std::uint32_t resting(const model::Model&) const;
 
-  /// Of the model. If most bodies are still, each island of them is measured only once. After edits, which may change
-  /// what is still, all are measured anew.
+  /// The quantities of the model. If most bodies are still, each island of them is measured only once. After edits,
+  /// which may change what is still, all are measured anew.
   ingredient::Book book(const model::Model&);
   /// Null for a free particle.
   Island* of_articulate(std::uint32_t articulate) const {

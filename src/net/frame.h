@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes over the wire to clients.
+// A message as it goes over the wire to clients.
 #pragma once
 
 #include <iota_protocol.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What users of a World can do by keys, buttons and the page's panel, and what they read there."""
+"""The keys, buttons, sliders and plots that a World gives its users."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Controls(Part):
 
     @property
     def actions(self) -> list[Action]:
-        """What users can do, in the order of creation."""
+        """All actions, in the order of creation."""
         return list(self._actions)
 
     def act(self, name: str, body: Body | None = None) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of a `World` have in common, and how a world forwards calls to them."""
+"""The base of the parts of a `World`, and how a world forwards calls to them."""
 
 from __future__ import annotations
 

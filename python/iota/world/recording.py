@@ -68,7 +68,7 @@ class StreamFile:
 
 
 class LiveRecording:
-    """What pages show of a running world, with what its users do, written to a file: made by `Pages.record`.
+    """A file of what pages show of a running world, with what its users do: made by `Pages.record`.
 
     path: of the file. error: why writing ended early, or None."""
 

@@ -114,7 +114,7 @@ class Scene(Part):
 
     @property
     def statics(self) -> Sequence[Static]:
-        """What `add_static` and `add_strut` returned, in the order of creation."""
+        """The results of `add_static` and `add_strut`, in the order of creation."""
         return self._statics
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the loop of a world, its parts and its pages share."""
+"""The state that the loop of a world, its parts and its pages share."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What bodies are drawn with: the visuals given by the script, as sent to pages."""
+"""The visuals that the script gives to bodies, as sent to pages."""
 
 from __future__ import annotations
 

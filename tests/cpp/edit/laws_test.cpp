@@ -11,14 +11,14 @@
 namespace iota {
 namespace {
 
-struct TwoPoints {
+struct PairOnX {
   System system{SystemOptions{.gravity = {}}};
   ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0});
   ParticleId q = system.particles().create(system.bodies().create(), {3, 0, 0});
 };
 
 TEST(Law, is_destroyed_only_when_nothing_uses_it) {
-  TwoPoints two;
+  PairOnX two;
   const LawId law = two.system.laws().create("energy = k * r^2", {"square", {{"k", 3}}});
   const BondId bond = two.system.bonds().create(two.p, two.q, SharedLaw{law, {}, true});
   const PairsId pairs = two.system.pairs().create({law, {}, {}}, {.cutoff = 2});

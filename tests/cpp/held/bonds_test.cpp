@@ -24,13 +24,13 @@ BatchFunction batch_spring() {
 }
 
 /// A lattice of bonded particles, stretched a little, that rings without chaos.
-struct Mesh {
+struct BondMesh {
   System system;
   std::vector<ParticleId> particles;
   std::vector<BondId> bonds;
 
   template <class Bond>
-  Mesh(IntegrationMode mode, Bond bond) : system(SystemOptions{.gravity = {0, -1, 0}, .mode = mode}) {
+  BondMesh(IntegrationMode mode, Bond bond) : system(SystemOptions{.gravity = {0, -1, 0}, .mode = mode}) {
     constexpr int n = 4;
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
@@ -58,7 +58,7 @@ TEST(Law, is_the_same_force_on_all_ways_of_writing_it) {
     std::vector<std::vector<double>> ends;
     for (std::size_t way = 0; way <= ways.size(); ++way) {
       std::optional<LawId> law;
-      Mesh mesh(mode, [&](System& s, ParticleId p, ParticleId q) {
+      BondMesh mesh(mode, [&](System& s, ParticleId p, ParticleId q) {
         if (way == ways.size())
           return s.bonds().create(p, q,
                                   ScriptedLaw{[](const BondState& b) {
@@ -90,7 +90,7 @@ TEST(Law, written_as_an_energy_is_solved_like_the_built_in_spring) {
     std::vector<std::vector<double>> ends;
     for (const bool written : {false, true}) {
       std::optional<LawId> law;
-      Mesh mesh(mode, [&](System& s, ParticleId p, ParticleId q) {
+      BondMesh mesh(mode, [&](System& s, ParticleId p, ParticleId q) {
         if (!written) return s.bonds().create(p, q, SpringLaw{300, 0.5, 0.1});
         if (!law)
           law = s.laws().create("energy = 0.5*k*(r - r0)^2; force = -c*v", {"", {{"k", 300}, {"r0", 0.1}, {"c", 0.5}}});

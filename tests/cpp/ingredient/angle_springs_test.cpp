@@ -14,7 +14,7 @@
 namespace iota {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Three single particles without gravity: the middle one at the origin, the last one along x.
 struct Bent {

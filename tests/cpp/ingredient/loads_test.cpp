@@ -75,10 +75,10 @@ struct Contraption {
   }
 };
 
-constexpr double h = 1.0 / 240;
+constexpr double load_step = 1.0 / 240;
 
 /// The largest difference between the load from outside and the change of momenta, over the forces that the solver balances:
-/// 2 kg by 1 m / h^2. It stops at 1e-9 of those (the mid-point rule at 1e-10).
+/// 2 kg by 1 m / load_step^2. It stops at 1e-9 of those (the mid-point rule at 1e-10).
 double calc_worst_imbalance(const Contraption& c) {
   double worst = 0;
   for (const BodyId body : c.bodies) {
@@ -86,12 +86,12 @@ double calc_worst_imbalance(const Contraption& c) {
     worst = std::max(
         {worst, norm(force - c.system.bodies().net_force(body)), norm(torque - c.system.bodies().net_torque(body))});
   }
-  return worst / (2 / (h * h));
+  return worst / (2 / (load_step * load_step));
 }
 
 StepReport push_and_step(Contraption& c) {
   for (const ParticleId p : c.free_ends) c.system.particles().apply_force(p, {1, -2, 0.5});
-  return c.system.step(h);
+  return c.system.step(load_step);
 }
 
 TEST(Loads, from_outside_are_mass_times_acceleration) {

@@ -15,8 +15,6 @@
 namespace iota::solver {
 namespace {
 
-constexpr double h = 0.01;
-
 /// Beads of different masses on a line, in free flight, each of which may not pass its own stop, nor come nearer to the
 /// next one than a gap: a quadratic program
 ///   min sum m_i (x_i - free_i)^2 / 2   with   x_i >= stop_i,   x_{i+1} - x_i >= gap_i.

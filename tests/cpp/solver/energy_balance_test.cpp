@@ -9,7 +9,7 @@
 namespace iota::solver {
 namespace {
 
-constexpr double h = 0.01, mass = 2;
+constexpr double mass = 2;
 
 /// A ball that is thrown up.
 struct Throw {

@@ -16,8 +16,6 @@
 namespace iota::solver {
 namespace {
 
-constexpr double h = 0.02;
-
 NewtonReport solve(Newton& newton, Problem& problem, const Stage& stage) {
   newton.compile(problem);
   std::fill(newton.displacement().begin(), newton.displacement().end(), Vec3{});

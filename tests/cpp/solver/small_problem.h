@@ -10,6 +10,9 @@
 
 namespace iota::solver {
 
+/// The step, s.
+constexpr double h = 0.01;
+
 template <class C>
 ConstraintPool<C>& pool(Problem& problem) {
   return problem.pool_of<C>();

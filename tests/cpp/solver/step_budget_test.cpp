@@ -89,7 +89,7 @@ TEST(StepCost, of_cloth_that_buckles_is_below_a_hundred_iterations) {
     for (std::uint32_t j = 0; j < side; ++j) (void)add_point(problem, {1.0 * i / side, 2, 1.0 * j / side}, 1e-3);
   for (std::uint32_t i = 0; i < side; ++i)
     for (std::uint32_t j = 0; j < side; ++j)
-      for (const auto [x, y] : {std::pair{i + 1, j}, {i, j + 1}, {i + 1, j + 1}})
+      for (const auto& [x, y] : {std::pair{i + 1, j}, {i, j + 1}, {i + 1, j + 1}})
         if (x < side && y < side) {
           const std::uint32_t p = side * i + j, q = side * x + y;
           add_spring(problem, p, q, 1e4, norm(problem.position[q] - problem.position[p]));

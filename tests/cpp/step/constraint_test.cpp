@@ -13,7 +13,7 @@
 namespace iota {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its center.
 BodyId make_block(System& system, const Vec3& center, const Vec3& size, double mass, const Vec3& velocity = {}) {
   const BodyId body = system.bodies().create();
