@@ -4,6 +4,8 @@
 #include "ingredient/tables.h"
 #include "model/restructure.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -17,4 +17,11 @@ struct ParticleAttributes {
   Color color{1, 1, 1, 1};
 };
 
+/// Look of an emitted particle at one point of its life.
+struct AttributeKey {
+  double life = 0;    ///< 0 birth, 1 death
+  double radius = 0;  ///< m
+  Color color{1, 1, 1, 1};
+};
+
 }  // namespace iota

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iota/ids.h>
+#include <iota/options.h>
 #include <iota/shapes.h>
 #include <iota/vec3.h>
 #include <iota/view.h>
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace iota {
-
-enum class BodyKind : std::uint8_t {
-  dynamic,
-  static_,   ///< never moves
-  scripted,  ///< moved by the script (set_position, set_pose), infinite mass
-  inactive,  ///< kept, but neither stepped nor drawn
-  resting,   ///< dynamic, asleep with its whole articulate; wakes when touched, see RestOptions
-};
 
 struct BodyOptions {
   BodyKind kind = BodyKind::dynamic;

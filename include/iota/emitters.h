@@ -12,13 +12,6 @@
 
 namespace iota {
 
-/// Look of an emitted particle at one point of its life.
-struct AttributeKey {
-  double life = 0;    ///< 0 birth, 1 death
-  double radius = 0;  ///< m
-  Color color{1, 1, 1, 1};
-};
-
 /// A source of particles (Reeves 1983): each is a dynamic body of its own, and is destroyed at the end of its lifetime.
 struct EmitterOptions {
   double rate = 10;  ///< births a second

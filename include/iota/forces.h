@@ -16,8 +16,6 @@
 /// Laws of force and their uses. `docs/forces.md` lists the cost of each way to write a law.
 namespace iota {
 
-using LawId = Id<"law">;
-
 inline constexpr int max_law_parameters = 8;
 
 /// A NaN value means the distance of the two ends when the bond is made.
@@ -90,10 +88,6 @@ struct SharedLaw {
 };
 
 using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw, SharedLaw>;
-
-using GroupId = Id<"group">;
-using FieldId = Id<"field">;
-using PairsId = Id<"pairwise force">;
 
 inline constexpr int max_field_parameters = 12;
 inline constexpr int max_groups = 32;

@@ -41,5 +41,9 @@ using AngleSpringId = Id<"angle spring">;
 using EmitterId = Id<"emitter">;
 using GripId = Id<"grip">;
 using ConstraintId = Id<"constraint">;
+using LawId = Id<"law">;
+using FieldId = Id<"field">;
+using PairsId = Id<"pairwise force">;
+using GroupId = Id<"group">;
 
 }  // namespace iota

@@ -4,6 +4,7 @@
 #include <iota/constraints.h>
 #include <iota/ids.h>
 #include <iota/vec3.h>
+#include <iota/view_event.h>
 
 #include <cstdint>
 #include <optional>
@@ -45,13 +46,6 @@ struct StopEvent {
   ConstraintId constraint;
   std::optional<JointCoordinate> coordinate;  ///< whose stop; unset: the constraint itself
   Vec3 position;                              ///< where it acts on a, m
-};
-
-/// An event that a viewer shows for a moment, and its place.
-struct ViewEvent {
-  enum class Kind : std::uint8_t { join, break_ };
-  Kind kind = Kind::join;
-  Vec3 position;  ///< m
 };
 
 /// The result of one structural edit.

@@ -15,7 +15,7 @@
 /// frame of a body is that of its pose.
 namespace iota {
 
-enum class BodyKind : std::uint8_t;  // of bodies.h
+enum class BodyKind : std::uint8_t;  // of options.h
 
 /// A solid of a body.
 struct DrawnSolid {

@@ -14,6 +14,7 @@
 #include <iota/joints.h>
 #include <iota/laws.h>
 #include <iota/many.h>
+#include <iota/options.h>
 #include <iota/particles.h>
 #include <iota/record.h>
 #include <iota/reports.h>
@@ -31,40 +32,6 @@
 /// Iota: worlds of particles, bonds and exactly jointed rigid bodies that can be restructured while they run.
 /// SI units; world frame right-handed, y up.
 namespace iota {
-
-/// Modes from plausible to accurate; can be changed at any time. docs/solver.md lists cost and accuracy of each.
-enum class IntegrationMode : std::uint8_t {
-  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for distant things
-  robust,          ///< backward Euler: never fails, never gains energy, dissipates
-  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` if a step fails
-  accurate,        ///< fifth order, in sub-steps whose estimated errors stay below the tolerance
-};
-
-/// Articulates tied by bonds and constraints fall asleep together when no particle of them has been faster than `speed`
-/// for `after` seconds: they are then `resting`, do not move, and are not solved. An edit, an assigned velocity, a
-/// grip, an applied force (that of a scripted bond too), a moving nail or another gravity wakes them.
-struct RestOptions {
-  double after = 0;     ///< s; 0: never
-  double speed = 0.01;  ///< m/s
-};
-
-/// A limit of the work of a step, for worlds that must keep their pace. An island whose budget ends before its solution
-/// takes the last resort (docs/solver.md): its points move on and stay together as well as possible; the next step closes
-/// the gaps. StepReport::cut_short counts such islands, and `islands` names them.
-struct StepBudget {
-  int iterations = 0;  ///< of Newton's method, of each island: repeatable; 0: unlimited
-  double seconds = 0;  ///< of real time, of the whole step: not repeatable; 0: unlimited. Looked at between solves
-};
-
-struct SystemOptions {
-  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
-  IntegrationMode mode = IntegrationMode::energy_keeping;
-  double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
-  int threads = 0;     ///< used by a step, 0: one per core. Results are the same bits for any number
-  RestOptions rest;
-  double tolerance = 1e-4;  ///< see System::tolerance
-  StepBudget budget;
-};
 
 /// A world, sorted by noun: `system.bodies().mass(id)`. Functions throw std::invalid_argument for bad numbers and
 /// StaleIdError for ids of destroyed objects, before any change. A system is used from one thread at a time.

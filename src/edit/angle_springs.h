@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/angle_springs.h>
+
 namespace iota::edit {
 
 struct CreateAngleSpring {

@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/bodies.h>
+
 /// Commands that make, move, switch and destroy bodies.
 namespace iota::edit {
 

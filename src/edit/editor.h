@@ -9,8 +9,6 @@
 #include "island/islands.h"
 #include "read/orientations.h"
 
-#include <iota/system.h>
-
 #include <array>
 #include <map>
 #include <string>

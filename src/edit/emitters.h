@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/emitters.h>
+
 namespace iota::edit {
 
 struct CreateEmitter {

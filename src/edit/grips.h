@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/grips.h>
+
 namespace iota::edit {
 
 struct CreateGrip {

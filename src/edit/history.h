@@ -3,7 +3,8 @@
 
 #include "ingredient/model.h"
 
-#include <iota/system.h>
+#include <iota/record.h>
+#include <iota/reports.h>
 
 #include <deque>
 

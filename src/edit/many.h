@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/many.h>
+
 namespace iota {
 
 template <>

@@ -6,6 +6,8 @@
 #include "ingredient/row_loads.h"
 #include "laws/pair_laws.h"
 
+#include <iota/scene.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>

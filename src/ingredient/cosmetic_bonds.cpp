@@ -4,6 +4,9 @@
 #include "ingredient/model.h"
 #include "math/mat3.h"
 
+#include <iota/reports.h>
+#include <iota/scene.h>
+
 namespace iota::ingredient {
 
 namespace {

@@ -6,6 +6,8 @@
 #include "math/mat3.h"
 #include "shape/traits.h"
 
+#include <iota/scene.h>
+
 #include <algorithm>
 
 namespace iota::ingredient {

@@ -4,7 +4,7 @@
 #include "ingredient/ingredient.h"
 #include "shape/shape.h"
 
-#include <iota/emitters.h>
+#include <iota/attributes.h>
 
 #include <array>
 

@@ -17,6 +17,11 @@
 #include <type_traits>
 #include <vector>
 
+namespace iota {
+struct DrawnBody;
+struct SceneChanges;
+}  // namespace iota
+
 namespace iota::ingredient {
 
 using model::Structure;

@@ -9,6 +9,8 @@
 #include "model/restructure.h"
 #include "solver/largest.h"
 
+#include <iota/scene.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "ingredient/ingredient_list.h"
 #include "model/structure.h"
 
-#include <iota/system.h>
+#include <iota/options.h>
 
 #include <array>
 #include <cstdint>

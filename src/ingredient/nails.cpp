@@ -7,6 +7,8 @@
 #include "model/nailed.h"
 #include "solver/largest.h"
 
+#include <iota/scene.h>
+
 namespace iota::ingredient {
 
 namespace {

@@ -4,6 +4,8 @@
 #include "ingredient/model.h"
 #include "math/mat3.h"
 
+#include <iota/scene.h>
+
 namespace iota::ingredient {
 
 SceneView::SceneView(const model::Model& model, bool whole) : model(model), structure_(model), whole_(whole) {}

@@ -3,11 +3,13 @@
 
 #include "model/structure.h"
 
-#include <iota/scene.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
+
+namespace iota {
+struct Anchor;
+}
 
 namespace iota::ingredient {
 

@@ -3,6 +3,8 @@
 #include "base/text.h"
 #include "island/island.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <cmath>
 

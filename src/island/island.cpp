@@ -3,6 +3,8 @@
 
 #include "solver/integrator.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>

@@ -14,6 +14,11 @@
 #include <string>
 #include <vector>
 
+namespace iota {
+struct Diagnosis;
+struct IslandReport;
+}  // namespace iota
+
 namespace iota::solver {
 class Integrator;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <iota/emitters.h>
+#include <iota/attributes.h>
+#include <iota/vec3.h>
 
 #include <array>
 #include <cstdint>

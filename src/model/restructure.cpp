@@ -2,6 +2,8 @@
 #include "model/restructure.h"
 #include "model/solid.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>

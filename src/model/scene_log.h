@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <iota/scene.h>
+#include <iota/view_event.h>
 
 #include <cstdint>
 #include <utility>

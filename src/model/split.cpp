@@ -2,6 +2,8 @@
 // Splits of rigid bodies. Nothing moves: positions and velocities belong to rings, so momenta are kept.
 #include "model/restructure.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <numeric>
 #include <set>

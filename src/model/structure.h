@@ -12,7 +12,8 @@
 #include "model/scene_log.h"
 #include "shape/shape.h"
 
-#include <iota/system.h>
+#include <iota/ids.h>
+#include <iota/options.h>
 
 #include <array>
 #include <cstdint>
@@ -20,6 +21,10 @@
 #include <map>
 #include <span>
 #include <vector>
+
+namespace iota {
+struct RestructureReport;
+}
 
 namespace iota::model {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/joint_pose.h"
 
+#include <iota/system.h>
+
 #include <gtest/gtest.h>
 
 #include <array>

@@ -4,6 +4,8 @@
 #include "ingredient/model.h"
 #include "ingredient/tables.h"
 
+#include <iota/system.h>
+
 #include <cstddef>
 #include <span>
 #include <stdexcept>

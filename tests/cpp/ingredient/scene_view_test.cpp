@@ -3,6 +3,8 @@
 
 #include "tests/cpp/model/small_model.h"
 
+#include <iota/scene.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -5,6 +5,8 @@
 #include "ingredient/model.h"
 #include "model/restructure.h"
 
+#include <iota/reports.h>
+
 #include <initializer_list>
 #include <vector>
 

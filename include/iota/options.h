@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings of systems and the kinds of bodies: what the engine's own data need of the public interface.
+#pragma once
+
+#include <iota/vec3.h>
+
+#include <cstdint>
+
+namespace iota {
+
+enum class BodyKind : std::uint8_t {
+  dynamic,
+  static_,   ///< never moves
+  scripted,  ///< moved by the script (set_position, set_pose), infinite mass
+  inactive,  ///< kept, but neither stepped nor drawn
+  resting,   ///< dynamic, asleep with its whole articulate; wakes when touched, see RestOptions
+};
+
+/// Modes from plausible to accurate; can be changed at any time. docs/solver.md lists cost and accuracy of each.
+enum class IntegrationMode : std::uint8_t {
+  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for distant things
+  robust,          ///< backward Euler: never fails, never gains energy, dissipates
+  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` if a step fails
+  accurate,        ///< fifth order, in sub-steps whose estimated errors stay below the tolerance
+};
+
+/// Articulates tied by bonds and constraints fall asleep together when no particle of them has been faster than `speed`
+/// for `after` seconds: they are then `resting`, do not move, and are not solved. An edit, an assigned velocity, a
+/// grip, an applied force (that of a scripted bond too), a moving nail or another gravity wakes them.
+struct RestOptions {
+  double after = 0;     ///< s; 0: never
+  double speed = 0.01;  ///< m/s
+};
+
+/// A limit of the work of a step, for worlds that must keep their pace. An island whose budget ends before its solution
+/// takes the last resort (docs/solver.md): its points move on and stay together as well as possible; the next step closes
+/// the gaps. StepReport::cut_short counts such islands, and `islands` names them.
+struct StepBudget {
+  int iterations = 0;  ///< of Newton's method, of each island: repeatable; 0: unlimited
+  double seconds = 0;  ///< of real time, of the whole step: not repeatable; 0: unlimited. Looked at between solves
+};
+
+struct SystemOptions {
+  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
+  IntegrationMode mode = IntegrationMode::energy_keeping;
+  double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
+  int threads = 0;     ///< used by a step, 0: one per core. Results are the same bits for any number
+  RestOptions rest;
+  double tolerance = 1e-4;  ///< see System::tolerance
+  StepBudget budget;
+};
+
+}  // namespace iota
