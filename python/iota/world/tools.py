@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Predefined interaction: break, join, copy, undo, redo, measure; sockets that plugs snap into; forces as arrows."""
+"""Predefined interaction: break, join, copy, undo, redo, measure; sockets for plugs; forces as arrows, joints as lines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
 from typing import Any
 
-from iota._core import Body, Bond, Particle, System, Vec3
+from iota._core import Body, Bond, Constraint, Particle, System, Vec3
 from iota.world.clients import alive
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
@@ -18,6 +18,7 @@ from iota.world.events import Events
 from iota.world.ghosts import Ghost
 from iota.world.history import History
 from iota.world.joining import Joins, hinge_above, nearest_ends
+from iota.world.joint_marks import JointMarks
 from iota.world.parts import Part
 from iota.world.scene import Scene
 from iota.world.shown import Arrow, Label, Line
@@ -95,6 +96,18 @@ class Tools(Part):
         forces = world.tools.show_forces()
         """
         return Forces(self._system, self._drawings, self._events, bodies, scale)
+
+    def show_joints(self, joints: Iterable[Constraint] | None = None, length: float | None = None) -> JointMarks:
+        """Lines for joints (None: all): the axis (blue), stops as an arc or a track (red), the present value (amber). Ropes,
+        rods and couplings have none. length: of an axis, m; None: a tenth of the scene. `marks.destroy()` removes
+        them.
+
+        marks = world.tools.show_joints()
+        """
+        if length is not None and not 0 < length < math.inf:
+            raise ValueError(f"length must be a finite number above 0 m, not {length}")
+        length = (_size(self._system) or 1.0) / 10 if length is None else length
+        return JointMarks(self._system, self._drawings, self._events, joints, length)
 
     def show_articulates(self) -> Articulates:
         """Colors bodies by the articulate that they are in: those that hinges connect have one color, another after a break or
