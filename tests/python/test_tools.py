@@ -44,6 +44,14 @@ def test_join_finds_the_nearest_loose_ends(chain: list[iota.Body]) -> None:
     assert nearest_ends(chain[1]) == (chain[3].particles[0], chain[2].particles[1])
 
 
+def test_a_nailed_end_is_not_joined(chain: list[iota.Body]) -> None:
+    link = chain[0].system.body()
+    near = chain[0].particles[0].position + (0.01, 0, 0)  # beside the nail
+    ends = [link.particle(near), link.particle(near + (1, 0, 0))]
+    lowest = chain[-1].particles[1]
+    assert nearest_ends(link) == (lowest, min(ends, key=lambda end: abs(end.position - lowest.position)))
+
+
 def test_solids_are_joined_at_their_attachments_not_at_their_own_points(system: iota.System) -> None:
     balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(x, 0, 0)) for x in (0, 1)]
     assert nearest_ends(balls[0]) is None
