@@ -11,6 +11,15 @@ namespace iota::solver {
 
 namespace {
 
+struct Bounds {
+  double lower, upper;
+};
+
+Bounds bounds_of(const RowLaw& law, const Stage& stage) {
+  if (stage.is_projection()) return {law.lower_impulse(), law.upper_impulse()};
+  return {law.lower, law.upper};
+}
+
 /// Whether velocities differ from the rate of a hold row by more than the curvature of its coordinate explains within a
 /// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
 template <class C>
@@ -42,7 +51,7 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
       for (int r = 0; r < C::rows; ++r) {
         const Bounds bounds = bounds_of(law[r], stage);
         double& lambda = pool.multiplier(k)[r];
-        RowState& state = pool.states[k * C::rows + r];
+        RowStates::Row& state = pool.states.rows_[k * C::rows + r];
         state.start = g[r];
         state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
         if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
@@ -56,7 +65,8 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
 int ActiveSet::count_met(const Problem& problem) {
   int count = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const RowState& state : pool.states) count += state.side == 0 && (state.side_before != 0 || state.off_speed);
+    for (const RowStates::Row& state : pool.states.rows_)
+      count += state.side == 0 && (state.side_before != 0 || state.off_speed);
   });
   return count;
 }
@@ -71,7 +81,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
       const RowLaw* const law = pool.law(k);
-      RowState* const states = pool.states.data() + k * C::rows;
+      RowStates::Row* const states = pool.states.rows_.data() + k * C::rows;
       double* const lambda = pool.multiplier(k);
       bool any = false, any_free = false;
       for (int r = 0; r < C::rows; ++r) {
@@ -93,9 +103,9 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
       }
       for (int r = 0; r < C::rows; ++r) {
         const Bounds bounds = bounds_of(law[r], stage);
-        RowState& state = states[r];
+        RowStates::Row& state = states[r];
         if (bounds.lower == bounds.upper) continue;
-        const RowEquation equation = equation_of(law[r], state, g[r], stage);
+        const RowEquation equation = equation_of(pool, k, r, g[r], stage);
         const double open = equation.value - equation.softness * lambda[r];
         const double little = stage.tolerance * c.reference_length();
         int side = state.side;
@@ -129,7 +139,7 @@ void ActiveSet::begin_impulses(Problem& problem) {
       pool.value(k, problem.position.data(), 0, g);
       for (int r = 0; r < C::rows; ++r) {
         const RowLaw& law = pool.law(k)[r];
-        RowState& state = pool.states[k * C::rows + r];
+        RowStates::Row& state = pool.states.rows_[k * C::rows + r];
         const double touching = closed_gap * pool.items[k].reference_length();
         const bool pulls = law.upper_impulse() > 0 && g[r] > -touching;
         const bool pushes = law.lower_impulse() < 0 && g[r] < touching;
@@ -142,7 +152,7 @@ void ActiveSet::begin_impulses(Problem& problem) {
 void ActiveSet::begin_impulses_after_step(Problem& problem) {
   problem.for_each_constraint_pool([](auto& pool) {
     for (std::size_t row = 0; row < pool.laws.size(); ++row)
-      if (pool.laws[row].is_compliant()) pool.states[row].side = 1;
+      if (pool.laws[row].is_compliant()) pool.states.rows_[row].side = 1;
   });
 }
 
@@ -150,11 +160,12 @@ bool ActiveSet::release_impulses(Problem& problem, std::span<const double> impul
   bool released = false;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
-    for (std::size_t row = 0; row < pool.states.size(); ++row) {
+    for (std::size_t row = 0; row < pool.laws.size(); ++row) {
       const double impulse = impulses[pool.slots[row / C::rows].unknown + row % C::rows];
       const RowLaw& law = pool.laws[row];
-      if (pool.states[row].side != 0 || (impulse >= law.lower_impulse() && impulse <= law.upper_impulse())) continue;
-      pool.states[row].side = 1, released = true;
+      RowStates::Row& state = pool.states.rows_[row];
+      if (state.side != 0 || (impulse >= law.lower_impulse() && impulse <= law.upper_impulse())) continue;
+      state.side = 1, released = true;
     }
   });
   return released;

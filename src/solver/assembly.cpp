@@ -150,14 +150,14 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     for (int r = 0; r < C::rows; ++r) {
       double value, gap = g[r];
       if constexpr (Laws) {
-        const RowState& state = pool.states[k * C::rows + r];
-        const RowEquation equation = equation_of(pool.law(k)[r], state, g[r], stage);
-        if (state.side != 0)
+        const bool is_equation = pool.is_equation(k, r);
+        const RowEquation equation = equation_of(pool, k, r, g[r], stage);
+        if (!is_equation)
           value = gap = 0;
         else
           value = equation.value - (equation.softness + compliances[r] * give) * lambda[r];
         if (equation.softness > 0) gap = 0;
-        if (pool.law(k)[r].hold && state.side == 0) gap = equation.value;
+        if (pool.law(k)[r].hold && is_equation) gap = equation.value;
       } else {
         value = g[r] - compliance * lambda[r];
       }
@@ -209,7 +209,7 @@ Strain Assembly::strain_released(const Problem& problem, const Stage& stage, con
       }
       for (int r = 0; r < C::rows; ++r, ++lambda) {
         const bool is_soft = pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold ||
-                                                 pool.states[k * C::rows + r].side != 0);
+                                                 !pool.is_equation(k, r));
         if (is_soft) continue;
         const double compliance = give * mobility[r] + 1e-300;
         const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;
@@ -268,9 +268,8 @@ void Assembly::load_rates(const Problem& problem) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       double* const row = unknowns_.data() + pool.slots[k].unknown;
       calc_bends(pool.items[k], x, v, row);
-      if (pool.has_laws())
-        for (int r = 0; r < C::rows; ++r)
-          if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
+      for (int r = 0; r < C::rows; ++r)
+        if (!pool.is_equation(k, r)) row[r] = 0;
     }
   });
 }
@@ -389,7 +388,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       const auto& slot = slots.gradients[i];
       for (int r = 0; r < C::rows; ++r) {
         if constexpr (Laws)
-          if (pool.states[k * C::rows + r].side != 0) continue;
+          if (!pool.is_equation(k, r)) continue;
         const Vec3& in_row = rows[r];
         const Vec3& in_column = Midpoint ? directions[r] : rows[r];
         const Vec3& below = slot.lower_is_row ? in_row : in_column;
@@ -406,9 +405,8 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
     for (int r = 0; r < C::rows; ++r) {
       double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
       if constexpr (Laws) {
-        const RowState& state = pool.states[k * C::rows + r];
         diagonal =
-            state.side != 0 ? -1 : -compliances[r] * give - equation_of(pool.law(k)[r], state, 0, stage).softness;
+            pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, 0, stage).softness : -1;
       } else {
         diagonal = -compliance * give;
       }

@@ -35,7 +35,7 @@ struct Solved {
   Vec3 mean_velocity(std::size_t node) const {
     return problem.velocity[node] + (0.5 / stage.h) * newton.displacement()[node];
   }
-  /// visit(constraint, its multipliers, its laws or null, its states or null, values before, values after)
+  /// visit(item, values before, values after)
   template <class C, class Visit>
   void for_each_row(const ConstraintPool<C>& pool, Visit visit) const {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
@@ -118,16 +118,15 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, StepEnergy& 
   for_each_row(pool, [&](std::size_t k, const double* before, const double* after) {
     for (int r = 0; r < C::rows; ++r) {
       const RowLaw& law = pool.law(k)[r];
-      const RowState& state = pool.states[k * C::rows + r];
       const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
-      const bool is_free = state.side == 0;
+      const bool is_free = pool.is_equation(k, r);
       if (law == RowLaw{} || law.is_off()) continue;
       if (law.hold)
         energy.dissipated += lambda * (moved - law.rate * stage.h);
       else if (law.is_compliant())
         energy.dissipated += is_free ? law.damping / stage.h * moved * moved
                                      : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
-      else if (is_free && state.side_before != 0)
+      else if (pool.states.has_been_met(k * C::rows + static_cast<std::size_t>(r)))
         energy.impact += lambda * (stage.midpoint ? moved : stage.h * mean_speed_across(pool.items[k], r));
     }
   });

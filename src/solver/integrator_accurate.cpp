@@ -42,7 +42,7 @@ bool Integrator::is_smooth(Problem& problem, double h) const {
     for (std::size_t row = 0; row < pool.laws.size(); ++row) {
       const RowLaw& law = pool.laws[row];
       if (law == RowLaw{} || law.is_off()) continue;
-      smooth = smooth && !law.hold && !law.is_compliant() && pool.states[row].side != 0;
+      smooth = smooth && !law.hold && !law.is_compliant() && !pool.states.is_equation(row);
     }
   });
   return smooth;
@@ -58,7 +58,7 @@ bool has_closed_row(const Problem& problem) {
       double g[C::rows];
       pool.value(k, problem.position.data(), 1, g);
       for (int r = 0; r < C::rows; ++r)
-        closed = closed || (pool.states[k * C::rows + r].side != 0 && pool.law(k)[r].violation(g[r]) > 0);
+        closed = closed || (!pool.is_equation(k, r) && pool.law(k)[r].violation(g[r]) > 0);
     }
   });
   return closed;

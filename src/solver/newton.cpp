@@ -219,10 +219,9 @@ double Newton::merit(const Problem& problem, const Stage& stage, const Vec3* x) 
       pool.value(k, x, stage.fraction, g);
       for (int r = 0; r < C::rows; ++r, ++index) {
         if (pool.has_laws()) {
-          const RowState& state = pool.states[k * C::rows + r];
           const double lambda = pool.multiplier(k)[r];
-          const RowEquation equation = equation_of(pool.law(k)[r], state, g[r], stage);
-          if (state.side != 0) {
+          const RowEquation equation = equation_of(pool, k, r, g[r], stage);
+          if (!pool.is_equation(k, r)) {
             value += lambda * g[r];  // a constant force
             continue;
           }

@@ -32,7 +32,7 @@ double Newton::find_gaps(const Problem& problem) {
       const double per_length = 1 / pool.items[k].reference_length();
       pool.value(k, problem.position.data(), 1, row);
       for (int r = 0; r < C::rows; ++r) {
-        if (pool.has_laws() && pool.states[k * C::rows + r].side != 0) row[r] = 0;
+        if (!pool.is_equation(k, r)) row[r] = 0;
         worst.add(std::abs(row[r]) * per_length);
       }
     }

@@ -200,7 +200,7 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) {
           if (pool.law(k)[r].hold && !keeps_rate) row[r] -= pool.law(k)[r].rate;
-          if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
+          if (!pool.is_equation(k, r)) row[r] = 0;
         }
       // To m/s, as rows of angles and directions have no lengths.
       const double size = GeneralConstraint<C> ? reference_length() / c.reference_length() : 1;

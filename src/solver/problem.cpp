@@ -84,7 +84,7 @@ void Problem::fit_pools() {
     resize_with_slack(pool.multipliers, pool.items.size() * C::rows);
     resize_with_slack(pool.slots, pool.items.size());
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
-    pool.states.assign(pool.laws.size(), {});
+    pool.states.reset(pool.laws.size());
     pool.acting.clear();
     pool.offsets.clear();
   });

@@ -4,6 +4,7 @@
 #include "base/slack.h"
 #include "solver/constraints/constraint_list.h"
 #include "solver/forces/force_list.h"
+#include "solver/row_states.h"
 #include "solver/sparse/block_pattern.h"
 
 #include <iota/vec3.h>
@@ -52,14 +53,6 @@ struct RowLaw {
   }
 };
 
-/// State of a row with a law; kept by the solver.
-struct RowState {
-  std::int8_t side = 0;         ///< -1, 1: its multiplier is at the lower, upper bound; 0: free, the equation holds
-  std::int8_t side_before = 0;  ///< at the start of the (sub-)step
-  bool off_speed = false;       ///< a hold row whose velocity there was not the target
-  double start = 0;             ///< g there
-};
-
 /// Identifies a constraint or force for its owner, which finds it by this key in its pool; the solver does not read
 /// it.
 struct ItemKey {
@@ -84,7 +77,7 @@ struct ConstraintPool {
   std::vector<double> multipliers;   ///< C::rows each, N
   std::vector<double> offsets;       ///< C::rows each: held gaps that cannot be closed; or empty: none
   std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing
-  std::vector<RowState> states;      ///< beside laws
+  RowStates states;                  ///< beside laws
   std::vector<std::uint8_t> acting;  ///< of each item, if there were laws at the last Problem::note_acting
   std::vector<std::uint32_t>
       held;  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
@@ -101,10 +94,13 @@ struct ConstraintPool {
   bool has_laws() const { return !laws.empty(); }
   /// See Problem::for_each_acting.
   bool acts(std::size_t i) const { return laws.empty() || i >= acting.size() || acting[i] != 0; }
+  /// Whether row r of item i is an equation at present; otherwise its multiplier is at a bound.
+  bool is_equation(std::size_t i, int r) const { return states.is_equation(i * C::rows + static_cast<std::size_t>(r)); }
   /// Whether any row of item i takes impulses in the latest projection of velocities.
   bool takes_impulses(std::size_t i) const {
-    const auto first = states.begin() + static_cast<std::ptrdiff_t>(laws.empty() ? 0 : i * C::rows);
-    return laws.empty() || std::any_of(first, first + C::rows, [](const RowState& state) { return state.side == 0; });
+    for (int r = 0; r < C::rows; ++r)
+      if (is_equation(i, r)) return true;
+    return false;
   }
   void reserve(std::size_t size) { items.reserve(size), keys.reserve(size); }
   static std::span<const std::uint32_t> nodes_of(const C& item) {

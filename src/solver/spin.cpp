@@ -143,8 +143,7 @@ void Spin::find_supports(const Problem& problem) {
             const auto is_equation = [&] {
               if (!pool.has_laws()) return true;
               const RowLaw& law = pool.law(item)[r];
-              return !law.is_off() && !law.is_compliant() &&
-                     pool.states[item * C::rows + static_cast<std::size_t>(r)].side == 0;
+              return !law.is_off() && !law.is_compliant() && pool.is_equation(item, r);
             };
             if (is_equation()) add(member, wrenches[r]);
           }

@@ -10,8 +10,7 @@ void StepEquations::for_each_row(Visit visit) const {
   problem_.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k)
       for (int r = 0; r < C::rows; ++r) {
-        const bool bound = pool.has_laws() && pool.states[k * C::rows + r].side != 0;
-        visit(pool.slots[k].unknown + static_cast<std::uint32_t>(r), pool.multiplier(k)[r], bound);
+        visit(pool.slots[k].unknown + static_cast<std::uint32_t>(r), pool.multiplier(k)[r], !pool.is_equation(k, r));
       }
   });
 }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace iota::solver {
+
+/// Whether each row of a pool with laws (RowLaw) is an equation at present, or its multiplier is at a bound. ActiveSet
+/// decides, and knows at which bound; all others only ask.
+class RowStates {
+ public:
+  /// Makes all rows equations; of a pool without laws there are none.
+  void reset(std::size_t rows) { rows_.assign(rows, {}); }
+  void resize(std::size_t rows) { rows_.resize(rows); }
+  void clear() { rows_.clear(); }
+
+  bool is_equation(std::size_t row) const { return rows_.empty() || rows_[row].side == 0; }
+  /// Whether it was at a bound at the start of the (sub-)step and is an equation now: a rope that is taut now.
+  bool has_been_met(std::size_t row) const { return rows_[row].side == 0 && rows_[row].side_before != 0; }
+  /// The value of a hold or compliant row at the start of the (sub-)step.
+  double start(std::size_t row) const { return rows_[row].start; }
+
+ private:
+  friend class ActiveSet;
+  struct Row {
+    std::int8_t side = 0;         // -1, 1: its multiplier is at the lower, upper bound; 0: an equation
+    std::int8_t side_before = 0;  // at the start of the (sub-)step
+    bool off_speed = false;       // a hold row whose velocity there was not the target
+    double start = 0;
+  };
+  std::vector<Row> rows_;
+};
+
+}  // namespace iota::solver
