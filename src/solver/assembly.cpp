@@ -18,8 +18,8 @@ struct NoGradients {
   NoGradients(const auto&, const Vec3*, double, const Vec3*, double) {}
 };
 /// Only the mid-point scheme takes means.
-template <bool Midpoint, class C>
-using MeanGradientsOf = std::conditional_t<Midpoint, MeanGradients<C>, NoGradients>;
+template <Scheme S, class C>
+using MeanGradientsOf = std::conditional_t<S == Scheme::mid_point, MeanGradients<C>, NoGradients>;
 
 /// A small constraint is copied, so that the compiler knows that writes do not change it.
 template <class C>
@@ -27,7 +27,6 @@ using Kept = std::conditional_t<sizeof(C) <= 32, const C, const C&>;
 
 }  // namespace
 
-template <bool Midpoint>
 void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
   const std::size_t n = problem.size();
   const Vec3* const x0 = problem.position.data();
@@ -46,7 +45,7 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
   }
   if (!push) return;
   for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
-  const ForceStage force_stage{stage.h, Midpoint, false};
+  const ForceStage force_stage{stage.h, stage.is_mid_point(), false};
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
       const Vec3 force = f.force(f.arm.value(x0), f.arm.value(x), force_stage);
@@ -55,17 +54,18 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
   });
 }
 
-template <bool Midpoint>
 Residual Assembly::residual(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
   const Timed timed(times_, &StepTimes::forces);
-  add_momentum<Midpoint>(problem, stage, x, u);
+  add_momentum(problem, stage, x, u);
   if (has_extreme_masses()) resistance_.assign(problem.mass.begin(), problem.mass.end());
   worst_ = violation_ = largest_multiplier_ = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
     if (pool.items.empty()) return;
-    pool.has_laws() ? add_rows<Midpoint, true>(problem, stage, pool, x)
-                    : add_rows<Midpoint, false>(problem, stage, pool, x);
-    if (has_extreme_masses()) add_resistance<Midpoint>(stage, pool, problem.position.data(), x);
+    const auto add = [&]<Scheme S> {
+      pool.has_laws() ? add_rows<S, true>(problem, stage, pool, x) : add_rows<S, false>(problem, stage, pool, x);
+      if (has_extreme_masses()) add_resistance<S>(stage, pool, problem.position.data(), x);
+    };
+    stage.is_mid_point() ? add.template operator()<Scheme::mid_point>() : add.template operator()<Scheme::end_point>();
   });
   double worst_force = 0, mass_there = 1, lightest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < problem.size(); ++i) {
@@ -87,12 +87,11 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
 
 // A drag of 1e12 N s/m between places of about 1 m pulls with an uncertainty of 1e-2 N, far above what moves a gram by the
 // tolerance. No step reduces that, and none is needed: the places are right to the last bit.
-template <bool Midpoint>
 bool Assembly::is_round_off_of_laws(const Problem& problem, const Stage& stage, const Vec3* x) {
   constexpr double round_off_of_sums = 8 * std::numeric_limits<double>::epsilon();
   if (stage.is_projection() || !(worst_ <= stage.tolerance)) return false;
   blur_.assign(problem.size(), 0);
-  const ForceStage force_stage{stage.h, Midpoint, false};
+  const ForceStage force_stage{stage.h, stage.is_mid_point(), false};
   const Vec3* const x0 = problem.position.data();
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
@@ -113,8 +112,9 @@ bool Assembly::is_round_off_of_laws(const Problem& problem, const Stage& stage, 
 }
 
 // The constraint forces of a pool, and the residuals of its equations.
-template <bool Midpoint, bool Laws, class C>
+template <Scheme S, bool Laws, class C>
 void Assembly::add_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x) {
+  constexpr bool is_mid_point = S == Scheme::mid_point;
   const Vec3* const x0 = problem.position.data();
   const double start = stage.fraction_start, end = stage.fraction;
   const double give = row_compliance(stage);
@@ -133,7 +133,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     pool.value(k, x, end, g);
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, end);
-    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, start, x, end);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, x, end);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
@@ -142,8 +142,8 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       else if (gives)
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
       Vec3 mean_rows[C::rows];
-      if constexpr (Midpoint) means.of_node(i, rows, mean_rows);
-      for (int r = 0; r < C::rows; ++r) add_force(c.nodes[i], lambda[r] * (Midpoint ? mean_rows[r] : rows[r]));
+      if constexpr (is_mid_point) means.of_node(i, rows, mean_rows);
+      for (int r = 0; r < C::rows; ++r) add_force(c.nodes[i], lambda[r] * (is_mid_point ? mean_rows[r] : rows[r]));
     }
     const double per_length = 1 / c.reference_length();
     compliance *= give;
@@ -173,19 +173,20 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
 }
 
 // The stiffness of rows against the motion of their points: see weigh.
-template <bool Midpoint, class C>
+template <Scheme S, class C>
 void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x0, const Vec3* x) {
+  constexpr bool is_mid_point = S == Scheme::mid_point;
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const C& c = pool.items[k];
     const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, stage.fraction_start, x, stage.fraction);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);
-      if constexpr (Midpoint) means.of_node(i, rows, directions);
+      if constexpr (is_mid_point) means.of_node(i, rows, directions);
       for (int r = 0; r < C::rows; ++r)
         resistance_[c.nodes[i]] +=
-            std::abs(pool.multiplier(k)[r]) * norm(Midpoint ? directions[r] : rows[r]) * inverse_scale(stage);
+            std::abs(pool.multiplier(k)[r]) * norm(is_mid_point ? directions[r] : rows[r]) * inverse_scale(stage);
     }
   }
 }
@@ -208,8 +209,8 @@ Strain Assembly::strain_released(const Problem& problem, const Stage& stage, con
         for (int r = 0; r < C::rows; ++r) mobility[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
       }
       for (int r = 0; r < C::rows; ++r, ++lambda) {
-        const bool is_soft = pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold ||
-                                                 !pool.is_equation(k, r));
+        const bool is_soft =
+            pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold || !pool.is_equation(k, r));
         if (is_soft) continue;
         const double compliance = give * mobility[r] + 1e-300;
         const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;
@@ -281,15 +282,15 @@ inline void Assembly::add_to_node(std::uint32_t node,
   d[0] += value, d[s + 1] += value, d[2 * s + 2] += value;
 }
 
-template <bool Midpoint>
+template <Storage T>
 void Assembly::add_to_pair(const BlockPattern::PairSlot& slot, double value) {
   const int s = slot.stride;
   for (int r = 0; r < 3; ++r) factor_.lower()[slot.offset + r * (s + 1)] += value;
-  if constexpr (Midpoint)
+  if constexpr (T == Storage::general)
     for (int r = 0; r < 3; ++r) factor_.upper()[slot.offset + r * (s + 1)] += value;
 }
 
-template <bool Midpoint, class C>
+template <Storage T, class C>
 void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots& slots, const Stage& stage,
                              const Vec3* x, const double* lambda, bool clamp) {
   Mat3 blocks[C::max_nodes * (C::max_nodes + 1) / 2];
@@ -307,13 +308,13 @@ void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots
         for (int k = 0; k < 3; ++k) {
           const double value = slot.a_first ? block->m[k][r] : block->m[r][k];
           factor_.lower()[slot.offset + r * slot.stride + k] += value;
-          if constexpr (Midpoint) factor_.upper()[slot.offset + r * slot.stride + k] += value;
+          if constexpr (T == Storage::general) factor_.upper()[slot.offset + r * slot.stride + k] += value;
         }
     }
   }
 }
 
-template <bool Midpoint, class F>
+template <Storage T, class F>
 void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, const ForcePool<F>& pool,
                                const Vec3* x) {
   const Vec3* const x0 = problem.position.data();
@@ -334,32 +335,42 @@ void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, 
           for (int c = 0; c < 3; ++c) {
             const std::uint32_t at = slot.offset + r * slot.stride + c;
             lower[at] += w * f.arm.weights[j] * stiffness.m[r][c];
-            if constexpr (Midpoint) upper[at] += w * f.arm.weights[j] * stiffness.m[c][r];
+            if constexpr (T == Storage::general) upper[at] += w * f.arm.weights[j] * stiffness.m[c][r];
           }
       }
     }
   }
 }
 
-template <bool Midpoint>
 void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
   forget_factors();
-  factor_.clear(!Midpoint);
-  for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
-  for (const auto& c : problem.mass_couplings) add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    if (pool.items.empty()) return;
-    pool.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, pool, x, hessian)
-                    : assemble_rows<Midpoint, false>(problem, stage, pool, x, hessian);
-  });
-  if (stage.is_projection()) return;
-  const ForceStage force_stage{stage.h, Midpoint, hessian == Hessian::clamped};
-  problem.for_each_force_pool([&](const auto& pool) { assemble_forces<Midpoint>(problem, force_stage, pool, x); });
+  if (stage.is_mid_point())
+    assemble_all<Scheme::mid_point, Storage::general>(problem, stage, x, hessian);
+  else if (stage.storage == Storage::general)
+    assemble_all<Scheme::end_point, Storage::general>(problem, stage, x, hessian);
+  else
+    assemble_all<Scheme::end_point, Storage::symmetric>(problem, stage, x, hessian);
 }
 
-template <bool Midpoint, bool Laws, class C>
+template <Scheme S, Storage T>
+void Assembly::assemble_all(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
+  factor_.clear(T);
+  for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
+  for (const auto& c : problem.mass_couplings) add_to_pair<T>(c.slot, stage.inertia * c.mass);
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    if (pool.items.empty()) return;
+    pool.has_laws() ? assemble_rows<S, T, true>(problem, stage, pool, x, hessian)
+                    : assemble_rows<S, T, false>(problem, stage, pool, x, hessian);
+  });
+  if (stage.is_projection()) return;
+  const ForceStage force_stage{stage.h, S == Scheme::mid_point, hessian == Hessian::clamped};
+  problem.for_each_force_pool([&](const auto& pool) { assemble_forces<T>(problem, force_stage, pool, x); });
+}
+
+template <Scheme S, Storage T, bool Laws, class C>
 void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x,
                              Hessian hessian) {
+  constexpr bool is_mid_point = S == Scheme::mid_point, is_general = T == Storage::general;
   const Vec3* const x0 = problem.position.data();
   const bool clamp = hessian == Hessian::clamped;
   const double give = row_compliance(stage);
@@ -376,7 +387,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       }
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, end);
-    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, start, x, end);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, x, end);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);
@@ -384,17 +395,17 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
       else
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
-      if constexpr (Midpoint) means.of_node(i, rows, directions);
+      if constexpr (is_mid_point) means.of_node(i, rows, directions);
       const auto& slot = slots.gradients[i];
       for (int r = 0; r < C::rows; ++r) {
         if constexpr (Laws)
           if (!pool.is_equation(k, r)) continue;
         const Vec3& in_row = rows[r];
-        const Vec3& in_column = Midpoint ? directions[r] : rows[r];
+        const Vec3& in_column = is_mid_point ? directions[r] : rows[r];
         const Vec3& below = slot.lower_is_row ? in_row : in_column;
         double* const l = (slot.in_diagonal ? diagonals : lower) + slot.offset + r * slot.row_stride;
         l[0] = below.x, l[slot.column_stride] = below.y, l[2 * slot.column_stride] = below.z;
-        if constexpr (Midpoint) {
+        if constexpr (is_general) {
           const Vec3& above = slot.lower_is_row ? in_column : in_row;
           double* const u = slot.in_diagonal ? diagonals + slot.offset + slot.mirror + r : upper + (l - lower);
           const int s = slot.in_diagonal ? slot.row_stride : slot.column_stride;
@@ -405,8 +416,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
     for (int r = 0; r < C::rows; ++r) {
       double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
       if constexpr (Laws) {
-        diagonal =
-            pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, 0, stage).softness : -1;
+        diagonal = pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, 0, stage).softness : -1;
       } else {
         diagonal = -compliance * give;
       }
@@ -415,15 +425,15 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       if (hessian == Hessian::none) continue;
       double lambda[C::rows];
       if constexpr (GeneralConstraint<C>) {
-        for (int r = 0; r < C::rows; ++r) lambda[r] = (Midpoint ? 0.5 : 1) * pool.multiplier(k)[r];
-        add_curvature<Midpoint>(c, slots, stage, x, lambda, clamp);
+        for (int r = 0; r < C::rows; ++r) lambda[r] = (is_mid_point ? 0.5 : 1) * pool.multiplier(k)[r];
+        add_curvature<T>(c, slots, stage, x, lambda, clamp);
       } else {
         for (int r = 0; r < C::rows; ++r)
-          lambda[r] = (Midpoint ? 0.5 : 1) * (clamp ? std::max(pool.multiplier(k)[r], 0.0) : pool.multiplier(k)[r]);
+          lambda[r] = (is_mid_point ? 0.5 : 1) * (clamp ? std::max(pool.multiplier(k)[r], 0.0) : pool.multiplier(k)[r]);
         for (int i = 0, pair = 0; i < c.node_count(); ++i) {
           add_to_node(c.nodes[i], c.curvature(lambda, i, i));
           for (int j = i + 1; j < c.node_count(); ++j, ++pair)
-            add_to_pair<Midpoint>(slots.pairs[pair], c.curvature(lambda, i, j));
+            add_to_pair<T>(slots.pairs[pair], c.curvature(lambda, i, j));
         }
       }
     }
@@ -431,16 +441,15 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
 }
 
 bool Assembly::has_factors_of(const Stage& stage) const {
-  return factored_ && factored_->h == stage.h && factored_->midpoint == stage.midpoint &&
+  return factored_ && factored_->h == stage.h && factored_->scheme == stage.scheme &&
          factored_->compliance == stage.compliance && factored_->part == stage.part;
 }
 
-template <bool Midpoint>
 bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
   bool good = false;
   {
     const Timed timed(times_, &StepTimes::factor);
-    assemble<Midpoint>(problem, stage, x, hessian);
+    assemble(problem, stage, x, hessian);
     good = factor_.factorize(unknowns_) == 0;
     factored_ = stage;
   }
@@ -448,14 +457,5 @@ bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, cons
   factor_.finish(unknowns_);
   return good;
 }
-
-template Residual Assembly::residual<false>(const Problem&, const Stage&, const Vec3*, const Vec3*);
-template Residual Assembly::residual<true>(const Problem&, const Stage&, const Vec3*, const Vec3*);
-template bool Assembly::is_round_off_of_laws<false>(const Problem&, const Stage&, const Vec3*);
-template bool Assembly::is_round_off_of_laws<true>(const Problem&, const Stage&, const Vec3*);
-template bool Assembly::factor_and_solve<false>(const Problem&, const Stage&, const Vec3*, Hessian);
-template bool Assembly::factor_and_solve<true>(const Problem&, const Stage&, const Vec3*, Hessian);
-template void Assembly::assemble<false>(const Problem&, const Stage&, const Vec3*, Hessian);
-template void Assembly::assemble<true>(const Problem&, const Stage&, const Vec3*, Hessian);
 
 }  // namespace iota::solver

@@ -45,11 +45,9 @@ class Assembly {
   void add_times_to(StepTimes* times) { times_ = times; }
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
-  template <bool Midpoint>
   Residual residual(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
   /// Whether every unbalanced force in that residual is round-off of the forces of stiff laws, that is, at most their
   /// stiffness times the round-off of the places.
-  template <bool Midpoint>
   bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
   /// The elastic energy that compliant rows have released on the way to a solution at x. They had stored what the multipliers
   /// before this (sub-)step, N, have done on the gaps that it starts from, however long the steps then were.
@@ -57,8 +55,7 @@ class Assembly {
   /// Loads the residual of M a + G' lambda = f, G a + v' G' v = 0 at a = 0, lambda = 0, at the problem's positions and
   /// velocities. Their solution is minus the step of a projection's matrix, without Hessian. Rows at a bound are left out.
   void load_rates(const Problem&);
-  /// The derivative of the residual.
-  template <bool Midpoint>
+  /// The derivative of the residual, in the storage of the stage.
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
   /// Converts residuals to the Newton step, matrix^-1 residuals, to be subtracted: with the latest factors ...
   void solve() {
@@ -66,7 +63,6 @@ class Assembly {
     factor_.solve(unknowns_);
   }
   /// ... or with new ones. False if the signs of pivots are not those of a constrained minimum.
-  template <bool Midpoint>
   bool factor_and_solve(const Problem&, const Stage&, const Vec3* x, Hessian);
 
   std::size_t unknown_count() const { return unknowns_.size(); }
@@ -104,11 +100,10 @@ class Assembly {
     return row_compliance_ * (has_extreme_masses() ? stage.compliance / stage.inertia : stage.row_compliance());
   }
 
-  template <bool Midpoint>
   void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
-  template <bool Midpoint, bool Laws, class C>
+  template <Scheme S, bool Laws, class C>
   void add_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x);
-  template <bool Midpoint, class C>
+  template <Scheme S, class C>
   void add_resistance(const Stage&, const ConstraintPool<C>&, const Vec3* x0, const Vec3* x);
 
   void add_force(std::uint32_t node, const Vec3& force) {
@@ -116,14 +111,16 @@ class Assembly {
     r[0] += force.x, r[1] += force.y, r[2] += force.z;
   }
   void add_to_node(std::uint32_t node, double value);
-  template <bool Midpoint>
+  template <Storage T>
   void add_to_pair(const BlockPattern::PairSlot&, double value);
-  template <bool Midpoint, class C>
+  template <Storage T, class C>
   void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const Vec3* x,
                      const double* lambda, bool clamp);
-  template <bool Midpoint, bool Laws, class C>
+  template <Scheme S, Storage T>
+  void assemble_all(const Problem&, const Stage&, const Vec3* x, Hessian);
+  template <Scheme S, Storage T, bool Laws, class C>
   void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x, Hessian);
-  template <bool Midpoint, class F>
+  template <Storage T, class F>
   void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
 
   StepTimes* times_ = nullptr;

@@ -28,9 +28,9 @@ struct Solved {
 
   const Vec3* start() const { return problem.position.data(); }
   const Vec3* end() const { return newton.solution().data(); }
-  ForceStage force_stage() const { return {stage.h, stage.midpoint, false}; }
+  ForceStage force_stage() const { return {stage.h, stage.is_mid_point(), false}; }
   Vec3 velocity_at_end(std::size_t node) const {
-    return problem.velocity[node] + ((stage.midpoint ? 2 : 1) / stage.h) * newton.displacement()[node];
+    return problem.velocity[node] + ((stage.is_mid_point() ? 2 : 1) / stage.h) * newton.displacement()[node];
   }
   Vec3 mean_velocity(std::size_t node) const {
     return problem.velocity[node] + (0.5 / stage.h) * newton.displacement()[node];
@@ -127,7 +127,7 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, StepEnergy& 
         energy.dissipated += is_free ? law.damping / stage.h * moved * moved
                                      : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
       else if (pool.states.has_been_met(k * C::rows + static_cast<std::size_t>(r)))
-        energy.impact += lambda * (stage.midpoint ? moved : stage.h * mean_speed_across(pool.items[k], r));
+        energy.impact += lambda * (stage.is_mid_point() ? moved : stage.h * mean_speed_across(pool.items[k], r));
     }
   });
 }

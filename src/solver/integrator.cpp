@@ -178,8 +178,8 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
 bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial, StepEnergy& energy,
                                AdvanceReport& report) {
   if (stage.compliance > exact_rows && violation_ > IntegratorSettings::largest_violation) return false;
-  if (stage.midpoint && turns_too_far(problem)) return false;
-  if (stage.midpoint && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
+  if (stage.is_mid_point() && turns_too_far(problem)) return false;
+  if (stage.is_mid_point() && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
   energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
   Verdict verdict = judge(trial, energy);
@@ -197,7 +197,7 @@ bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial
 void Integrator::commit(Problem& problem, const Stage& stage, const StepEnergy& energy, AdvanceReport& report) {
   energy_.take(energy, report);
   for (std::size_t i = 0; i < problem.size(); ++i) {
-    problem.velocity[i] += ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
+    problem.velocity[i] += ((stage.is_mid_point() ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = newton_.solution()[i];
   }
   track(problem, stage.fraction);

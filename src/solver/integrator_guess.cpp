@@ -31,7 +31,7 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::span<Vec3> guess = newton_.displacement();
   std::fill(guess.begin(), guess.end(), Vec3{});
   if (stage.is_projection()) return;
-  if (stage.midpoint) return sweep_lengths(problem, stage);
+  if (stage.is_mid_point()) return sweep_lengths(problem, stage);
 
   const std::span<const double> mass = lumped_masses(problem);
   const std::span<Vec3> flight = newton_.room();

@@ -52,14 +52,13 @@ NewtonReport Newton::solve(Problem& problem, const Stage& stage) {
     handed_back = true;
   }
   place(problem, stage);
-  NewtonReport report = stage.midpoint ? solve_as<true>(problem, stage) : solve_as<false>(problem, stage);
+  NewtonReport report = solve_directly(problem, stage);
   report.handed_back = handed_back;
   return report;
 }
 
-template <bool Midpoint>
 void Newton::measure(const Problem& problem, const Stage& stage) {
-  residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
+  residual_ = assembly_.residual(problem, stage, x_.data(), u_.data());
 }
 
 // Far from the origin positions are too coarse for the directions of links and so for the forces along these: at 10 km,
@@ -73,21 +72,19 @@ double Newton::blur_of_places(const Problem& problem) const {
 // With a new factor. Far from a solution, pivots of the wrong sign lead to a saddle, so the Hessian is clamped. Near a
 // solution they may belong to it (a chain compressed in a whip), and a clamped Hessian would converge linearly or diverge
 // from 1e-5. Then returns true: the step is tentative.
-template <bool Midpoint>
 bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
-  const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
+  const bool good = assembly_.factor_and_solve(problem, stage, x_.data(), hessian);
   if (good || hessian != Hessian::exact) return false;
   if (residual_.worst <= Set::exact_below) return true;
-  measure<Midpoint>(problem, stage);  // the step has overwritten the residuals
-  (void)assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
+  measure(problem, stage);  // the step has overwritten the residuals
+  (void)assembly_.factor_and_solve(problem, stage, x_.data(), Hessian::clamped);
   return false;
 }
 
-template <bool Midpoint>
-NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
+NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   NewtonReport report;
   if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
-  measure<Midpoint>(problem, stage);
+  measure(problem, stage);
   Hessian hessian = Hessian::exact;
   bool stuck = false, settled = true;
   // The factors of the last step may do, too. Of bounded rows they may be those of other sides.
@@ -101,7 +98,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       settled = !active_set_.choose(problem, stage, x_.data());
       if (!settled) {
         factor_will_do = false;
-        measure<Midpoint>(problem, stage);
+        measure(problem, stage);
         most_iterations =
             std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
       }
@@ -114,11 +111,11 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     if (factor_will_do)
       assembly_.solve();
     else
-      on_trial = find_step<Midpoint>(problem, stage, hessian);
+      on_trial = find_step(problem, stage, hessian);
     take_step(problem, stage);
-    measure<Midpoint>(problem, stage);
+    measure(problem, stage);
     if (carries && report.iterations == 1 && !(residual_.worst <= Set::fast * before)) {
-      take_back_step<Midpoint>(problem, stage);
+      take_back_step(problem, stage);
       factor_will_do = false;
       continue;
     }
@@ -127,17 +124,17 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     // small links leave ten times the estimate.
     const double nothing = std::min(Set::noise * blur * residual_.noise, Set::round_off_floor);
     if (!(residual_.worst <= Set::fast * before)) {
-      if (assembly_.is_round_off_of_laws<Midpoint>(problem, stage, x_.data())) {
+      if (assembly_.is_round_off_of_laws(problem, stage, x_.data())) {
         residual_.worst = residual_.rows;
         stuck = true;
         break;
       }
       stuck = !is_clamped && (may_carry || !served_on) && before <= nothing;
       if ((stuck || on_trial) && !(residual_.worst < before)) {
-        take_back_step<Midpoint>(problem, stage);
+        take_back_step(problem, stage);
         hessian = Hessian::clamped;
       } else if (!stuck) {
-        const int halvings = stretch<Midpoint>(problem, stage, before, is_clamped);
+        const int halvings = stretch(problem, stage, before, is_clamped);
         stuck = halvings == Set::max_halvings && !(residual_.worst < before);  // lost
         // A small decrease by a full step does not end quadratic convergence; wrong pivots would.
         if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
@@ -149,13 +146,14 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     const double wanted = (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
     factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing) : wanted);
   }
-  if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
-    polish<Midpoint>(problem, stage, report, served_on);
+  if (!stuck && !stage.is_projection() && (stage.is_mid_point() || report.iterations == 0))
+    polish(problem, stage, report, served_on);
   report.residual = residual_.worst, report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
   const bool exact = stage.compliance <= exact_rows;
-  report.converged = settled && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
-                     (!exact || report.violation <= (Midpoint || stage.is_projection() ? closed_gap : strained_gap));
+  report.converged =
+      settled && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
+      (!exact || report.violation <= (stage.is_mid_point() || stage.is_projection() ? closed_gap : strained_gap));
   return report;
 }
 
@@ -163,7 +161,6 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
 // of cloth that buckles, the clamped Hessian lacks what drives the points away: its steps lead in the right direction, but
 // are a small part of the way. So one that need not be halved is doubled while the merit falls: 31 % fewer iterations of a
 // cloth of 32 x 32 springs.
-template <bool Midpoint>
 int Newton::stretch(Problem& problem, const Stage& stage, double before, bool is_clamped) {
   // Weights above the new multipliers make the merit exact: violating constraints cannot reduce it.
   merit_weights_.resize(problem.multiplier_count());
@@ -179,7 +176,7 @@ int Newton::stretch(Problem& problem, const Stage& stage, double before, bool is
     t *= 0.5;
     ++halvings;
     scale_step(problem, stage, 0.5);
-    measure<Midpoint>(problem, stage);
+    measure(problem, stage);
   }
   // Beside a saddle of rows, as of an arm pulled beyond its reach, the points would only leave faster (227 J instead of
   // 100).
@@ -195,7 +192,7 @@ int Newton::stretch(Problem& problem, const Stage& stage, double before, bool is
     }
     ++doublings, least = value;
   }
-  if (doublings > 0) measure<Midpoint>(problem, stage);
+  if (doublings > 0) measure(problem, stage);
   return 0;
 }
 
@@ -261,12 +258,11 @@ void Newton::scale_step(Problem& problem, const Stage& stage, double factor) {
   });
 }
 
-template <bool Midpoint>
 void Newton::take_back_step(Problem& problem, const Stage& stage) {
   u_.swap(u_saved_);
   place(problem, stage);
   problem.set_multipliers(multipliers_saved_);
-  measure<Midpoint>(problem, stage);
+  measure(problem, stage);
 }
 
 bool Newton::is_balanced() const {
@@ -282,7 +278,6 @@ bool Newton::is_balanced() const {
 //
 // A reused factor is replaced if the residual stays above that: with redundant rows 1e-12 of their lengths remains, and
 // the energy of a four-bar linkage drifted by 4e-7 instead of 5e-11.
-template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   if (!(residual_.worst <= stage.tolerance)) return;
   bool needs_factor = report.iterations == 0 && !factor_is_old;
@@ -292,15 +287,15 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
     const Residual before = residual_;
     report.iterations += needs_factor;
     if (std::exchange(needs_factor, false))
-      (void)find_step<Midpoint>(problem, stage, Hessian::exact);
+      (void)find_step(problem, stage, Hessian::exact);
     else
       assembly_.solve();
     take_step(problem, stage);
-    measure<Midpoint>(problem, stage);
+    measure(problem, stage);
     // Below 1e-12 the residual norm is noise. Keep the step anyway: it reduces the common error of all points, which
     // determines momentum and angular momentum (without it those of a tumbling mixture drifted twenty times as far).
     const bool worse = !(residual_.worst <= std::max(before.worst, Set::polish_noise));
-    if (worse) take_back_step<Midpoint>(problem, stage);
+    if (worse) take_back_step(problem, stage);
     if (!worse && ((!met && residual_.rows <= Set::polish_fast * before.rows) ||
                    (!balanced && residual_.imbalance <= Set::polish_fast * before.imbalance)))
       continue;  // it helps
@@ -335,8 +330,5 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
   if (!report.converged) problem.set_multipliers(multipliers_saved_);
   return report;
 }
-
-template void Newton::measure<false>(const Problem&, const Stage&);
-template void Newton::measure<true>(const Problem&, const Stage&);
 
 }  // namespace iota::solver

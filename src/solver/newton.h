@@ -93,28 +93,22 @@ class Newton {
 
  private:
   friend class StepEquations;
-  template <bool Midpoint>
-  NewtonReport solve_as(Problem&, const Stage&);
+  NewtonReport solve_directly(Problem&, const Stage&);
   NewtonReport solve_externally(Problem&, const Stage&);
   void make_room(const Problem&);
   /// x from u.
   void place(const Problem&, const Stage&);
-  template <bool Midpoint>
   void measure(const Problem&, const Stage&);
-  template <bool Midpoint>
   bool find_step(const Problem&, const Stage&, Hessian);
-  template <bool Midpoint>
   int stretch(Problem&, const Stage&, double before, bool is_clamped);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool is_balanced() const;
   /// Factor of round-off for links far from the origin; at least 1.
   double blur_of_places(const Problem& problem) const;
   /// Reduces a residual within tolerance to round-off.
-  template <bool Midpoint>
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void take_step(Problem&, const Stage&);
   void scale_step(Problem&, const Stage&, double factor);
-  template <bool Midpoint>
   void take_back_step(Problem&, const Stage&);
 
   /// The velocities wanted from a projection.

@@ -12,7 +12,7 @@ namespace iota::solver {
 
 void Newton::find_accelerations(Problem& problem, std::span<Vec3> accelerations) {
   assembly_.load_rates(problem);
-  (void)assembly_.factor_and_solve<false>(problem, Stage::projection(), problem.position.data(), Hessian::none);
+  (void)assembly_.factor_and_solve(problem, Stage::projection(), problem.position.data(), Hessian::none);
   for (std::size_t i = 0; i < problem.size(); ++i) accelerations[i] = -assembly_.step_of(static_cast<std::uint32_t>(i));
   const std::span<const double> step = assembly_.step();
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -45,7 +45,7 @@ bool Newton::project_state(Problem& problem) {
   constexpr int most_passes = 4;
   constexpr double clean = 1e-13, sufficient = 1e-10;  // of a length
   double gap = find_gaps(problem);
-  (void)assembly_.factor_and_solve<false>(problem, Stage::projection(), problem.position.data(), Hessian::none);
+  (void)assembly_.factor_and_solve(problem, Stage::projection(), problem.position.data(), Hessian::none);
   for (int pass = 0; pass < most_passes && gap > clean; ++pass) {
     if (pass > 0) assembly_.solve();
     for (std::size_t i = 0; i < problem.size(); ++i)

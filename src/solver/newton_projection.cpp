@@ -90,7 +90,7 @@ void Newton::find_velocity_change(const Problem& problem, std::span<const double
       }
     });
     if (pass == 0)
-      (void)assembly_.factor_and_solve<false>(problem, stage, x_.data(), Hessian::none);
+      (void)assembly_.factor_and_solve(problem, stage, x_.data(), Hessian::none);
     else
       assembly_.solve();
     for (std::size_t i = 0; i < change.size(); ++i) change[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
@@ -137,7 +137,7 @@ std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted&
       const double mass = std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0);
       most = std::max(most, energy * (1 + 1e-9) + 0.5 * mass * (leverage * drive) * (leverage * drive));
     }
-    (void)assembly_.factor_and_solve<false>(problem, stage, problem.position.data(), Hessian::none);
+    (void)assembly_.factor_and_solve(problem, stage, problem.position.data(), Hessian::none);
     add_step_to_velocities(problem);
     for (int pass = 0; pass < 2 && find_rates(problem, wanted) > 0; ++pass) {  // compliance and round-off
       assembly_.solve();

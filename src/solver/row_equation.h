@@ -19,7 +19,7 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   const double start = pool.states.start(i * C::rows + static_cast<std::size_t>(r));
   if (law.hold) g -= start + law.rate * stage.h;
   if (!law.is_compliant()) return {g, 0};
-  const double part = stage.midpoint ? 0.5 : 1;
+  const double part = stage.is_mid_point() ? 0.5 : 1;
   const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
   const double total = part * stiffness + damping;
   const double before = law.hold ? 0 : start;

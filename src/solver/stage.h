@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/settings.h"
+#include "solver/sparse/block_factor.h"
 
 #include <limits>
 
@@ -13,10 +14,11 @@ namespace iota::solver {
 struct Stage {
   double h = 0;  ///< s; 0: a pure projection of positions, without velocities and forces
   double inertia = 1;
-  bool midpoint = false;
-  double fraction = 1;             ///< of the step, for targets that move during it
-  double fraction_start = 0;       ///< start of this (sub-)step
-  double compliance = exact_rows;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
+  Scheme scheme = Scheme::end_point;
+  Storage storage = Storage::symmetric;  ///< of the matrix; the mid-point scheme needs the general one
+  double fraction = 1;                   ///< of the step, for targets that move during it
+  double fraction_start = 0;             ///< start of this (sub-)step
+  double compliance = exact_rows;        ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
   double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link
   int max_iterations = 60;
@@ -27,6 +29,7 @@ struct Stage {
   /// points, of 1e-5 of the angular momentum of a free body.
   bool is_held = false;
 
+  bool is_mid_point() const { return scheme == Scheme::mid_point; }
   bool is_projection() const { return h == 0; }
   /// The compliance of a row is this times sum |G|^2 / m.
   double row_compliance() const { return compliance / (inertia * part * part); }
@@ -36,7 +39,8 @@ struct Stage {
   static Stage mid_point(double h, double from, double to) {
     return {.h = h,
             .inertia = 2 / (h * h),
-            .midpoint = true,
+            .scheme = Scheme::mid_point,
+            .storage = Storage::general,
             .fraction = to,
             .fraction_start = from,
             .tolerance = 1e-10,

@@ -57,7 +57,7 @@ double StepEquations::assign(std::span<const double> unknowns) {
   for_each_row([&](std::uint32_t unknown, double& multiplier, bool bound) {
     if (!bound) multiplier = column_scale_[unknown] * unknowns[unknown];
   });
-  stage_.midpoint ? newton_.measure<true>(problem_, stage_) : newton_.measure<false>(problem_, stage_);
+  newton_.measure(problem_, stage_);
   return newton_.residual_.worst;
 }
 
@@ -72,9 +72,8 @@ void StepEquations::evaluate(std::span<const double> x, std::span<double> f) {
 bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobian) {
   (void)assign(x);
   Assembly& assembly = newton_.assembly_;
-  const Vec3* const at = newton_.x_.data();
-  stage_.midpoint ? assembly.assemble<true>(problem_, stage_, at, Hessian::exact)
-                  : assembly.assemble<false>(problem_, stage_, at, Hessian::exact);
+  assembly.assemble(problem_, stage_, newton_.x_.data(), Hessian::exact);
+  const bool is_symmetric = assembly.factor().storage() == Storage::symmetric;
   const double *const diagonals = assembly.factor().diagonals(), *const lower = assembly.factor().lower(),
                       *const upper = assembly.factor().upper();
   std::fill(jacobian.begin(), jacobian.end(), 0.0);
@@ -85,7 +84,7 @@ bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobi
   for (const BlockPattern::Vertex& v : pattern.vertices()) {
     for (std::uint32_t i = 0; i < v.pivot; ++i)
       for (std::uint32_t j = 0; j < v.pivot; ++j) {
-        const bool mirrored = !stage_.midpoint && j > i;  // of a symmetric matrix only the lower triangle is filled
+        const bool mirrored = is_symmetric && j > i;  // of a symmetric matrix only the lower triangle is filled
         put(v.unknown + i, v.unknown + j, diagonals[v.diagonal + (mirrored ? j * v.pivot + i : i * v.pivot + j)]);
       }
     for (const auto& entry : pattern.entries().subspan(v.first_entry, v.entry_count))
@@ -93,7 +92,7 @@ bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobi
         for (std::uint32_t j = 0; j < v.pivot; ++j) {
           const std::size_t at = entry.offset + i * v.pivot + j;
           put(entry.unknown + i, v.unknown + j, lower[at]);
-          put(v.unknown + j, entry.unknown + i, stage_.midpoint ? upper[at] : lower[at]);
+          put(v.unknown + j, entry.unknown + i, is_symmetric ? lower[at] : upper[at]);
         }
   }
   for_each_row([&](std::uint32_t unknown, double, bool bound) {

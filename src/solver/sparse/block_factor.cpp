@@ -69,11 +69,11 @@ void BlockFactor::size_fronts() {
   resize_with_slack(row_of_, pattern_->vertices().size());
 }
 
-void BlockFactor::clear(bool symmetric) {
-  symmetric_ = symmetric;
+void BlockFactor::clear(Storage storage) {
+  symmetric_ = storage == Storage::symmetric;
   std::fill(diagonals_.begin(), diagonals_.end(), 0.0);
   std::fill(lower_.begin(), lower_.end(), 0.0);
-  if (symmetric) return;
+  if (symmetric_) return;
   reserve_with_slack(upper_, lower_.size());
   upper_.assign(lower_.size(), 0.0);
 }

@@ -15,6 +15,9 @@ struct TwoTriangles {
   LanesOf<2>::Type value;
 };
 
+/// Of a matrix: the lower triangle alone, or both.
+enum class Storage : std::uint8_t { symmetric, general };
+
 /// Values of a matrix with a `BlockPattern`, and its factors in place: L D L' for symmetric matrices, L U (without
 /// pivoting) for structurally symmetric ones. Nothing is allocated after `reset`.
 class BlockFactor {
@@ -27,8 +30,9 @@ class BlockFactor {
   /// Resizes for a pattern that has followed a change.
   void grow();
 
-  /// Sets all values to zero; `symmetric`: only the lower triangle will be filled.
-  void clear(bool symmetric);
+  /// Sets all values to zero; in symmetric storage only the lower triangle is then filled.
+  void clear(Storage);
+  Storage storage() const { return symmetric_ ? Storage::symmetric : Storage::general; }
 
   /// Diagonal blocks, and those below them, at the pattern's offsets.
   double* diagonals() { return diagonals_.data(); }
@@ -36,8 +40,11 @@ class BlockFactor {
   /// Blocks above the diagonal of an unsymmetric matrix: element (i, j) is at the place of (j, i) in `lower`.
   double* upper() { return upper_.data(); }
 
-  /// Factors in place; returns the number of pivots with the wrong sign (or not finite). Zero means that the matrix has
-  /// the positive and negative pivots of a constrained minimum.
+  /// Factors in place; returns the number of pivots with the wrong sign (or not finite). Zero means that a symmetric
+  /// matrix has the positive and negative pivots of a constrained minimum. In general storage these are the pivots of
+  /// L U. Mean gradients differ little from those of the end, so that the pivots tell the same of the symmetric part. A
+  /// row with a column of another direction (sliding friction) is judged by the product of both: a wrong sign may then
+  /// also mean that the row jams, and a clamped Hessian does not change it.
   int factorize() { return factorize({}); }
 
   /// Solves in place: replaces the right-hand side by the solution, both in the pattern's unknowns.

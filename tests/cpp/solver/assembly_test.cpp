@@ -46,22 +46,19 @@ struct Mixture {
   }
 };
 
-template <bool Midpoint>
 std::vector<double> residuals(Assembly& assembly, const Mixture& m, const Stage& stage) {
-  (void)assembly.residual<Midpoint>(m.problem, stage, m.positions(stage).data(), m.u.data());
+  (void)assembly.residual(m.problem, stage, m.positions(stage).data(), m.u.data());
   return {assembly.residuals().begin(), assembly.residuals().end()};
 }
 
 /// The matrix K and the residual r give the step s = K^-1 r. Along it the residual has to fall at the rate r: that is
 /// what K being the derivative means, checked without ever seeing K.
-template <bool Midpoint>
-void expect_the_step_to_remove_the_residual() {
+void expect_the_step_to_remove_the_residual(const Stage& stage) {
   Mixture m;
   Assembly assembly;
   assembly.compile(m.problem);
-  const Stage stage = Midpoint ? Stage::mid_point(0.01, 0, 1) : Stage::end_point(0.01, 0, 1);
-  const std::vector<double> before = residuals<Midpoint>(assembly, m, stage);
-  (void)assembly.factor_and_solve<Midpoint>(m.problem, stage, m.positions(stage).data(), Hessian::exact);
+  const std::vector<double> before = residuals(assembly, m, stage);
+  (void)assembly.factor_and_solve(m.problem, stage, m.positions(stage).data(), Hessian::exact);
   const std::vector<double> step(assembly.step().begin(), assembly.step().end());
 
   const auto moved_by = [&](double part) {
@@ -74,7 +71,7 @@ void expect_the_step_to_remove_the_residual() {
       for (std::size_t k = 0; k < pool.items.size(); ++k)
         for (int r = 0; r < C::rows; ++r) pool.multiplier(k)[r] -= part * step[pool.slots[k].unknown + r];
     });
-    return residuals<Midpoint>(assembly, moved, stage);
+    return residuals(assembly, moved, stage);
   };
   const double part = 1e-5;
   const std::vector<double> after = moved_by(part), opposite = moved_by(-part);
@@ -86,10 +83,41 @@ void expect_the_step_to_remove_the_residual() {
 }
 
 TEST(Assembly, matrix_is_the_derivative_of_the_residual_at_the_end_point) {
-  expect_the_step_to_remove_the_residual<false>();
+  expect_the_step_to_remove_the_residual(Stage::end_point(0.01, 0, 1));
 }
 TEST(Assembly, matrix_is_the_derivative_of_the_residual_at_the_mid_point) {
-  expect_the_step_to_remove_the_residual<true>();
+  expect_the_step_to_remove_the_residual(Stage::mid_point(0.01, 0, 1));
+}
+TEST(Assembly, matrix_is_the_derivative_in_general_storage_at_the_end_point) {
+  Stage stage = Stage::end_point(0.01, 0, 1);
+  stage.storage = Storage::general;
+  expect_the_step_to_remove_the_residual(stage);
+}
+
+TEST(Assembly, both_storages_of_a_symmetric_matrix_give_the_same_step_and_the_same_signs) {
+  for (const bool is_projection : {false, true})
+    for (const double sign : {1, -1}) {  // tension, and compression that makes wrong pivots
+      std::vector<double> steps[2];
+      bool good[2];
+      for (const Storage storage : {Storage::symmetric, Storage::general}) {
+        Mixture m;
+        auto& rods = m.problem.pool_of<DistanceConstraint>();
+        for (double& tension : rods.multipliers) tension = sign * (is_projection ? 10 : 1e5);
+        Assembly assembly;
+        assembly.compile(m.problem);
+        Stage stage = is_projection ? Stage::projection() : Stage::end_point(0.01, 0, 1);
+        stage.storage = storage;
+        (void)residuals(assembly, m, stage);
+        const auto at = static_cast<std::size_t>(storage);
+        good[at] = assembly.factor_and_solve(m.problem, stage, m.positions(stage).data(), Hessian::exact);
+        steps[at].assign(assembly.step().begin(), assembly.step().end());
+      }
+      EXPECT_EQ(good[0], sign > 0);
+      EXPECT_EQ(good[1], sign > 0);
+      double largest = 0;
+      for (const double s : steps[0]) largest = std::max(largest, std::abs(s));
+      for (std::size_t i = 0; i < steps[0].size(); ++i) EXPECT_NEAR(steps[0][i], steps[1][i], 1e-9 * largest);
+    }
 }
 
 TEST(Assembly, counts_three_unknowns_for_each_point_and_one_for_each_row) {
@@ -120,7 +148,7 @@ TEST(Assembly, residual_of_free_flight_is_the_weight) {
   assembly.compile(problem);
   const Stage stage = Stage::end_point(0.01, 0, 1);
   const Vec3 none_yet{}, x = problem.position[0] + 0.01 * problem.velocity[0];
-  (void)assembly.residual<false>(problem, stage, &x, &none_yet);
+  (void)assembly.residual(problem, stage, &x, &none_yet);
   const double* const r = assembly.residuals().data() + assembly.unknown_of(0);
   EXPECT_EQ(r[0], 0);
   EXPECT_DOUBLE_EQ(std::abs(r[1]), 2 * 9.81);
@@ -134,7 +162,7 @@ TEST(Assembly, violation_is_relative_to_the_length_of_the_row) {
   Assembly assembly;
   assembly.compile(problem);
   const std::vector<Vec3> u(2), x = problem.position;
-  const Residual residual = assembly.residual<false>(problem, Stage::projection(), x.data(), u.data());
+  const Residual residual = assembly.residual(problem, Stage::projection(), x.data(), u.data());
   EXPECT_NEAR(residual.violation, (4.1 * 4.1 - 16) / (2 * 4) / 4, 1e-12);
 }
 

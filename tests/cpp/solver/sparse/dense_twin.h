@@ -37,7 +37,7 @@ struct Twin {
   void fill(const CouplingGraph& graph, bool symmetric, std::mt19937& random) {
     std::uniform_real_distribution<double> number(-1, 1);
     factor.reset(pattern);
-    factor.clear(symmetric);
+    factor.clear(symmetric ? Storage::symmetric : Storage::general);
     const std::size_t n = pattern.unknown_count();
     dense.assign(n, std::vector<double>(n, 0));
     const auto add_block = [&](std::uint32_t a, std::uint32_t b) {
