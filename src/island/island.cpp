@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace iota::island {
 
@@ -228,32 +229,33 @@ model::Articulate& Island::articulate(Model& model) const {
   return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
 }
 
-solver::AdvanceReport Island::advance_idle(Model& model, double h) {
-  solver::AdvanceReport report;
-  if (!is_driven(model)) return report;
+const model::Articulate& Island::articulate(const Model& model) const {
+  return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
+}
+
+void Island::try_step(const Model& model, double h, Clock::time_point deadline) {
+  if (tried_ != Tried::nothing) integrator_->take_back();
+  last_ = {};
+  if (idle_)
+    tried_ = try_prescribed(model, h);
+  else
+    tried_ = stays_asleep(model) ? Tried::still : try_motion(model, h, deadline);
+}
+
+Island::Tried Island::try_prescribed(const Model& model, double h) {
+  if (!is_driven(model)) return Tried::still;
   load(model, h);
   const auto energy = [&] { return problem_.kinetic_energy() + problem_.potential_energy(problem_.position.data()); };
-  report.external_work -= energy();
+  last_.external_work -= energy();
   impose_velocities(h);
   for_each_ingredient([&](const auto& i) { i.impose_positions(problem_); });
-  report.external_work += energy();
-  store_step(model, h, false);
-  return report;
+  last_.external_work += energy();
+  return Tried::prescribed;
 }
 
-solver::AdvanceReport Island::advance(Model& model, double h, Clock::time_point deadline) {
-  last_ = idle_                   ? advance_idle(model, h)
-          : skip_if_asleep(model) ? solver::AdvanceReport{}
-                                  : advance_awake(model, h, deadline);
-  has_stepped_ = true;
-  if (idle_) look_whether_still(model);
-  return last_;
-}
-
-solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_point deadline) {
+Island::Tried Island::try_motion(const Model& model, double h, Clock::time_point deadline) {
   load(model, h);
   use_solver(model.solver);
-  const double virtual_before = virtual_energy(model);
   double given = 0;  // by jumps of prescribed velocities, J
   // With the mid-point rule a jump of a prescribed velocity would cause a permanent oscillation of the reactions.
   if (velocity_jump(h) * h > 1e-10 * integrator_->reference_length()) {
@@ -262,40 +264,53 @@ solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_
     integrator_->project_velocities(problem_, h);
     given += problem_.kinetic_energy();
   }
-  model::Articulate& memory = articulate(model);
+  const model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
   problem_.unsolved_steps = memory.unsolved_steps;
   solver::IntegratorSettings settings = settings_of(model);
   settings.max_iterations = model.budget.iterations, settings.deadline = deadline;
-  auto report = integrator_->advance(problem_, h, settings);
-  memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
-  memory.unsolved_steps = problem_.unsolved_steps;
+  last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
     impose_velocities(h);
     given += problem_.kinetic_energy();
   }
-  report.external_work += given;
-  if (!std::isfinite(report.dissipated + report.lost + report.made + report.external_work) || !has_finite_motion()) {
-    // Extreme forces (1e300 N) overflow doubles. Nothing has been stored in the model yet: the points keep their
-    // places, at rest, and the report counts the step as unconverged.
-    memory.try_again();
+  last_.external_work += given;
+  if (!std::isfinite(last_.dissipated + last_.lost + last_.made + last_.external_work) || !has_finite_motion()) {
+    // Extreme forces (1e300 N) overflow doubles: the report counts the step as unconverged.
     load(model, h);
-    report = {};
-    report.converged = false;
-    report.lost = problem_.kinetic_energy() + virtual_energy(model);
+    last_ = {};
+    last_.converged = false;
+    last_.lost = problem_.kinetic_energy() + virtual_energy(model);
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
-    store_step(model, h, false);
-    return report;
+    return Tried::overflown;
   }
+  return Tried::moved;
+}
+
+const solver::AdvanceReport& Island::commit(Model& model, double h) {
+  const Tried tried = std::exchange(tried_, Tried::nothing);
+  if (tried == Tried::moved || tried == Tried::overflown) wake_bodies(model);
+  if (tried == Tried::moved) commit_motion(model, h);
+  if (tried == Tried::overflown) articulate(model).try_again();
+  if (tried == Tried::overflown || tried == Tried::prescribed) store_step(model, h, false);
+  has_stepped_ = true;
+  if (idle_) look_whether_still(model);
+  return last_;
+}
+
+void Island::commit_motion(Model& model, double h) {
+  model::Articulate& memory = articulate(model);
+  memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
+  memory.unsolved_steps = problem_.unsolved_steps;
+  const double virtual_before = virtual_energy(model);
   double dissipated = 0;
   for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });
-  report.dissipated += dissipated;
+  last_.dissipated += dissipated;
   store_step(model, h, integrator_->is_instant());
-  report.lost += virtual_energy(model) - virtual_before;
-  report.converged = report.converged && meets_pinned(model);
-  update_sleep_timer(model, h, report);
-  return report;
+  last_.lost += virtual_energy(model) - virtual_before;
+  last_.converged = last_.converged && meets_pinned(model);
+  update_sleep_timer(model, h, last_);
 }
 
 void Island::forget_factors() { integrator_->forget_factors(); }

@@ -72,8 +72,13 @@ class Island {
   void load(const model::Model&, double h);
 
   using Clock = std::chrono::steady_clock;
-  /// By the model's settings. `deadline`: when to stop looking for a solution, see StepBudget.
-  solver::AdvanceReport advance(model::Model&, double h, Clock::time_point deadline = Clock::time_point::max());
+  /// Tries a step of h seconds by the model's settings, in the island's own problem: the model does not change.
+  /// `deadline`: when to stop looking for a solution, see StepBudget. Another try begins where this one did, and from
+  /// the same state of the model it gives the same bits (with large factors only if they are forgotten before both:
+  /// those of an earlier step serve one try).
+  void try_step(const model::Model&, double h, Clock::time_point deadline = Clock::time_point::max());
+  /// Stores the latest try, of h seconds, in the model. Without a try since the last commit it stores nothing.
+  const solver::AdvanceReport& commit(model::Model&, double h);
 
   /// Stores the corrections of the step that it has just made, if the model had no room for them: see
   /// model::Corrections.
@@ -134,12 +139,21 @@ class Island {
                                                 std::vector<std::uint32_t>& node_of_ring);
   void remove_nodes(std::vector<std::uint32_t>);
 
-  solver::AdvanceReport advance_idle(model::Model&, double h);
+  /// What the latest try has to store.
+  enum class Tried : std::uint8_t {
+    nothing,
+    still,       ///< it sleeps, or nothing moves it
+    prescribed,  ///< its points have no motion of their own
+    moved,
+    overflown  ///< forces were too large for numbers: the points keep their places, at rest
+  };
+  Tried try_prescribed(const model::Model&, double h);
+  Tried try_motion(const model::Model&, double h, Clock::time_point deadline);
+  void commit_motion(model::Model&, double h);
   bool is_driven(const model::Model&) const;  ///< by prescribed motion
   double velocity_jump(double h) const;       ///< see ingredient::NoAnswers
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
-  solver::AdvanceReport advance_awake(model::Model&, double h, Clock::time_point deadline);
   void store_step(model::Model&, double h, bool is_instant) const;
   bool project_all(model::Model&, bool positions);
   std::vector<std::uint32_t> nodes_of(const model::Model&, std::span<const std::uint32_t> bodies) const;
@@ -147,12 +161,13 @@ class Island {
   void store_carried(model::Model&, MovedRings&) const;
   bool meets_pinned(const model::Model&) const;
 
-  /// Whether it stays asleep; after `wake` it is awake.
-  bool skip_if_asleep(model::Model&);
+  bool stays_asleep(const model::Model& model) const { return !to_wake_ && is_asleep(model); }
+  void wake_bodies(model::Model&);
   /// Falls asleep once it has been slow for long enough, if sleep is on.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&);
   void look_whether_still(const model::Model&);
   model::Articulate& articulate(model::Model&) const;  ///< of its first body: has the island's state between steps
+  const model::Articulate& articulate(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
   std::string name_of_row(const model::Model&, const solver::RowName&) const;
 
@@ -168,7 +183,8 @@ class Island {
   ingredient::Book still_book_;
   std::uint64_t book_epoch_ = 0;  // of the book; 0: not known
   bool has_stepped_ = false;
-  solver::AdvanceReport last_;  // of the last step
+  Tried tried_ = Tried::nothing;  // since the last commit
+  solver::AdvanceReport last_;    // of the last step, or the latest try
 };
 
 }  // namespace iota::island

@@ -16,13 +16,11 @@ bool Island::is_asleep(const Model& model) const {
   return first != nodes_.bodies.end() && model.bodies[*first].kind == BodyKind::resting;
 }
 
-bool Island::skip_if_asleep(Model& model) {
-  const bool woken = std::exchange(to_wake_, false);
-  if (!woken) return is_asleep(model);
+void Island::wake_bodies(Model& model) {
+  if (!std::exchange(to_wake_, false)) return;
   for (const std::uint32_t b : nodes_.bodies)
     if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
   articulate(model).slow_time = 0;
-  return false;
 }
 
 void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& report) {

@@ -48,6 +48,7 @@ void Integrator::follow(Problem& problem) {
 }
 
 void Integrator::make_room(const Problem& problem) {
+  has_advanced_ = is_taken_back_ = false;
   if (local_) local_->forget();
   if (spin_) spin_->forget();
   lumped_mass_.clear();
@@ -67,6 +68,8 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   resort_left_ = IntegratorSettings::last_resort_iterations;
   is_cut_short_ = solves_part_ = is_instant_ = has_corrected_ = false;
   look_at(problem);
+  std::exchange(is_taken_back_, false) ? begin_like_the_latest() : note_beginning();
+  has_advanced_ = true;
   close_gaps(problem, report);
   energy_ = {};
   energy_.measure(problem, 0);
@@ -84,6 +87,19 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   iterations_left_ = unlimited;
   newton_.add_times_to(nullptr);
   return report;
+}
+
+// Which pieces a problem has is found out when it is needed, and depends on the history since then.
+void Integrator::note_beginning() {
+  may_have_been_in_pieces_ = may_be_in_pieces_;
+  piece_count_before_ = pieces_.size();
+  if (!pieces_.empty()) piece_of_before_.assign(piece_of_.begin(), piece_of_.end());
+}
+
+void Integrator::begin_like_the_latest() {
+  may_be_in_pieces_ = may_have_been_in_pieces_;
+  pieces_.resize(piece_count_before_);
+  if (!pieces_.empty()) piece_of_.assign(piece_of_before_.begin(), piece_of_before_.end());
 }
 
 // Finds out how the world outside may act on the problem during the step.

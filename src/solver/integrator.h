@@ -33,6 +33,10 @@ class Integrator {
   /// and for shorter and shorter parts of it: see integrator.cpp. The last one always succeeds.
   AdvanceReport advance(Problem& problem, double h, const IntegratorSettings& settings);
 
+  /// The next `advance` begins as the latest one did, if its caller has restored the state of the problem: what that one
+  /// has left here is taken back, and factors are forgotten.
+  void take_back() { is_taken_back_ = has_advanced_, forget_factors(); }
+
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
   /// Returns false if no solution was found: the violation is then distributed, and smaller after each call.
   bool project_positions(Problem& problem);
@@ -78,6 +82,8 @@ class Integrator {
   };
   void make_room(const Problem&);
   void look_at(Problem&);
+  void begin_like_the_latest();
+  void note_beginning();
   void find_holds(Problem&, const Vec3* x = nullptr);
 
   void advance_part(Problem&, const Part&, std::size_t attempt, AdvanceReport&);
@@ -171,6 +177,12 @@ class Integrator {
   std::vector<Piece> pieces_;            // of a disconnected problem; else none
   std::vector<std::uint32_t> piece_of_;  // of each node
   DisjointSets room_for_pieces_;
+
+  // What the latest `advance` began with; see take_back.
+  bool has_advanced_ = false, is_taken_back_ = false;  // since the last change of structure
+  bool may_have_been_in_pieces_ = false;
+  std::size_t piece_count_before_ = 0;
+  std::vector<std::uint32_t> piece_of_before_;
 };
 
 }  // namespace iota::solver
