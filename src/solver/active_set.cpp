@@ -39,11 +39,54 @@ bool is_off_speed(const Problem& problem, const C& c, int row, double rate, cons
 
 }  // namespace
 
+void ActiveSet::set_cone(RowStates& states, std::size_t first, ConeState state) {
+  const bool is_open = state.mode == ConeState::Mode::open;
+  for (std::size_t r = 0; r < 2; ++r) states.rows_[first + r].side = is_open;
+  states.rows_[first + 2].side = static_cast<std::int8_t>(is_open ? 1 : state.direction);
+}
+
+template <class C>
+void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem& problem, const Stage& stage) {
+  const C& c = pool.items[k];
+  double g[C::rows];
+  pool.value(k, problem.position.data(), stage.fraction_start, g);
+  double* const lambda = pool.multiplier(k);
+  const bool has_friction = !stage.is_projection();
+  if (!has_friction) lambda[2] = 0;
+  set_cone(pool.states, k * C::rows, has_friction ? c.state_of(lambda) : ConeState{ConeState::Mode::slips, 1});
+  for (int r = 0; r < C::rows; ++r) {
+    RowStates::Row& state = pool.states.rows_[k * C::rows + r];
+    state.start = g[r], state.side_before = state.side;
+    state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, 0, stage);
+  }
+}
+
+template <class C>
+ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, const Problem& problem,
+                                  const Stage& stage, const Vec3* x) {
+  const C& c = pool.items[k];
+  double g[C::rows], mobility = 0;
+  pool.value(k, x, stage.fraction, g);
+  g[2] -= pool.states.start(k * C::rows + 2);
+  const Gradients<C> gradients(c, x, stage.fraction);
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    mobility += dot(rows[2], rows[2]) / problem.mass[c.nodes[i]];
+  }
+  return c.switch_state(pool.states.cone(k * C::rows), pool.multiplier(k), g, mobility / stage.inertia,
+                        stage.tolerance * c.reference_length());
+}
+
 void ActiveSet::begin(Problem& problem, const Stage& stage) {
   fewest_wrong_ = std::numeric_limits<int>::max(), stalled_ = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      if constexpr (ConeConstraint<C>) {
+        begin_cone(pool, k, problem, stage);
+        continue;
+      }
       double g[C::rows] = {};
       const RowLaw* const law = pool.law(k);
       if (std::any_of(law, law + C::rows, [](const RowLaw& l) { return !l.is_off() && (l.hold || l.is_compliant()); }))
@@ -79,6 +122,14 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      if constexpr (ConeConstraint<C>) {
+        if (stage.is_projection()) continue;
+        const ConeState now = pool.states.cone(k * C::rows), next = choose_state(pool, k, problem, stage, x);
+        if (now == next) continue;
+        ++wrong;
+        if (!(one_only && changed)) set_cone(pool.states, k * C::rows, next), changed = true;
+        continue;
+      }
       const C& c = pool.items[k];
       const RowLaw* const law = pool.law(k);
       RowStates::Row* const states = pool.states.rows_.data() + k * C::rows;

@@ -11,7 +11,8 @@ namespace iota::solver {
 /// The sides of rows with bounds (RowLaw): at a bound, or free. A primal-dual active set (Hintermueller, Ito, Kunisch
 /// 2002): at each iteration a row is at the bound beyond which lambda + g / (natural compliance) lies, or free. All
 /// rows change at once while that reduces the number of wrong ones, else one at a time, lowest first, which cannot
-/// cycle (Judice and Pires 1994). Sides and multipliers are in the pools.
+/// cycle (Judice and Pires 1994). A cone switches as one row does, between its own states. States and multipliers are in
+/// the pools.
 class ActiveSet {
  public:
   /// Sets sides from the multipliers of the last step; no other state is kept between steps.
@@ -30,6 +31,13 @@ class ActiveSet {
   static bool release_impulses(Problem&, std::span<const double> impulses);
 
  private:
+  template <class C>
+  static void begin_cone(ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&);
+  template <class C>
+  static ConeState choose_state(const ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&,
+                                const Vec3* x);
+  static void set_cone(RowStates&, std::size_t first, ConeState);
+
   int fewest_wrong_ = 0, stalled_ = 0;
 };
 

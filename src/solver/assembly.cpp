@@ -147,9 +147,15 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     }
     const double per_length = 1 / c.reference_length();
     compliance *= give;
+    [[maybe_unused]] ConeEquations cone;
+    if constexpr (Laws && ConeConstraint<C>) cone = equations_of(pool, k, g, compliances, stage);
     for (int r = 0; r < C::rows; ++r) {
       double value, gap = g[r];
-      if constexpr (Laws) {
+      if constexpr (Laws && ConeConstraint<C>) {
+        const bool is_equation = pool.is_equation(k, r);
+        value = cone.value[r] - (is_equation ? compliances[r] * give * lambda[r] : 0);
+        gap = is_equation ? cone.value[r] : 0;
+      } else if constexpr (Laws) {
         const bool is_equation = pool.is_equation(k, r);
         const RowEquation equation = equation_of(pool, k, r, g[r], stage);
         if (!is_equation)
@@ -346,7 +352,7 @@ void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* 
   forget_factors();
   if (stage.is_mid_point())
     assemble_all<Scheme::mid_point, Storage::general>(problem, stage, x, hessian);
-  else if (stage.storage == Storage::general)
+  else if (stage.storage == Storage::general || problem.has_unsymmetric_rows())
     assemble_all<Scheme::end_point, Storage::general>(problem, stage, x, hessian);
   else
     assemble_all<Scheme::end_point, Storage::symmetric>(problem, stage, x, hessian);
@@ -367,6 +373,29 @@ void Assembly::assemble_all(const Problem& problem, const Stage& stage, const Ve
   problem.for_each_force_pool([&](const auto& pool) { assemble_forces<T>(problem, force_stage, pool, x); });
 }
 
+namespace {
+
+/// The equations of a cone, which are needed before the gradients are visited; of others nothing.
+template <bool IsCone, class C>
+ConeEquations cone_equations([[maybe_unused]] const Problem& problem, [[maybe_unused]] const Stage& stage,
+                             [[maybe_unused]] const ConstraintPool<C>& pool, [[maybe_unused]] std::size_t k,
+                             [[maybe_unused]] const Vec3* x, [[maybe_unused]] const Gradients<C>& gradients) {
+  if constexpr (!IsCone) {
+    return {};
+  } else {
+    double g[C::rows], mobilities[C::rows] = {};
+    pool.value(k, x, stage.fraction, g);
+    for (int i = 0; i < pool.items[k].node_count(); ++i) {
+      Vec3 rows[C::rows];
+      gradients.of_node(i, rows);
+      for (int r = 0; r < C::rows; ++r) mobilities[r] += dot(rows[r], rows[r]) / problem.mass[pool.items[k].nodes[i]];
+    }
+    return equations_of(pool, k, g, mobilities, stage);
+  }
+}
+
+}  // namespace
+
 template <Scheme S, Storage T, bool Laws, class C>
 void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x,
                              Hessian hessian) {
@@ -385,9 +414,11 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         for (int r = 0; r < C::rows; ++r) diagonals[slots.diagonal + r * (slots.stride + 1)] = -1;
         continue;
       }
+    constexpr bool is_cone = Laws && ConeConstraint<C>;
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, end);
     [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, x, end);
+    [[maybe_unused]] const ConeEquations cone = cone_equations<is_cone>(problem, stage, pool, k, x, gradients);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);
@@ -398,9 +429,13 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       if constexpr (is_mid_point) means.of_node(i, rows, directions);
       const auto& slot = slots.gradients[i];
       for (int r = 0; r < C::rows; ++r) {
-        if constexpr (Laws)
+        if constexpr (Laws && !is_cone)
           if (!pool.is_equation(k, r)) continue;
-        const Vec3& in_row = rows[r];
+        Vec3 in_row = rows[r];
+        if constexpr (is_cone) {
+          const auto& by = cone.by_value[static_cast<std::size_t>(r)];
+          in_row = by[0] * rows[0] + by[1] * rows[1] + by[2] * rows[2];
+        }
         const Vec3& in_column = is_mid_point ? directions[r] : rows[r];
         const Vec3& below = slot.lower_is_row ? in_row : in_column;
         double* const l = (slot.in_diagonal ? diagonals : lower) + slot.offset + r * slot.row_stride;
@@ -415,7 +450,10 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
     }
     for (int r = 0; r < C::rows; ++r) {
       double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
-      if constexpr (Laws) {
+      if constexpr (is_cone) {
+        for (int q = 0; q < C::rows; ++q) diagonals[slots.diagonal + r * slots.stride + q] = cone.by_multiplier[r][q];
+        if (pool.is_equation(k, r)) diagonal -= compliances[r] * give;
+      } else if constexpr (Laws) {
         diagonal = pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, 0, stage).softness : -1;
       } else {
         diagonal = -compliance * give;

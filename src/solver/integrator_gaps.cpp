@@ -86,7 +86,7 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
         if (pool.has_laws() && pool.laws[row].violation(offset[r]) == 0) offset[r] = 0;
         if (!moving || !(std::abs(offset[r]) > closed_gap * pool.items[i].reference_length())) continue;
         RowLaw& law = pool.law(i)[r];
-        if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // already bounded
+        if (ConeConstraint<C> || law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // already bounded
         (offset[r] > 0 ? law.lower : law.upper) = 0;
         offset[r] *= relaxation;
         pool.held.push_back(row);

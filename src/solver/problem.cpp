@@ -83,6 +83,9 @@ void Problem::fit_pools() {
   for_each_constraint_pool([]<class C>(ConstraintPool<C>& pool) {
     resize_with_slack(pool.multipliers, pool.items.size() * C::rows);
     resize_with_slack(pool.slots, pool.items.size());
+    if constexpr (ConeConstraint<C>)
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        for (int r = 0; r < C::rows; ++r) pool.law(i)[r].hold = C::is_tangent(r);
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.reset(pool.laws.size());
     pool.acting.clear();

@@ -76,7 +76,8 @@ struct ConstraintPool {
   std::vector<ItemKey> keys;
   std::vector<double> multipliers;   ///< C::rows each, N
   std::vector<double> offsets;       ///< C::rows each: held gaps that cannot be closed; or empty: none
-  std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing
+  std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing. Of a cone the
+                                     ///< tangents are hold rows, whose bounds it knows itself
   RowStates states;                  ///< beside laws
   std::vector<std::uint8_t> acting;  ///< of each item, if there were laws at the last Problem::note_acting
   std::vector<std::uint32_t>
@@ -253,6 +254,12 @@ struct Problem {
   bool has_laws() const {
     bool any = false;
     for_each_constraint_pool([&](const auto& pool) { any = any || pool.has_laws(); });
+    return any;
+  }
+  /// Whether the matrix of a step or a projection needs general storage in any scheme.
+  bool has_unsymmetric_rows() const {
+    bool any = false;
+    for_each_constraint_pool([&]<class C>(const ConstraintPool<C>&) { any = any || ConeConstraint<C>; });
     return any;
   }
   std::size_t multiplier_count() const {

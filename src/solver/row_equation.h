@@ -26,6 +26,19 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   return {g + ((1 - part) * stiffness - damping) / total * before, 1 / total};
 }
 
+/// Of the rows of a cone, where their values are g; `mobilities`: sum |G|^2 / m of each. Positions and impulses, on which
+/// finite forces have no effect, have no friction.
+template <ConeConstraint C>
+ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const double* g, const double* mobilities,
+                           const Stage& stage) {
+  double values[C::rows];
+  for (int r = 0; r < C::rows; ++r)
+    values[r] = g[r] - (C::is_tangent(r) ? pool.states.start(i * C::rows + static_cast<std::size_t>(r)) : 0);
+  ConeState state = pool.states.cone(i * C::rows);
+  if (stage.is_projection()) state.direction = 0;
+  return pool.items[i].equations(state, pool.multiplier(i), values, mobilities[2] / stage.inertia);
+}
+
 /// Whether all rows of an item are at a bound of zero, so that it has no effect.
 template <class C>
 bool is_out_of_play(const ConstraintPool<C>& pool, std::size_t item) {

@@ -10,7 +10,8 @@ void StepEquations::for_each_row(Visit visit) const {
   problem_.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k)
       for (int r = 0; r < C::rows; ++r) {
-        visit(pool.slots[k].unknown + static_cast<std::uint32_t>(r), pool.multiplier(k)[r], !pool.is_equation(k, r));
+        visit(pool.slots[k].unknown + static_cast<std::uint32_t>(r), pool.multiplier(k)[r],
+              !ConeConstraint<C> && !pool.is_equation(k, r));
       }
   });
 }

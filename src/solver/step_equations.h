@@ -24,7 +24,7 @@ class StepEquations final : public NonlinearProblem {
   double assign(std::span<const double> unknowns);
 
  private:
-  template <class Visit>  // visit(unknown, multiplier, is at a bound)
+  template <class Visit>  // visit(unknown, multiplier, is at a constant bound)
   void for_each_row(Visit visit) const;
 
   Newton& newton_;

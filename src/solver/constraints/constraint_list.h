@@ -4,9 +4,11 @@
 #include "solver/constraints/affine.h"
 #include "solver/constraints/angle.h"
 #include "solver/constraints/bilinear.h"
+#include "solver/constraints/cone.h"
 #include "solver/constraints/coupling.h"
 #include "solver/constraints/curve.h"
 #include "solver/constraints/distance.h"
+#include "solver/constraints/friction_line.h"
 #include "solver/constraints/span.h"
 #include "solver/constraints/surface.h"
 #include "solver/constraints/surface_pair.h"
@@ -48,6 +50,17 @@ concept GeneralConstraint = Constraint<C> && requires(const C& c, const Vec3* x,
 /// Stores its present place, to stay on the same branch: `track` after each (sub-)step.
 template <class C>
 concept TrackingConstraint = requires(C& c, const Vec3* x) { c.track(x, 1.0); };
+
+/// Three rows whose bounds depend on each other's multipliers: pure mathematics on a state that the solver keeps. Values
+/// along tangents are measured from the start of the (sub-)step. See ConeState, ConeEquations.
+template <class C>
+concept ConeConstraint = GeneralConstraint<C> && C::rows == 3 &&
+                         requires(const C& c, ConeState state, const double* multipliers, const double* g) {
+                           { C::is_tangent(0) } -> std::same_as<bool>;
+                           { c.state_of(multipliers) } -> std::same_as<ConeState>;
+                           { c.switch_state(state, multipliers, g, 1.0, 1.0) } -> std::same_as<ConeState>;
+                           { c.equations(state, multipliers, g, 1.0) } -> std::same_as<ConeEquations>;
+                         };
 
 /// Gradients of a constraint at x, node by node. Those of the general ones and of distances are evaluated before the
 /// visits: otherwise the compiler must assume that the caller's writes change their inputs.
@@ -111,7 +124,7 @@ template <template <class> class Pool>
 using ConstraintPools =
     std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,
                Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>,
-               Pool<SpanConstraint>, Pool<CouplingConstraint>>;
+               Pool<SpanConstraint>, Pool<CouplingConstraint>, Pool<FrictionLineConstraint>>;
 
 template <class C>
 struct CheckConstraint {

@@ -184,6 +184,12 @@ Example<SpanConstraint> example(Random& random, SpanConstraint c) {
   return {c, two_bodies(random)};
 }
 
+Example<FrictionLineConstraint> example(Random& random, FrictionLineConstraint c) {
+  c.friction = random.number(0, 1);
+  add_place(c, random, random.vec(0.5));
+  return {c, two_bodies(random)};
+}
+
 /// Coordinates of all kinds between bodies, some of which are in several of them.
 Example<CouplingConstraint> example(Random& random, CouplingConstraint c) {
   std::vector<Vec3> x;
