@@ -3,6 +3,7 @@
 
 #include "binders.h"
 #include "names.h"
+#include "record_maker.h"
 #include "room_object.h"
 #include "shape_argument.h"
 
@@ -18,6 +19,8 @@
 #include <span>
 #include <tuple>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace iota::bindings {
 
@@ -199,31 +202,45 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
   self.own.set(number, {slot, generation}, record);
 }
 
-/// The bodies of an event that still exist, each once, in its order.
-std::vector<BodyId> ids_of(RoomObject& self, const net::InputEvent& event) {
+// ------------------------------------------------------------------------------------------------------------- input
+
+using Ids = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Client and record of each input.
+nb::list take_input(RoomObject& self) {
+  nb::list taken;
+  const std::vector<net::ClientInput> inputs = self.use().take_input();
+  if (inputs.empty()) return taken;
+  const RecordMaker maker;
+  for (const auto& [client, what] : inputs) {
+    taken.append(nb::make_tuple(client, std::visit([&](const auto& message) { return maker.make(message); }, what)));
+  }
+  return taken;
+}
+
+/// The bodies that still exist, each once, in this order.
+std::vector<BodyId> existing(RoomObject& self, const Ids& named) {
   std::vector<BodyId> ids;
   std::set<std::uint32_t> seen;
-  const auto add = [&](const protocol::Id& id) {
-    const std::optional<BodyId> body = self.presenter.body(id);
+  for (const auto& [slot, generation] : named) {
+    const std::optional<BodyId> body = self.presenter.body({slot, generation});
     if (body && seen.insert(body->slot).second) ids.push_back(*body);
-  };
-  add(event.body);
-  for (const protocol::Id& id : event.others) add(id);
+  }
   return ids;
 }
 
-nb::list bodies_of(RoomObject& self, const net::InputEvent& event, const nb::object& system) {
+nb::list bodies_of(RoomObject& self, const Ids& ids, const nb::object& system) {
   SystemObject* const object = to_system(system);
   nb::list bodies;
-  for (const BodyId id : ids_of(self, event))
+  for (const BodyId id : existing(self, ids))
     if (object->use().bodies().contains(id)) bodies.append(nb::cast(BodyHandle{system, object, id}));
   return bodies;
 }
 
 /// The same of a simulator: slots.
-std::vector<std::uint32_t> slots_of(RoomObject& self, const net::InputEvent& event) {
+std::vector<std::uint32_t> slots_of(RoomObject& self, const Ids& ids) {
   std::vector<std::uint32_t> slots;
-  for (const BodyId id : ids_of(self, event)) slots.push_back(id.slot);
+  for (const BodyId id : existing(self, ids)) slots.push_back(id.slot);
   return slots;
 }
 
@@ -327,10 +344,10 @@ void bind_room(nb::module_& module) {
           "needs_all",
           [](RoomObject& self) { return self.presenter.needs_all() || !self.presenter.assigned().empty(); },
           "Whether a simulator must send its bodies next time even without a change.")
-      .def("bodies_of", &bodies_of, "event"_a, "system"_a,
-           nb::sig("def bodies_of(self, event: InputEvent, system: System) -> list[Body]"),
-           "The bodies of an event that still exist; an action may be on several.")
-      .def("slots_of", &slots_of, "event"_a, "The slots of the simulator's bodies of an event that still exist.")
+      .def("bodies_of", &bodies_of, "ids"_a, "system"_a,
+           nb::sig("def bodies_of(self, ids: collections.abc.Sequence[tuple[int, int]], system: System) -> list[Body]"),
+           "The bodies with these ids, slot and generation, that still exist, each once.")
+      .def("slots_of", &slots_of, "ids"_a, "The slots of the simulator's bodies with these ids that still exist.")
       .def(
           "take_warnings", [](RoomObject& self) { return self.presenter.take_warnings(); },
           "Notices since the last call about things that could not be drawn exactly.")
@@ -365,9 +382,8 @@ void bind_room(nb::module_& module) {
             return new RoomRecordingObject{self.use().record(finite_positive(pose_time, "pose_time", "s"))};
           },
           "pose_time"_a, "Records what viewers are sent. pose_time: between two recorded poses, s.")
-      .def(
-          "take_input", [](RoomObject& self) { return self.use().take_input(); },
-          "Events since the last call, in order of arrival.");
+      .def("take_input", &take_input, nb::sig("def take_input(self) -> list[tuple[int, typing.Any]]"),
+           "Client and record (iota._protocol.Input) of each input since the last call, in order of arrival.");
 }
 
 }  // namespace iota::bindings

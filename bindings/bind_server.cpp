@@ -6,7 +6,6 @@
 #include "net/token.h"
 
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -16,7 +15,6 @@ namespace iota::bindings {
 
 namespace {
 
-using net::InputEvent;
 using net::Server;
 using net::ServerOptions;
 using net::ServerStatistics;
@@ -27,27 +25,6 @@ constexpr const char* server_doc =
     "built page. token: required of every page. hello_time: s, from the upgrade of a connection to its first frame.\n"
     "certificate, key: in PEM; with them other machines use https on the same port.\n"
     "Raises OSError if the port is in use.";
-
-const char* kind_name_of(InputEvent::Kind kind) {
-  switch (kind) {
-    case InputEvent::Kind::join: return "join";
-    case InputEvent::Kind::leave: return "leave";
-    case InputEvent::Kind::select: return "select";
-    case InputEvent::Kind::grab_start: return "grab_start";
-    case InputEvent::Kind::grab_move: return "grab_move";
-    case InputEvent::Kind::grab_end: return "grab_end";
-    case InputEvent::Kind::action: return "action";
-    case InputEvent::Kind::control: return "control";
-    case InputEvent::Kind::change: return "change";
-    case InputEvent::Kind::pointer: return "pointer";
-    case InputEvent::Kind::key: return "key";
-    case InputEvent::Kind::picture: return "picture";
-    case InputEvent::Kind::profile: return "profile";
-  }
-  return "unknown";
-}
-
-Vec3 widen(const net::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
 [[noreturn]] void raise_os_error(const std::error_code& code, const char* text) {
   nb::object arguments = nb::make_tuple(code.value(), text);
@@ -91,56 +68,6 @@ std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port,
   }
 }
 
-void bind_input(nb::module_& module) {
-  nb::class_<InputEvent>(module, "InputEvent", "An input of a user, or a user joined or left.")
-      .def_prop_ro(
-          "kind", [](const InputEvent& e) { return kind_name_of(e.kind); },
-          "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key, picture or profile")
-      .def_ro("client", &InputEvent::client, "From 1, never used twice in a world.")
-      .def_ro("hold", &InputEvent::hold, "The client's own number for this grip.")
-      .def_prop_ro(
-          "names_body",
-          [](const InputEvent& e) { return static_cast<bool>(e.body) && e.kind != InputEvent::Kind::change; },
-          "Whether it is on a body or several: `Room.bodies_of` returns those that still exist.")
-      .def_prop_ro(
-          "local_point", [](const InputEvent& e) { return widen(e.local_point); }, "Body frame, m.")
-      .def_prop_ro(
-          "target", [](const InputEvent& e) { return widen(e.target); }, "World frame, m.")
-      .def_prop_ro(
-          "origin", [](const InputEvent& e) { return widen(e.origin); }, "Of a pointer's ray, world frame, m.")
-      .def_prop_ro(
-          "direction", [](const InputEvent& e) { return widen(e.direction); },
-          "Of a pointer's ray, unit vector, world frame.")
-      .def_prop_ro(
-          "rotation",
-          [](const InputEvent& e) {
-            const auto& [x, y, z, w] = e.rotation;
-            return std::tuple(x, y, z, w);
-          },
-          "Of a hand or controller, quaternion x y z w, world frame.")
-      .def_ro("buttons", &InputEvent::buttons, "Of a pointer, 0 to 1 each.")
-      .def_ro("axes", &InputEvent::axes, "Of a pointer, -1 to 1 each.")
-      .def_ro("joints", &InputEvent::joints, "Of a bare hand, three numbers each, world frame, m.")
-      .def_prop_ro(
-          "widget", [](const InputEvent& e) { return std::pair(e.body.slot, e.body.generation); },
-          "Slot and generation of the control that was changed.")
-      .def_prop_ro(
-          "pointer", [](const InputEvent& e) { return static_cast<int>(e.pointer); }, "A PointerKind.")
-      .def_prop_ro(
-          "data",
-          [](const InputEvent& e) { return nb::bytes(reinterpret_cast<const char*>(e.data.data()), e.data.size()); },
-          "A part of a picture.")
-      .def_ro("number", &InputEvent::number, "Of the request for a picture.")
-      .def_ro("is_final", &InputEvent::is_final, "A key was released; the last part of a picture.")
-      .def_ro("name", &InputEvent::name, "Of the client, action, pointer or key; the text of a text field.")
-      .def_prop_ro(
-          "command", [](const InputEvent& e) { return static_cast<int>(e.command); }, "A ControlCommand.")
-      .def_ro("value", &InputEvent::value)
-      .def("__repr__", [](const InputEvent& e) {
-        return std::string("<InputEvent ") + kind_name_of(e.kind) + " of client " + std::to_string(e.client) + ">";
-      });
-}
-
 void bind_statistics(nb::module_& module) {
   nb::class_<ServerStatistics>(module, "ServerStatistics", "Counts since the server started.")
       .def_ro("clients", &ServerStatistics::clients, "Connected now.")
@@ -155,7 +82,6 @@ void bind_statistics(nb::module_& module) {
 }  // namespace
 
 void bind_server(nb::module_& module) {
-  bind_input(module);
   bind_statistics(module);
   module.def("make_token", &net::make_token, "A new secret for a page's address: 32 hexadecimal digits.");
   module.def(

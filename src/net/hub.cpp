@@ -7,6 +7,9 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -27,22 +30,58 @@ bool is_near(std::span<const float> places) {
   return std::ranges::all_of(places, [](float x) { return std::abs(x) <= farthest; });
 }
 
-/// Whether the event moves a grip or a pointer. Of several such events only the newest counts.
-bool is_move(const InputEvent& event) {
-  return event.kind == InputEvent::Kind::grab_move ||
-         (event.kind == InputEvent::Kind::pointer && event.pointer == protocol::PointerKind::move);
+/// Whether a place in a message is out of reach: one in it, or in a struct in it.
+template <class Value>
+bool is_far(const Value& value) {
+  if constexpr (std::is_same_v<Value, protocol::Vec3>) {
+    return !is_near(value);
+  } else if constexpr (requires { value.fields(); }) {
+    return std::apply([](const auto&... fields) { return (is_far(fields) || ...); }, value.fields());
+  } else if constexpr (requires { value.begin()->fields(); }) {
+    return std::ranges::any_of(value, [](const auto& item) { return is_far(item); });
+  } else {
+    return false;
+  }
+}
+
+template <class Message>
+bool is_a(const ClientInput& input) {
+  return std::holds_alternative<Message>(input.what);
+}
+
+/// Whether the input moves a grip or a pointer. Of several such inputs only the newest counts.
+bool is_move(const ClientInput& input) {
+  const auto* pointer = std::get_if<protocol::Pointer>(&input.what);
+  return is_a<protocol::GrabMove>(input) || (pointer && pointer->kind == protocol::PointerKind::move);
+}
+
+/// Whether two moves are of the same grip or pointer.
+bool move_the_same(const ClientInput& a, const ClientInput& b) {
+  if (a.client != b.client || a.what.index() != b.what.index()) return false;
+  if (const auto* grip = std::get_if<protocol::GrabMove>(&a.what))
+    return grip->hold == std::get<protocol::GrabMove>(b.what).hold;
+  return std::get<protocol::Pointer>(a.what).name == std::get<protocol::Pointer>(b.what).name;
+}
+
+/// Whether two inputs change the same control of the script.
+bool change_the_same(const ClientInput& a, const ClientInput& b) {
+  const auto *one = std::get_if<protocol::Change>(&a.what), *other = std::get_if<protocol::Change>(&b.what);
+  return one && other && a.client == b.client && one->widget == other->widget;
 }
 
 /// Whether the same client has already sent the same request since the script last read its input: at most one single
 /// step a round. Only the newest speed counts, unless there was another request in between.
-bool has_waiting_twin(std::vector<InputEvent>& waiting, const InputEvent& event) {
+bool has_waiting_twin(std::vector<ClientInput>& waiting, const ClientInput& input) {
+  const auto* request = std::get_if<protocol::Control>(&input.what);
+  if (!request) return false;
   for (auto i = waiting.rbegin(); i != waiting.rend(); ++i) {
-    if (i->kind != InputEvent::Kind::control || i->client != event.client) continue;
-    if (i->command == event.command) {
-      i->value = event.value;
+    auto* known = std::get_if<protocol::Control>(&i->what);
+    if (!known || i->client != input.client) continue;
+    if (known->command == request->command) {
+      known->value = request->value;
       return true;
     }
-    if (event.command != protocol::ControlCommand::single_step) return false;
+    if (request->command != protocol::ControlCommand::single_step) return false;
   }
   return false;
 }
@@ -131,7 +170,7 @@ bool Hub::pulse(std::uint32_t client, const protocol::Pulse& pulse) {
   });
 }
 
-std::vector<InputEvent> Hub::take_input() {
+std::vector<ClientInput> Hub::take_input() {
   const std::lock_guard lock(in_mutex_);
   input_counts_.clear();
   return std::exchange(input_, {});
@@ -181,11 +220,7 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
   ++counters_.clients;
   greet(link, number);
   tell_clients();
-  InputEvent event;
-  event.kind = InputEvent::Kind::join;
-  event.client = number;
-  event.name = hello.name;
-  push_input(std::move(event));
+  push_input({number, protocol::Join{hello.name, hello.role}});
   return {number, {}};
 }
 
@@ -196,8 +231,7 @@ void Hub::leave(std::uint32_t client) {
   clients_.erase(found);
   --counters_.clients;
   tell_clients();
-  InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
-  push_input(std::move(event));
+  push_input({client, protocol::Leave{}});
 }
 
 void Hub::watch(std::shared_ptr<ClientLink> link) {
@@ -218,9 +252,9 @@ void Hub::greet(ClientLink& link, std::uint32_t client) const {
 }
 
 void Hub::receive(std::uint32_t client, std::span<const std::uint8_t> bytes) {
-  const auto decoded = protocol::decode_client_message(bytes);
+  auto decoded = protocol::decode_client_message(bytes);
   if (!decoded) return refuse_frame(client, decoded.error);
-  std::visit([&](const auto& message) { handle(client, message); }, *decoded.value);
+  std::visit([&](auto& message) { handle(client, std::move(message)); }, *decoded.value);
 }
 
 void Hub::refuse_frame(std::uint32_t client, std::string_view reason) {
@@ -233,9 +267,10 @@ void Hub::tell(std::uint32_t client, const protocol::Notice& notice) {
   if (found != clients_.end()) found->second.link->send(make_frame(notice), {});
 }
 
-bool Hub::may_act(std::uint32_t client) {
-  if (clients_.at(client).role == protocol::Role::actor) return true;
-  tell(client, make_notice(0, "You only watch", "This page came as a viewer of the world.", "Open it as an actor."));
+bool Hub::may_send(std::uint32_t client, protocol::Viewers viewers) {
+  if (viewers == protocol::Viewers::allowed || clients_.at(client).role == protocol::Role::actor) return true;
+  if (viewers == protocol::Viewers::told)
+    tell(client, make_notice(0, "You only watch", "This page came as a viewer of the world.", "Open it as an actor."));
   return false;
 }
 
@@ -284,30 +319,27 @@ void Hub::frame() {
   if (!std::exchange(are_people_told_, true)) broadcast(make_frame(all_people()), people_key);
 }
 
-void Hub::push_input(InputEvent event) {
-  const std::uint32_t client = event.client;
+void Hub::push_input(ClientInput input) {
+  const std::uint32_t client = input.client;
   {
     const std::lock_guard lock(in_mutex_);
-    if (is_move(event)) {
+    if (is_move(input)) {
       // Moves of different grips and pointers may be reordered.
       for (auto i = input_.rbegin(); i != input_.rend() && is_move(*i); ++i) {
-        if (i->kind != event.kind || i->client != client || i->hold != event.hold || i->name != event.name) continue;
-        *i = std::move(event);
+        if (!move_the_same(*i, input)) continue;
+        *i = std::move(input);
         return;
       }
     }
-    if (event.kind == InputEvent::Kind::change) {
-      // Only the newest value of a control counts, unless there was another event in between.
-      if (!input_.empty() && input_.back().kind == event.kind && input_.back().client == client &&
-          input_.back().body == event.body) {
-        input_.back() = std::move(event);
-        return;
-      }
+    // Only the newest value of a control counts, unless there was another input in between.
+    if (!input_.empty() && change_the_same(input_.back(), input)) {
+      input_.back() = std::move(input);
+      return;
     }
-    if (event.kind == InputEvent::Kind::control && has_waiting_twin(input_, event)) return;
-    const bool is_own = event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
+    if (has_waiting_twin(input_, input)) return;
+    const bool is_own = is_a<protocol::Join>(input) || is_a<protocol::Leave>(input);
     if (is_own || input_counts_[client]++ < max_waiting_input) {
-      input_.push_back(std::move(event));
+      input_.push_back(std::move(input));
       return;
     }
   }
@@ -318,136 +350,76 @@ void Hub::push_input(InputEvent event) {
 
 // --------------------------------------------------------------------------------------------------------- messages
 
-void Hub::handle(std::uint32_t client, const protocol::Hello&) { refuse_frame(client, "hello was said before"); }
+template <class Message>
+void Hub::handle(std::uint32_t client, Message message) {
+  if (!may_send(client, Message::viewers)) return;
+  if (is_far(message)) return refuse_frame(client, std::string(Message::message_name) + ": a place is beyond 1e9 m");
+  if constexpr (Message::is_for_script) {
+    if (accept(client, message)) push_input({client, std::move(message)});
+  } else {
+    answer(client, message);
+  }
+}
 
-void Hub::handle(std::uint32_t client, const protocol::Select& message) {
+bool Hub::refuse(std::uint32_t client, std::string_view reason) {
+  refuse_frame(client, reason);
+  return false;
+}
+
+bool Hub::accept(std::uint32_t client, const protocol::Select& message) {
   Client& self = clients_.at(client);
-  if (self.selected == message.body) return;
+  if (self.selected == message.body) return false;
   self.selected = message.body;
   tell_clients();
-  InputEvent event{.kind = InputEvent::Kind::select, .client = client};
-  event.body = message.body;
-  push_input(std::move(event));
+  return true;
 }
 
-void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
-  if (!may_act(client)) return;
+bool Hub::accept(std::uint32_t client, const protocol::GrabStart& message) {
   Client& self = clients_.at(client);
-  if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
-  if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client holds too much already");
-  if (!is_near(message.local_point) || !is_near(message.target))
-    return refuse_frame(client, "grab_start: a place is beyond 1e9 m");
+  if (self.holds.contains(message.hold)) return refuse(client, "grab_start.hold is in use already");
+  if (self.holds.size() == max_holds) return refuse(client, "grab_start: this client holds too much already");
   self.holds.insert(message.hold);
-  InputEvent event{.kind = InputEvent::Kind::grab_start, .client = client};
-  event.hold = message.hold;
-  event.body = message.body;
-  event.local_point = message.local_point;
-  event.target = message.target;
-  push_input(std::move(event));
+  return true;
 }
 
-void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
-  if (clients_.at(client).role == protocol::Role::viewer) return;  // it was notified when it grabbed
-  if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
-  if (!is_near(message.target)) return refuse_frame(client, "grab_move.target is beyond 1e9 m");
-  InputEvent event{.kind = InputEvent::Kind::grab_move, .client = client};
-  event.hold = message.hold;
-  event.target = message.target;
-  push_input(std::move(event));
+bool Hub::accept(std::uint32_t client, const protocol::GrabMove& message) {
+  return clients_.at(client).holds.contains(message.hold) || refuse(client, "grab_move.hold holds nothing");
 }
 
-void Hub::handle(std::uint32_t client, const protocol::GrabEnd& message) {
-  if (clients_.at(client).role == protocol::Role::viewer) return;
-  if (clients_.at(client).holds.erase(message.hold) == 0) return refuse_frame(client, "grab_end.hold holds nothing");
-  InputEvent event{.kind = InputEvent::Kind::grab_end, .client = client};
-  event.hold = message.hold;
-  push_input(std::move(event));
+bool Hub::accept(std::uint32_t client, const protocol::GrabEnd& message) {
+  return clients_.at(client).holds.erase(message.hold) > 0 || refuse(client, "grab_end.hold holds nothing");
 }
 
-void Hub::handle(std::uint32_t client, const protocol::Action& message) {
-  if (!may_act(client)) return;
-  InputEvent event{.kind = InputEvent::Kind::action, .client = client};
-  event.body = message.body;
-  event.others = message.others;
-  event.name = message.name;
-  push_input(std::move(event));
+bool Hub::accept(std::uint32_t client, const protocol::Control& message) {
+  return message.command != protocol::ControlCommand::reset || may_reset(client);
 }
 
-void Hub::handle(std::uint32_t client, const protocol::Control& message) {
-  if (!may_act(client)) return;
-  if (message.command == protocol::ControlCommand::reset && !may_reset(client)) return;
-  InputEvent event{.kind = InputEvent::Kind::control, .client = client};
-  event.command = message.command;
-  event.value = message.value;
-  push_input(std::move(event));
+bool Hub::accept(std::uint32_t client, const protocol::Pointer& message) {
+  if (!is_near(message.joints)) return refuse(client, "pointer.joints: a place is beyond 1e9 m");
+  return message.joints.size() % 3 == 0 || refuse(client, "pointer.joints: a joint has three coordinates");
 }
 
-void Hub::handle(std::uint32_t client, const protocol::Change& message) {
-  if (!may_act(client)) return;
-  InputEvent event{.kind = InputEvent::Kind::change, .client = client};
-  event.body = message.widget;
-  event.value = message.value;
-  event.name = message.text;
-  push_input(std::move(event));
-}
-
-void Hub::handle(std::uint32_t client, const protocol::Pointer& message) {
-  if (clients_.at(client).role == protocol::Role::viewer) return;
-  if (!is_near(message.point) || !is_near(message.origin) || !is_near(message.joints))
-    return refuse_frame(client, "pointer: it is beyond 1e9 m");
-  if (message.joints.size() % 3 != 0) return refuse_frame(client, "pointer: a joint has three coordinates");
-  InputEvent event{.kind = InputEvent::Kind::pointer, .client = client};
-  event.pointer = message.kind;
-  event.body = message.body;
-  event.name = message.name;
-  event.target = message.point;
-  event.origin = message.origin;
-  event.direction = message.direction;
-  event.rotation = message.rotation;
-  event.buttons = message.buttons;
-  event.axes = message.axes;
-  event.joints = message.joints;
-  push_input(std::move(event));
-}
-
-void Hub::handle(std::uint32_t client, const protocol::Key& message) {
-  if (clients_.at(client).role == protocol::Role::viewer) return;
-  InputEvent event{.kind = InputEvent::Kind::key, .client = client};
-  event.name = message.key;
-  event.is_final = !message.down;
-  push_input(std::move(event));
-}
-
-void Hub::handle(std::uint32_t client, const protocol::Picture& message) {
+bool Hub::accept(std::uint32_t client, const protocol::Picture& message) {
   Client& self = clients_.at(client);
-  if (self.picture == 0 || message.request != self.picture) return refuse_frame(client, "picture: none was asked for");
+  if (self.picture == 0 || message.request != self.picture) return refuse(client, "picture: none was asked for");
   self.picture_bytes += message.data.size();
   const bool is_too_large = self.picture_bytes > max_picture_bytes;
   if (message.is_last || is_too_large) self.picture = 0;
-  if (is_too_large) return refuse_frame(client, "picture: it is above 64 MiB");
-  InputEvent event{.kind = InputEvent::Kind::picture, .client = client};
-  event.number = message.request;
-  event.is_final = message.is_last;
-  event.data = message.data;
-  push_input(std::move(event));
+  return !is_too_large || refuse(client, "picture: it is above 64 MiB");
 }
 
-void Hub::handle(std::uint32_t client, const protocol::Presence& message) {
+void Hub::answer(std::uint32_t client, const protocol::Hello&) { refuse_frame(client, "hello was said before"); }
+
+void Hub::answer(std::uint32_t client, const protocol::Ping& message) {
+  clients_.at(client).link->send(make_frame(protocol::Pong{message.client_time, poses_.poses().step}), {});
+}
+
+void Hub::answer(std::uint32_t client, const protocol::Presence& message) {
   const protocol::Stance& stance = message.stance;
-  if (!is_near(stance.head) || !is_near(stance.hands)) return refuse_frame(client, "presence: it is beyond 1e9 m");
+  if (!is_near(stance.hands)) return refuse_frame(client, "presence: a place is beyond 1e9 m");
   if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
   clients_.at(client).stance = stance;
   tell_people();
-}
-
-void Hub::handle(std::uint32_t client, const protocol::Profile& message) {
-  InputEvent event{.kind = InputEvent::Kind::profile, .client = client};
-  event.value = message.on;
-  push_input(std::move(event));
-}
-
-void Hub::handle(std::uint32_t client, const protocol::Ping& message) {
-  clients_.at(client).link->send(make_frame(protocol::Pong{message.client_time, poses_.poses().step}), {});
 }
 
 }  // namespace iota::net

@@ -70,7 +70,7 @@ class Hub {
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position, float volume = 1);
   [[nodiscard]] bool pulse(std::uint32_t client, const protocol::Pulse& pulse);
-  std::vector<InputEvent> take_input();
+  std::vector<ClientInput> take_input();
 
   // --- on the server's thread
   /// Passes everything published to the clients: edits in order, then the newest poses.
@@ -120,27 +120,34 @@ class Hub {
   void tell_people();
   protocol::People all_people() const;
   [[nodiscard]] bool set_latest(std::string key, Frame frame, std::uint32_t client);
-  void push_input(InputEvent event);
+  void push_input(ClientInput input);
   void tell(std::uint32_t client, const protocol::Notice& notice);
-  /// Tells a viewer that it can only watch.
-  bool may_act(std::uint32_t client);
+  /// Whether a client may send a message, by its role. A viewer is told that it can only watch, if the message says so.
+  bool may_send(std::uint32_t client, protocol::Viewers viewers);
   /// Tells a client that resets the world too often that it has to wait.
   bool may_reset(std::uint32_t client);
 
-  void handle(std::uint32_t client, const protocol::Hello& message);
-  void handle(std::uint32_t client, const protocol::Select& message);
-  void handle(std::uint32_t client, const protocol::GrabStart& message);
-  void handle(std::uint32_t client, const protocol::GrabMove& message);
-  void handle(std::uint32_t client, const protocol::GrabEnd& message);
-  void handle(std::uint32_t client, const protocol::Action& message);
-  void handle(std::uint32_t client, const protocol::Control& message);
-  void handle(std::uint32_t client, const protocol::Ping& message);
-  void handle(std::uint32_t client, const protocol::Change& message);
-  void handle(std::uint32_t client, const protocol::Pointer& message);
-  void handle(std::uint32_t client, const protocol::Key& message);
-  void handle(std::uint32_t client, const protocol::Picture& message);
-  void handle(std::uint32_t client, const protocol::Presence& message);
-  void handle(std::uint32_t client, const protocol::Profile& message);
+  /// Checks what is the same for all messages and passes on those for the script.
+  template <class Message>
+  void handle(std::uint32_t client, Message message);
+  /// Checks of a message of its own, and what the hub itself keeps of it; false: the script does not get it.
+  template <class Message>
+  bool accept(std::uint32_t, const Message&) {
+    return true;
+  }
+  bool accept(std::uint32_t client, const protocol::Select& message);
+  bool accept(std::uint32_t client, const protocol::GrabStart& message);
+  bool accept(std::uint32_t client, const protocol::GrabMove& message);
+  bool accept(std::uint32_t client, const protocol::GrabEnd& message);
+  bool accept(std::uint32_t client, const protocol::Control& message);
+  bool accept(std::uint32_t client, const protocol::Pointer& message);
+  bool accept(std::uint32_t client, const protocol::Picture& message);
+  /// Refuses the frame; false.
+  bool refuse(std::uint32_t client, std::string_view reason);
+  /// Messages that are for the server itself.
+  void answer(std::uint32_t client, const protocol::Hello& message);
+  void answer(std::uint32_t client, const protocol::Ping& message);
+  void answer(std::uint32_t client, const protocol::Presence& message);
 
   const std::string world_;
   const std::size_t max_clients_;
@@ -156,8 +163,8 @@ class Hub {
   bool is_delivery_due_ = false;
   // ... and to the stepping thread.
   std::mutex in_mutex_;
-  std::vector<InputEvent> input_;
-  std::map<std::uint32_t, std::size_t> input_counts_;  ///< queued events by client
+  std::vector<ClientInput> input_;
+  std::map<std::uint32_t, std::size_t> input_counts_;  ///< queued messages by client
 
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;

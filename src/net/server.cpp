@@ -331,7 +331,7 @@ std::unique_ptr<Recording> Room::record(double pose_time) {
   return std::unique_ptr<Recording>(new Recording(std::move(recorder), std::move(end)));
 }
 
-std::vector<InputEvent> Room::take_input() { return hub_->take_input(); }
+std::vector<ClientInput> Room::take_input() { return hub_->take_input(); }
 
 Recording::Recording(std::shared_ptr<Recorder> recorder, std::function<void()> end)
     : recorder_(std::move(recorder)), end_(std::move(end)) {}

@@ -37,40 +37,10 @@ struct ServerOptions {
   double hello_time = 10;                 ///< s, from the upgrade of a connection to its first frame
 };
 
-/// An input of a user, or a user joined or left. Fields that a kind does not need have their defaults.
-struct InputEvent {
-  enum class Kind : std::uint8_t {
-    join,
-    leave,
-    select,
-    grab_start,
-    grab_move,
-    grab_end,
-    action,
-    control,
-    change,
-    pointer,
-    key,
-    picture,
-    profile
-  };
-  Kind kind = Kind::join;
-  std::uint32_t client = 0;             ///< from 1, never used twice in a world
-  std::uint32_t hold = 0;               ///< grab_...: the client's own number for this grip
-  protocol::Id body;                    ///< of an entity that may no longer exist; null: none. change: of the widget
-  std::vector<protocol::Id> others;     ///< action: bodies selected together with that one
-  Vec3f local_point{};                  ///< grab_start: body frame
-  Vec3f target{};                       ///< grab_start, grab_move: world frame; pointer: where it hit the body, or is
-  Vec3f origin{}, direction{};          ///< pointer: its ray, world frame
-  protocol::Quat rotation{0, 0, 0, 1};  ///< pointer: of a hand or controller, world frame
-  std::vector<float> buttons, axes, joints;  ///< pointer: as in its message
-  std::string name;                ///< of the client (join), action, pointer or key; change: the text of a text field
-  std::vector<std::uint8_t> data;  ///< picture: a part of it
-  protocol::ControlCommand command{};
-  protocol::PointerKind pointer{};
-  double value = 0;          ///< control: speed in times real time; change: of the widget; profile: 1, or 0 to end it
-  bool is_final = false;     ///< key: released; picture: the last part
-  std::uint32_t number = 0;  ///< picture: of the request
+/// A message of a client that was welcomed, or an event of the server: the client joined or left.
+struct ClientInput {
+  std::uint32_t client = 0;  ///< from 1, never used twice in a world
+  protocol::Input what;      ///< entities that it names may no longer exist
 };
 
 struct ServerStatistics {
@@ -148,9 +118,9 @@ class Room {
   /// Records what viewers are sent. pose_time: between two recorded poses, s.
   std::unique_ptr<Recording> record(double pose_time);
 
-  /// Events since the last call, in order of arrival. Successive moves of one grip are merged.
-  /// A `leave` ends the client's holds and selection: no grab_end precedes it.
-  std::vector<InputEvent> take_input();
+  /// Inputs since the last call, in order of arrival. Of successive moves of one grip or pointer there is only the
+  /// newest. A `Leave` ends the client's holds and selection: no `GrabEnd` precedes it.
+  std::vector<ClientInput> take_input();
 
  private:
   friend class Server;

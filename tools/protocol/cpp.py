@@ -37,14 +37,18 @@ def make(schema: Schema) -> str:
         lines += ["", f"/// {enum.doc}", f"enum class {pascal(enum.name)} : std::uint8_t {{"]
         lines += [f"  {spelled(name)} = {value}," for name, value in enum.values]
         lines.append("};")
-    for struct in schema.coded:
-        lines += definition(struct)
+    for struct in (*schema.coded, *schema.events):
+        lines += definition(struct, schema)
     kinds = ", ".join(pascal(entity.name) for entity in schema.entities)
     lines += ["", "/// A record of each kind of entities: what one refers to comes before it."]
     lines.append(f"using EntityKinds = std::tuple<{kinds}>;")
     for direction, messages in (("client", schema.client), ("server", schema.server)):
         names = ", ".join(pascal(message.name) for message in messages)
         lines += ["", f"using {pascal(direction)}Message = std::variant<{names}>;"]
+    inputs = ", ".join(pascal(each.name) for each in schema.inputs)
+    lines += ["", "/// Everything that a script is told of clients.", f"using Input = std::variant<{inputs}>;", ""]
+    for name in (*schema.enums, *(record.name for record in schema.records)):
+        lines.append(f'template <>\ninline constexpr const char* record_name<{pascal(name)}> = "{pascal(name)}";')
     lines += ["", fragment("codec.h")]
     for struct in schema.coded:
         lines += codec(struct, schema)
@@ -66,16 +70,24 @@ def type_name(type: Type) -> str:
     return pascal(type.enum) if type.enum else TYPES[type.kind]
 
 
-def definition(struct: Struct) -> list[str]:
+def definition(struct: Struct, schema: Schema) -> list[str]:
     name = pascal(struct.name)
     lines = ["", f"/// {struct.doc}", f"struct {name} {{"]
     if struct.number:
         lines.append(f"  static constexpr MessageType message_type = MessageType::{struct.name};")
     if struct.kind:
         lines.append(f'  static constexpr std::string_view kind_name = "{struct.kind}";')
+    if struct in schema.client:
+        lines.append(f'  static constexpr std::string_view message_name = "{struct.name}";')
+        lines.append(f"  static constexpr Viewers viewers = Viewers::{struct.viewers};")
+        is_for_script = "true" if struct.receiver == "script" else "false"
+        lines.append(f"  static constexpr bool is_for_script = {is_for_script};")
     for field in struct.fields:
         note = f"  ///< {field.doc}" if field.doc else ""
         lines.append(f"  {type_name(field.type)} {field.name}{{}};{note}")
+    if struct in (*schema.structs.values(), *schema.client, *schema.events):
+        names = ", ".join(field.name for field in struct.fields)
+        lines.append(f"  auto fields() const {{ return std::tie({names}); }}")
     return [*lines, f"  bool operator==(const {name}&) const = default;", "};"]
 
 

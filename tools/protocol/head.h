@@ -33,8 +33,18 @@ using Quat = std::array<float, 4>;
 struct Id {
   std::uint32_t slot = 0, generation = 0;
   explicit operator bool() const { return generation != 0; }
+  auto fields() const { return std::tie(slot, generation); }
   bool operator==(const Id&) const = default;
 };
+
+/// The server lets viewers send a message, tells them that they only watch, or ignores it.
+enum class Viewers : std::uint8_t { allowed, told, ignored };
+
+/// The name of a type in iota._protocol; only of the types in what a script is told of clients.
+template <class T>
+inline constexpr const char* record_name = nullptr;
+template <>
+inline constexpr const char* record_name<Id> = "Id";
 
 /// A decoded message, or the reason why there is none.
 template <class T>

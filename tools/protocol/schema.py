@@ -58,7 +58,9 @@ class Field:
 
 @dataclass(frozen=True)
 class Struct:
-    """A struct, a message (`number` is its type on the wire) or an entity (`kind` is its name on the wire)."""
+    """A struct, a message (`number` is its type on the wire), an entity (`kind` is its name on the wire) or an event of
+    the server, which is not on the wire. receiver: the script, or the server, which answers the message itself. viewers:
+    "allowed", "told" that they only watch, or "ignored"."""
 
     name: str
     doc: str
@@ -66,6 +68,8 @@ class Struct:
     number: int = 0
     kind: str = ""
     in_place: bool = False
+    receiver: str = "script"
+    viewers: str = "told"
 
 
 @dataclass(frozen=True)
@@ -92,6 +96,21 @@ class Schema:
     entities: tuple[Struct, ...]
     client: tuple[Struct, ...]
     server: tuple[Struct, ...]
+    events: tuple[Struct, ...] = ()
+
+    @property
+    def inputs(self) -> tuple[Struct, ...]:
+        """Everything that a script is told of clients."""
+        return (*(message for message in self.client if message.receiver == "script"), *self.events)
+
+    @property
+    def records(self) -> tuple[Struct, ...]:
+        """The inputs, and before them the structs in them."""
+        used: set[str] = set()
+        for struct in reversed((*self.structs.values(), *self.inputs)):
+            if struct in self.inputs or struct.name in used:
+                used |= {name for _, name in structs_in(struct)}
+        return (*(struct for struct in self.structs.values() if struct.name in used), *self.inputs)
 
     @property
     def messages(self) -> tuple[Struct, ...]:
@@ -130,7 +149,8 @@ def read_schema(path: Path) -> Schema:
     entities = read_entities(path.parent / "entities", enums)
     client = tuple(read_message(entry, enums) for entry in data["client_messages"])
     server = tuple(read_message(entry, enums) for entry in data["server_messages"])
-    schema = Schema(int(data["version"]), constants, enums, structs, entities, client, server)
+    events = tuple(read_event(entry, enums) for entry in data.get("events", []))
+    schema = Schema(int(data["version"]), constants, enums, structs, entities, client, server, events)
     check_names(schema)
     check_structs(schema)
     check_in_place(schema)
@@ -188,13 +208,22 @@ def read_fields(entry: dict[str, Any], enums: dict[str, Enum]) -> tuple[Field, .
     )
     if any(field.name == "type" for field in fields):
         raise SchemaError(f"{owner}: 'type' is taken by the message's type")
-    if not fields or len({field.name for field in fields}) != len(fields):
-        raise SchemaError(f"{owner}: needs fields with different names")
+    if len({field.name for field in fields}) != len(fields):
+        raise SchemaError(f"{owner}: two fields have the same name")
     return fields
 
 
 def read_struct(entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
-    return Struct(checked_name(entry.get("name"), "struct"), entry.get("doc", ""), read_fields(entry, enums))
+    name, fields = checked_name(entry.get("name"), "struct"), read_fields(entry, enums)
+    if not fields:
+        raise SchemaError(f"{name}: has no fields")
+    return Struct(name, entry.get("doc", ""), fields)
+
+
+def read_event(entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
+    return Struct(
+        checked_name(entry.get("name"), "event"), entry.get("doc", ""), read_fields(entry, enums), viewers="allowed"
+    )
 
 
 def read_entities(folder: Path, enums: dict[str, Enum]) -> tuple[Struct, ...]:
@@ -220,11 +249,26 @@ def read_message(entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
     number = entry.get("type")
     if not (isinstance(number, int) and 0 < number < 256):
         raise SchemaError(f"{name}: a message needs a type from 1 to 255")
-    return Struct(name, entry.get("doc", ""), read_fields(entry, enums), number, in_place=bool(entry.get("in_place")))
+    fields = read_fields(entry, enums)
+    if not fields:
+        raise SchemaError(f"{name}: has no fields")
+    receiver = entry.get("for", "script")
+    viewers = entry.get("viewers", "told" if receiver == "script" else "allowed")
+    if receiver not in ("script", "server") or viewers not in ("allowed", "told", "ignored"):
+        raise SchemaError(f"{name}: 'for' is script or server, 'viewers' is allowed, told or ignored")
+    return Struct(
+        name,
+        entry.get("doc", ""),
+        fields,
+        number,
+        in_place=bool(entry.get("in_place")),
+        receiver=receiver,
+        viewers=viewers,
+    )
 
 
 def check_names(schema: Schema) -> None:
-    names = [struct.name for struct in schema.coded] + list(schema.enums)
+    names = [struct.name for struct in (*schema.coded, *schema.events)] + list(schema.enums)
     if len(set(names)) != len(names):
         raise SchemaError("two entries have the same name")
     if len({message.number for message in schema.messages}) != len(schema.messages):
@@ -241,7 +285,7 @@ def structs_in(struct: Struct) -> Iterator[tuple[Field, str]]:
 
 def check_structs(schema: Schema) -> None:
     known: set[str] = set()
-    for struct in schema.coded:
+    for struct in (*schema.coded, *schema.events):
         for field, name in structs_in(struct):
             if name not in known:
                 raise SchemaError(f"{struct.name}.{field.name}: no struct {name!r} is listed before")

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from iota import studies
-from iota._core import InputEvent, Room
+from iota._core import Room
+from iota._protocol import Input, Join, Leave
 from iota.world import Server, World
 from iota.world.callbacks import one_line, print_error
 from iota.world.page import page_folder
@@ -24,23 +25,23 @@ LOOK = 0.1  # s, between two checks for visitors
 
 
 class WaitingRoom:
-    """The room of a study that is not running yet. It keeps its visitors' events for the world that takes it over."""
+    """The room of a study that is not running yet. It keeps its visitors' input for the world that takes it over."""
 
     def __init__(self, room: Room) -> None:
         self._room = room
-        self._seen: list[InputEvent] = []
+        self._seen: list[tuple[int, Input]] = []
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._room, name)
 
     def has_visitors(self) -> bool:
         self._seen += self._room.take_input()
-        left = {event.client for event in self._seen if event.kind == "leave"}
-        return any(event.kind == "join" and event.client not in left for event in self._seen)
+        left = {client for client, message in self._seen if isinstance(message, Leave)}
+        return any(isinstance(message, Join) and client not in left for client, message in self._seen)
 
-    def take_input(self) -> list[InputEvent]:
+    def take_input(self) -> list[tuple[int, Input]]:
         seen, self._seen = self._seen, []
-        return seen + list(self._room.take_input())
+        return seen + self._room.take_input()
 
 
 class Gallery(Server):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from iota._core import Body, Grip, InputEvent, System
+from iota._core import Body, Grip, System, Vec3
 from iota.saving import replacing
 from iota.simulator import SimulatedGrip
 from iota.world.scene import Camera, camera_or_none
@@ -101,7 +101,7 @@ def alive(body: Body | None) -> Body | None:
 
 
 class Clients:
-    """Turns input events into grips. Each holder has a grip of its own, so their forces are added."""
+    """The open pages, and their grips. Each holder has a grip of its own, so their forces are added."""
 
     def __init__(self, system: System) -> None:
         self._system = system
@@ -110,35 +110,35 @@ class Clients:
         self.send_pulse: SendPulse | None = None
         self.send_camera: SendCamera | None = None
 
-    def take(self, event: InputEvent, body: Any) -> None:
-        """Handles an event of kind join, leave, select, profile or grab_*. body: of the event, if any."""
-        if event.kind == "join":
-            self.by_id[event.client] = Client(
-                event.client,
-                event.name,
-                take_picture=self.take_picture,
-                send_pulse=self.send_pulse,
-                send_camera=self.send_camera,
-            )
-            return
-        client = self.by_id.get(event.client)
-        if client is None:
-            return
-        if event.kind == "leave":
-            self.let_go(client)
-            del self.by_id[event.client]
-        elif event.kind == "select":
-            client.selected = body
-        elif event.kind == "profile":
-            client.is_profiling = event.value != 0
-        elif event.kind == "grab_start":
-            self._grab(client, event, body)
-        elif event.kind == "grab_move":
-            hold = client.holds.get(event.hold)
-            if hold is not None and hold.grip.alive:
-                hold.grip.move(event.target)
-        elif event.kind == "grab_end":
-            self._release(client, event.hold)
+    def join(self, id: int, name: str) -> None:
+        self.by_id[id] = Client(
+            id, name, take_picture=self.take_picture, send_pulse=self.send_pulse, send_camera=self.send_camera
+        )
+
+    def leave(self, client: Client) -> None:
+        del self.by_id[client.id]
+        self.let_go(client)
+
+    def grab(self, client: Client, hold: int, body: Any, local_point: Vec3, target: Vec3) -> None:
+        """Grips a point of a body (body frame). Raises what the system raises if that is not possible."""
+        self.release(client, hold)
+        grip = self._system.grip(body, local_point, target, client=client.id, hold=hold)
+        client.holds[hold] = Hold(body, grip)
+
+    def move(self, client: Client, hold: int, target: Vec3) -> None:
+        """Moves the hand of a grab, if it has a grip."""
+        found = client.holds.get(hold)
+        if found is not None and found.grip.alive:
+            found.grip.move(target)
+
+    def release(self, client: Client, hold: int) -> None:
+        found = client.holds.pop(hold, None)
+        if found is not None and found.grip.alive:
+            found.grip.destroy()
+
+    def let_go(self, client: Client) -> None:
+        for hold in list(client.holds):
+            self.release(client, hold)
 
     @property
     def is_profiled(self) -> bool:
@@ -162,24 +162,7 @@ class Clients:
         found = self.by_id.get(client)
         return None if found is None else alive(found.selected)
 
-    def let_go(self, client: Client) -> None:
-        for hold in list(client.holds):
-            self._release(client, hold)
-
     def forget(self) -> None:
         """Call it after the system was restored: the restored grips belong to no present grab."""
         for client in self.by_id.values():
             client.holds.clear()
-
-    def _grab(self, client: Client, event: InputEvent, body: Any) -> None:
-        if body is None or body.kind == "inactive":
-            return
-        self._release(client, event.hold)
-        grip = self._system.grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
-        client.holds[event.hold] = Hold(body, grip)
-
-    @staticmethod
-    def _release(client: Client, hold: int) -> None:
-        found = client.holds.pop(hold, None)
-        if found is not None and found.grip.alive:
-            found.grip.destroy()

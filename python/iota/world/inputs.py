@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Users' input: events of the server, in order of arrival, and calls from other threads."""
+"""Handles users' input, a function for each type of message, and calls from other threads."""
 
 from __future__ import annotations
 
 import queue
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from iota._core import InputEvent, System, Vec3
-from iota._protocol import ControlCommand, PointerKind
+from iota import _protocol as protocol
+from iota._core import System, Vec3
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
-from iota.world.clients import alive
+from iota.world.clients import Client, alive
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event, Hand
 from iota.world.listeners import Drag, Listener
@@ -21,13 +22,30 @@ from iota.world.pace import Pace
 from iota.world.state import State
 from iota.world.widgets import Widget
 
+BodiesOf = Callable[[Sequence[protocol.Id]], list[Any]]
+Handler = Callable[["Inputs", Client, Any], None]
+HANDLERS: dict[type, Handler] = {}
+SHARES: dict[type, float] = {}
+
+
+def handles(message: type, share: float = 0.0) -> Callable[[Handler], Handler]:
+    """Decorator: the function handles all messages of a type, for a client that is there. share: of an action that one
+    counts as, see `Pace`."""
+
+    def register(function: Handler) -> Handler:
+        HANDLERS[message], SHARES[message] = function, share
+        return function
+
+    return register
+
 
 class Inputs:
     """Passes them to the world, between steps. step, reset: functions for users' requests."""
 
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
-        self._waiting: list[tuple[InputEvent, list[Any]]] = []
+        self._bodies_of: BodiesOf = lambda ids: []
+        self._waiting: list[tuple[int, protocol.Input]] = []
         self._pace = Pace()
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
@@ -39,49 +57,28 @@ class Inputs:
         while not self._calls.empty():
             self._calls.get()()
 
-    def take(self, events: Iterable[tuple[InputEvent, list[Any]]]) -> None:
-        """Handles all events of users, each with its bodies that still exist."""
+    def take(self, inputs: Iterable[tuple[int, protocol.Input]], bodies_of: BodiesOf) -> None:
+        """Handles all inputs, each with the number of its client. bodies_of: finds the bodies that still exist."""
+        self._bodies_of = bodies_of
         waited, self._waiting = self._waiting, []
-        for event, bodies in (*waited, *events):
-            body = bodies[0] if bodies else None
-            if event.kind == "picture":
-                self._state.pictures.take(event)
+        for number, message in (*waited, *inputs):
+            if isinstance(message, protocol.Join):
+                self._state.clients.join(number, message.name)
+            client = self._state.clients.by_id.get(number)
+            if client is None:
                 continue
-            if event.kind == "leave":
-                self._pace.forget(event.client)
-            elif not self._pace.allows(event.client, event.kind):
-                if self._pace.is_first_refusal(event.client):
-                    text = "A page can run 30 actions a second. The others were left out."
-                    self._state.notices.send("Too fast", text, client=event.client)
-                continue
-            if event.names_body and body is None and not self._is_on_world(event):
-                if event.kind == "pointer":
-                    continue
-                text = "It was destroyed, or combined with another body."
-                self._state.notices.send("It no longer exists", text, client=event.client)
-                if event.kind != "select":
-                    continue
-            if event.kind == "action":
-                self._act(event, bodies)
-            elif event.kind == "control":
-                self._control(event)
-            elif event.kind == "change":
-                self._change(event)
-            elif event.kind == "pointer":
-                self._point(event, body)
-            elif event.kind == "key":
-                for listener in self._state.listeners.of_key(event.name, event.is_final):
-                    self._tell(listener, event.client, key=event.name)
-            else:
-                self._take_hands(event, body)
+            if self._pace.allows(number, SHARES[type(message)]):
+                HANDLERS[type(message)](self, client, message)
+            elif self._pace.is_first_refusal(number):
+                self._notice(client, "Too fast", "A page can run 30 actions a second. The others were left out.")
 
-    def take_pictures(self, events: Iterable[tuple[InputEvent, list[Any]]]) -> None:
-        """Handles only parts of pictures; all other events wait for `take`."""
-        for event, bodies in events:
-            if event.kind == "picture":
-                self._state.pictures.take(event)
+    def take_pictures(self, inputs: Iterable[tuple[int, protocol.Input]]) -> None:
+        """Handles only parts of pictures; all other inputs wait for `take`."""
+        for number, message in inputs:
+            if isinstance(message, protocol.Picture):
+                self._state.pictures.take(message)
             else:
-                self._waiting.append((event, bodies))
+                self._waiting.append((number, message))
 
     def frame(self) -> None:
         """Calls the functions for each frame."""
@@ -92,66 +89,195 @@ class Inputs:
             if not self._guard.call(f"on_frame ({listener.hook.name})", listener.hook.function, *arguments):
                 state.listeners.remove(listener.hook.function)  # avoids an error in each frame
 
+    def act(self, action: Action, client: int, bodies: list[Any]) -> None:
+        """client: 0 for none."""
+        state = self._state
+        if not bodies and action.on == "body":
+            hint = f"Hold or select something, then press {action.key}." if action.key else ""
+            title = f"Nothing to {action.label}"
+            state.notices.send(title, "Nothing is held or selected.", hint, client=client)
+            return
+        if len(bodies) > 1 and isinstance(state.system, System):
+            with state.system.edit():
+                self._act_on_all(action, client, bodies)
+        else:
+            self._act_on_all(action, client, bodies or [None])
+
+    def _act_on_all(self, action: Action, client: int, bodies: Iterable[Any]) -> None:
+        """On one after the other, until the script's function raises."""
+        state = self._state
+        for body in bodies:
+            if body is not None and alive(body) is None:  # destroyed with an earlier one
+                continue
+            given = Event(state.system, action.name, client, body, notices=state.notices)
+            arguments = (given,) if action.hook.takes_event else ()
+            if not self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments):
+                return
+
+    # --- messages -------------------------------------------------------------------------------------------------
+
+    @handles(protocol.Join)
+    def _join(self, client: Client, message: protocol.Join) -> None:
+        for listener in self._state.listeners.of("join"):
+            self._tell(listener, client.id)
+
+    @handles(protocol.Leave)
+    def _leave(self, client: Client, message: protocol.Leave) -> None:
+        listeners = self._state.listeners
+        self._pace.forget(client.id)
+        self._follow_grips()
+        for hand in [hand for hand in listeners.drags if hand[0] == client.id]:
+            self._end(hand, listeners.drags.pop(hand), "left")
+        with self._telling(client, "That cannot be done"):
+            self._state.clients.leave(client)
+        for listener in listeners.of("leave"):
+            self._tell(listener, client.id)
+
+    @handles(protocol.Select)
+    def _select(self, client: Client, message: protocol.Select) -> None:
+        client.selected = self._find(client, message.body)
+
+    @handles(protocol.Profile)
+    def _profile(self, client: Client, message: protocol.Profile) -> None:
+        client.is_profiling = message.on
+
+    @handles(protocol.Picture)
+    def _picture(self, client: Client, message: protocol.Picture) -> None:
+        self._state.pictures.take(message)
+
+    @handles(protocol.GrabStart)
+    def _grab_start(self, client: Client, message: protocol.GrabStart) -> None:
+        """The script's listeners are called; they may replace the grip of a hand."""
+        body, listeners = self._find(client, message.body), self._state.listeners
+        if body is None or body.kind == "inactive":
+            return
+        self._follow_grips()
+        hand, drag = (client.id, message.hold), Drag(body, body, list(listeners.of("drag", body)))
+        listeners.drags[hand] = drag
+        if not any(listener.takes_over for listener in drag.listeners):
+            with self._telling(client, "That cannot be held"):
+                self._state.clients.grab(client, message.hold, body, message.local_point, message.target)
+        self._tell_of_hand("press", hand, drag, message.target)
+        self._tell_drag("start", hand, drag, message.target)
+
+    @handles(protocol.GrabMove)
+    def _grab_move(self, client: Client, message: protocol.GrabMove) -> None:
+        self._follow_grips()
+        with self._telling(client, "That cannot be held"):
+            self._state.clients.move(client, message.hold, message.target)
+        hand = client.id, message.hold
+        drag = self._state.listeners.drags.get(hand)
+        if drag is not None:
+            self._tell_drag("update", hand, drag, message.target)
+
+    @handles(protocol.GrabEnd)
+    def _grab_end(self, client: Client, message: protocol.GrabEnd) -> None:
+        self._follow_grips()
+        with self._telling(client, "That cannot be held"):
+            self._state.clients.release(client, message.hold)
+        hand = client.id, message.hold
+        drag = self._state.listeners.drags.pop(hand, None)
+        if drag is not None:
+            self._end(hand, drag, "released")
+
+    @handles(protocol.Action, share=1.0)
+    def _action(self, client: Client, message: protocol.Action) -> None:
+        """Runs an action: on several bodies as one edit, which is undone at once."""
+        clients, action = self._state.clients, self._state.actions.get(message.name)
+        # An action on the world needs no body: the one under the mouse may be gone, as in a world that locks bodies.
+        is_on_world = action is not None and action.on == "world"
+        bodies = self._bodies_of([message.body, *message.others])
+        if message.body and not bodies and not is_on_world:
+            self._tell_of_gone(client)
+        elif action is None:
+            self._notice(client, "Unknown action", f"This world has no action {message.name!r}.")
+        else:
+            meant = clients.held(client.id) or clients.selected(client.id)
+            self.act(action, client.id, bodies or ([] if meant is None else [meant]))
+
+    @handles(protocol.Control)
+    def _control(self, client: Client, message: protocol.Control) -> None:
+        clock = self._state.clock
+        if message.command == protocol.ControlCommand.PAUSE:
+            clock.paused = True
+        elif message.command == protocol.ControlCommand.PLAY:
+            clock.paused = False
+        elif message.command == protocol.ControlCommand.SINGLE_STEP:
+            clock.paused = True
+            self._step()
+        elif message.command == protocol.ControlCommand.RESET:
+            self._reset()
+        elif message.command == protocol.ControlCommand.SPEED:
+            clock.speed = min(max(message.value, 0.0), MAX_SPEED)
+
+    @handles(protocol.Change, share=0.1)
+    def _change(self, client: Client, message: protocol.Change) -> None:
+        widget = self._state.things.find("widget", message.widget)
+        if not isinstance(widget, Widget):
+            self._notice(client, "It no longer exists", "The script has removed it from the page.")
+            return
+        given = Event(self._state.system, widget.label, client.id, notices=self._state.notices)
+        widget.take(message.value, message.text, given, self._guard)
+
+    @handles(protocol.Pointer, share=0.05)
+    def _pointer(self, client: Client, message: protocol.Pointer) -> None:
+        bodies = self._bodies_of([message.body])
+        if message.body and not bodies:
+            return
+        body, point, hand, phase = next(iter(bodies), None), message.point, None, ""
+        if message.kind == protocol.PointerKind.MOVE:
+            kind, body = "pointer", None
+            hand = Hand(message.rotation, message.buttons, message.axes, np.array(message.joints).reshape(-1, 3))
+        elif message.kind == protocol.PointerKind.CLICK:
+            kind = "click"
+        else:
+            kind, phase = "hover", "start" if message.kind == protocol.PointerKind.HOVER else "end"
+        for listener in self._state.listeners.of(kind, body):
+            self._tell(
+                listener,
+                client.id,
+                body,
+                point=point if kind == "pointer" or body is not None else None,
+                origin=message.origin,
+                direction=message.direction,
+                pointer=message.name,
+                phase=phase,
+                hand=hand,
+            )
+
+    @handles(protocol.Key, share=0.1)
+    def _key(self, client: Client, message: protocol.Key) -> None:
+        for listener in self._state.listeners.of_key(message.key, released=not message.down):
+            self._tell(listener, client.id, key=message.key)
+
+    def _find(self, client: Client, id: protocol.Id) -> Any | None:
+        """The body with an id; None if it names none, or one that is gone, which the client is told."""
+        bodies = self._bodies_of([id]) if id else []
+        if id and not bodies:
+            self._tell_of_gone(client)
+        return bodies[0] if bodies else None
+
+    def _tell_of_gone(self, client: Client) -> None:
+        self._notice(client, "It no longer exists", "It was destroyed, or combined with another body.")
+
+    def _notice(self, client: Client, title: str, text: str) -> None:
+        self._state.notices.send(title, text, client=client.id)
+
+    @contextmanager
+    def _telling(self, client: Client, title: str) -> Iterator[None]:
+        """If the system refuses a request of a page, only that page gets an error, not the script."""
+        try:
+            yield
+        except (ValueError, RuntimeError, LookupError) as error:
+            self._state.notices.send(title, one_line(error), level="warning", client=client.id)
+
+    # --- the script's functions -----------------------------------------------------------------------------------
+
     def _tell(self, listener: Listener, client: int, body: Any = None, **more: Any) -> None:
         """Calls one of the script's functions."""
         state, hook = self._state, listener.hook
         given = Event(state.system, listener.kind, client, body, notices=state.notices, **more)
         self._guard.call(f"on_{listener.kind} ({hook.name})", hook.function, *((given,) if hook.takes_event else ()))
-
-    def _change(self, event: InputEvent) -> None:
-        widget = self._state.things.find("widget", event.widget)
-        if not isinstance(widget, Widget):
-            self._state.notices.send(
-                "It no longer exists", "The script has removed it from the page.", client=event.client
-            )
-            return
-        given = Event(self._state.system, widget.label, event.client, notices=self._state.notices)
-        widget.take(event.value, event.name, given, self._guard)
-
-    def _point(self, event: InputEvent, body: Any) -> None:
-        if event.pointer == PointerKind.MOVE:
-            return self._move(event)
-        kind = "click" if event.pointer == PointerKind.CLICK else "hover"
-        phase = {PointerKind.HOVER: "start", PointerKind.HOVER_END: "end"}.get(PointerKind(event.pointer), "")
-        point = None if body is None else event.target
-        ray = {"origin": event.origin, "direction": event.direction}
-        for listener in self._state.listeners.of(kind, body):
-            self._tell(listener, event.client, body, point=point, pointer=event.name, phase=phase, **ray)
-
-    def _move(self, event: InputEvent) -> None:
-        joints = np.array(event.joints).reshape(-1, 3)
-        hand = Hand(event.rotation, tuple(event.buttons), tuple(event.axes), joints)
-        ray = {"origin": event.origin, "direction": event.direction}
-        for listener in self._state.listeners.of("pointer"):
-            self._tell(listener, event.client, point=event.target, pointer=event.name, hand=hand, **ray)
-
-    def _take_hands(self, event: InputEvent, body: Any) -> None:
-        """Hands of users, joins and leaves. The script's listeners are called; they may replace the grip of a hand."""
-        listeners, kind = self._state.listeners, event.kind
-        self._follow_grips()
-        if kind == "grab_start" and body is not None and body.kind != "inactive":
-            drag = Drag(body, body, list(listeners.of("drag", body)))
-            is_taken = any(listener.takes_over for listener in drag.listeners)
-            listeners.drags[event.client, event.hold] = drag
-            if not is_taken:
-                self._move_hands(event, body)
-            self._tell_of_hand("press", (event.client, event.hold), drag, event.target)
-            self._tell_drag("start", (event.client, event.hold), drag, event.target)
-        elif kind in ("grab_move", "grab_end"):
-            self._move_hands(event, body)
-            found = listeners.drags.get((event.client, event.hold))
-            if found is not None and kind == "grab_move":
-                self._tell_drag("update", (event.client, event.hold), found, event.target)
-            elif found is not None:
-                self._end((event.client, event.hold), listeners.drags.pop((event.client, event.hold)), "released")
-        else:
-            if kind == "leave":
-                for hand in [hand for hand in listeners.drags if hand[0] == event.client]:
-                    self._end(hand, listeners.drags.pop(hand), "left")
-            self._move_hands(event, body)
-            if kind in ("join", "leave"):
-                for listener in listeners.of(kind):
-                    self._tell(listener, event.client)
 
     def _end_gone(self) -> None:
         """Ends the drags whose body was destroyed, and tells of all that did not end by their user."""
@@ -184,66 +310,3 @@ class Inputs:
         body = alive(drag.body)
         for listener in drag.listeners if body is not None or phase == "end" else ():
             self._tell(listener, client, body, point=point, phase=phase, hold=hold, reason=reason)
-
-    def _move_hands(self, event: InputEvent, body: Any) -> None:
-        """If the system refuses a request of a page, only that page gets an error, not the script."""
-        try:
-            self._state.clients.take(event, body)
-        except (ValueError, RuntimeError, LookupError) as error:
-            title = "That cannot be held" if event.kind.startswith("grab") else "That cannot be done"
-            self._state.notices.send(title, one_line(error), level="warning", client=event.client)
-
-    def _act(self, event: InputEvent, named: list[Any]) -> None:
-        """Runs an action: on several bodies as one edit, which is undone at once."""
-        state = self._state
-        action = state.actions.get(event.name)
-        if action is None:
-            text = f"This world has no action {event.name!r}."
-            state.notices.send("Unknown action", text, client=event.client)
-            return
-        meant = state.clients.held(event.client) or state.clients.selected(event.client)
-        self.act(action, event.client, named or ([] if meant is None else [meant]))
-
-    def _is_on_world(self, event: InputEvent) -> bool:
-        """Whether it is an action that needs no body: what was under the mouse may be gone, as in a world that locks bodies."""
-        action = self._state.actions.get(event.name) if event.kind == "action" else None
-        return action is not None and action.on == "world"
-
-    def act(self, action: Action, client: int, bodies: list[Any]) -> None:
-        """client: 0 for none."""
-        state = self._state
-        if not bodies and action.on == "body":
-            hint = f"Hold or select something, then press {action.key}." if action.key else ""
-            title = f"Nothing to {action.label}"
-            state.notices.send(title, "Nothing is held or selected.", hint, client=client)
-            return
-        if len(bodies) > 1 and isinstance(state.system, System):
-            with state.system.edit():
-                self._act_on_all(action, client, bodies)
-        else:
-            self._act_on_all(action, client, bodies or [None])
-
-    def _act_on_all(self, action: Action, client: int, bodies: Iterable[Any]) -> None:
-        """On one after the other, until the script's function raises."""
-        state = self._state
-        for body in bodies:
-            if body is not None and alive(body) is None:  # destroyed with an earlier one
-                continue
-            given = Event(state.system, action.name, client, body, notices=state.notices)
-            arguments = (given,) if action.hook.takes_event else ()
-            if not self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments):
-                return
-
-    def _control(self, event: InputEvent) -> None:
-        clock = self._state.clock
-        if event.command == ControlCommand.PAUSE:
-            clock.paused = True
-        elif event.command == ControlCommand.PLAY:
-            clock.paused = False
-        elif event.command == ControlCommand.SINGLE_STEP:
-            clock.paused = True
-            self._step()
-        elif event.command == ControlCommand.RESET:
-            self._reset()
-        elif event.command == ControlCommand.SPEED:
-            clock.speed = min(max(event.value, 0.0), MAX_SPEED)

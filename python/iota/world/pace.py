@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 ACTIONS = 30.0  # a second of one page, and at once
-SHARE = {"action": 1.0, "change": 0.1, "pointer": 0.05, "key": 0.1}  # of an action that an event counts as
 
 
 @dataclass
@@ -19,16 +18,15 @@ class _Allowance:
 
 
 class Pace:
-    """30 actions a second of each page; ten times as many keys and changes of controls, twenty times as many clicks and moves
-    of pointers. now: s."""
+    """30 actions a second of each page, or more messages that count as a share of an action. now: s."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
         self._now = now
         self._of: dict[int, _Allowance] = {}
 
-    def allows(self, client: int, kind: str) -> bool:
-        share = SHARE.get(kind)
-        if share is None:
+    def allows(self, client: int, share: float) -> bool:
+        """share: of an action that a message counts as; 0: it is always allowed."""
+        if share == 0:
             return True
         now = self._now()
         known = self._of.setdefault(client, _Allowance(ACTIONS, now))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from iota._core import InputEvent
+from iota._protocol import Picture
 
 
 class Pictures:
@@ -20,13 +20,13 @@ class Pictures:
         self._parts[self._number] = []
         return self._number
 
-    def take(self, event: InputEvent) -> None:
-        parts = self._parts.get(event.number)
+    def take(self, part: Picture) -> None:
+        parts = self._parts.get(part.request)
         if parts is None:
             return
-        parts.append(event.data)
-        if event.is_final:
-            self._ready[event.number] = b"".join(self._parts.pop(event.number))
+        parts.append(part.data)
+        if part.is_last:
+            self._ready[part.request] = b"".join(self._parts.pop(part.request))
 
     def ready(self, number: int) -> bytes | None:
         """A PNG file, empty if the page could not make one; None until it arrives."""

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from iota._core import InputEvent, Room, Vec3
+from iota._core import Room, Vec3
+from iota._protocol import Id
 from iota.world.client_modules import page_with
 from iota.world.lan import Lan, announcement
 from iota.world.scene import Camera
@@ -90,10 +91,9 @@ class Publisher:
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
 
-    def take_input(self) -> Iterator[tuple[InputEvent, list[Any]]]:
-        """The events of users, each with its bodies that still exist; only actions have several."""
-        for event in self.room.take_input():
-            yield event, self._source.bodies_of(self.room, event) if event.names_body else []
+    def bodies_of(self, ids: Sequence[Id]) -> list[Any]:
+        """The bodies with these ids that still exist, each once."""
+        return self._source.bodies_of(self.room, ids)
 
     def _tell_settings(self) -> None:
         state = self._state

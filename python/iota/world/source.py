@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Any
 
-from iota._core import InputEvent, Room, System, Vec3
+from iota._core import Room, System, Vec3
+from iota._protocol import Id
 from iota.simulator import Simulator
 from iota.world import simulated
 
@@ -19,8 +21,8 @@ class Source(ABC):
         """Sends present poses and changes, and the effects of edits if they are shown."""
 
     @abstractmethod
-    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
-        """The bodies of an event that still exist."""
+    def bodies_of(self, room: Room, ids: Sequence[Id]) -> list[Any]:
+        """The bodies with these ids that still exist, each once."""
 
 
 class EngineSource(Source):
@@ -32,8 +34,8 @@ class EngineSource(Source):
     def publish(self, room: Room, shows_edits: bool) -> None:
         room.publish(self._system, effects=shows_edits)
 
-    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
-        return room.bodies_of(event, self._system)
+    def bodies_of(self, room: Room, ids: Sequence[Id]) -> list[Any]:
+        return room.bodies_of(ids, self._system)
 
 
 class SimulatorSource(Source):
@@ -64,8 +66,8 @@ class SimulatorSource(Source):
             extent=simulated.extent(simulator) if is_changed else 0.0,
         )
 
-    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
-        bodies = [self._simulator.body_at(slot) for slot in room.slots_of(event)]
+    def bodies_of(self, room: Room, ids: Sequence[Id]) -> list[Any]:
+        bodies = [self._simulator.body_at(slot) for slot in room.slots_of(ids)]
         return [body for body in bodies if body is not None]
 
 

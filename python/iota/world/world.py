@@ -528,7 +528,8 @@ class World:
     def _take_inputs(self) -> None:
         self._inputs.take_calls()
         if self._pages._publisher is not None:
-            self._inputs.take(self._pages._publisher.take_input())
+            publisher = self._pages._publisher
+            self._inputs.take(publisher.room.take_input(), publisher.bodies_of)
 
     def _take_picture(self, client: int, seconds: float) -> bytes:
         """Waits for a picture without steps; other input is handled after it."""
@@ -546,7 +547,7 @@ class World:
                     if time.monotonic() > end:
                         raise TimeoutError(f"no picture came from client {client} within {seconds:g} s")
                     time.sleep(0.005)
-                    self._inputs.take_pictures(self._pages._publisher.take_input())
+                    self._inputs.take_pictures(self._pages._publisher.room.take_input())
             finally:
                 pictures.forget(number)
             if not picture:

@@ -53,13 +53,13 @@ class HubTest : public testing::Test {
   void receive(std::uint32_t client, const Message& message) {
     hub.receive(client, protocol::encode(message));
   }
-  /// The kinds of the events that wait for the script, without those of coming and going.
-  std::vector<InputEvent> take_gestures() {
-    std::vector<InputEvent> events = hub.take_input();
-    std::erase_if(events, [](const InputEvent& event) {
-      return event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
+  /// The messages that wait for the script, without joins and leaves.
+  std::vector<ClientInput> take_gestures() {
+    std::vector<ClientInput> inputs = hub.take_input();
+    std::erase_if(inputs, [](const ClientInput& input) {
+      return std::holds_alternative<protocol::Join>(input.what) || std::holds_alternative<protocol::Leave>(input.what);
     });
-    return events;
+    return inputs;
   }
 
   Counters counters;
@@ -78,8 +78,8 @@ TEST_F(HubTest, welcomes_who_joins_and_says_who_is_there) {
   EXPECT_EQ(counters.clients, 1u);
   const auto events = hub.take_input();
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_EQ(events[0].kind, InputEvent::Kind::join);
-  EXPECT_EQ(events[0].name, "Ada");
+  EXPECT_EQ(events[0].client, client);
+  EXPECT_EQ(events[0].what, protocol::Input(protocol::Join{"Ada", protocol::Role::actor}));
 }
 
 TEST_F(HubTest, refuses_a_full_world_and_another_protocol_with_a_reason) {
@@ -228,10 +228,10 @@ TEST_F(HubTest, keeps_the_newest_place_of_each_grip) {
   receive(client, protocol::GrabMove{2, {9, 2, 0}});
   const auto events = take_gestures();
   ASSERT_EQ(events.size(), 6u) << "2 starts, 2 moves, an end, and a move after it";
-  EXPECT_EQ(events[2].target[0], 5);
-  EXPECT_EQ(events[3].target[0], 5);
-  EXPECT_EQ(events[4].kind, InputEvent::Kind::grab_end);
-  EXPECT_EQ(events[5].target[0], 9);
+  EXPECT_EQ(events[2].what, protocol::Input(protocol::GrabMove{1, {5, 1, 0}}));
+  EXPECT_EQ(events[3].what, protocol::Input(protocol::GrabMove{2, {5, 2, 0}}));
+  EXPECT_EQ(events[4].what, protocol::Input(protocol::GrabEnd{1}));
+  EXPECT_EQ(events[5].what, protocol::Input(protocol::GrabMove{2, {9, 2, 0}}));
 }
 
 TEST_F(HubTest, keeps_the_newest_place_of_each_pointer_also_among_those_of_grips) {
@@ -249,12 +249,9 @@ TEST_F(HubTest, keeps_the_newest_place_of_each_pointer_also_among_those_of_grips
   }
   const auto events = take_gestures();
   ASSERT_EQ(events.size(), 4u) << "the start, one of the grip and of each pointer";
-  for (const InputEvent& event : events) {
-    if (event.kind == InputEvent::Kind::grab_move) EXPECT_EQ(event.target[0], 100);
-    if (event.kind != InputEvent::Kind::pointer) continue;
-    EXPECT_EQ(event.target[0], event.name == "left" ? 100 : -100);
-    EXPECT_EQ(event.buttons, std::vector<float>{event.target[0]});
-  }
+  EXPECT_EQ(events[1].what, protocol::Input(move("left", 100)));
+  EXPECT_EQ(events[2].what, protocol::Input(protocol::GrabMove{1, {100, 0, 0}}));
+  EXPECT_EQ(events[3].what, protocol::Input(move("right", -100)));
   protocol::Pointer wrong = move("left", 1);
   wrong.joints = {1, 2};
   receive(client, wrong);
@@ -304,7 +301,43 @@ TEST_F(HubTest, lets_a_viewer_select_and_nothing_else) {
   receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
   const auto events = take_gestures();
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_EQ(events[0].kind, InputEvent::Kind::select);
+  EXPECT_EQ(events[0].what, protocol::Input(protocol::Select{{4, 1}}));
+}
+
+TEST_F(HubTest, passes_messages_through_as_they_were_sent) {
+  Link link;
+  const std::uint32_t client = join(link);
+  const std::vector<protocol::Input> sent{
+      protocol::GrabStart{3, {4, 1}, {1, 2, 3}, {4, 5, 6}},
+      protocol::Action{"break", {4, 1}, {{5, 2}}},
+      protocol::Change{{1, 1}, 0.5, "text"},
+      protocol::Pointer{
+          protocol::PointerKind::click, {4, 1}, "mouse", {1, 0, 0}, {}, {0, 0, -1}, {0, 0, 0, 1}, {1}, {}, {1, 2, 3}},
+      protocol::Key{"k", true},
+      protocol::Profile{true}};
+  for (const auto& each : sent)
+    std::visit(
+        [&](const auto& message) {
+          if constexpr (requires { message.message_type; }) receive(client, message);
+        },
+        each);
+  std::vector<protocol::Input> taken;
+  for (const ClientInput& input : take_gestures()) taken.push_back(input.what);
+  EXPECT_EQ(taken, sent);
+}
+
+TEST_F(HubTest, refuses_each_place_that_is_too_far) {
+  Link link;
+  const std::uint32_t client = join(link);
+  const protocol::Vec3 far{0, 2e9F, 0};
+  receive(client, protocol::GrabStart{1, {4, 1}, far, {}});
+  receive(client, protocol::GrabStart{1, {4, 1}, {}, far});
+  receive(client, protocol::Pointer{protocol::PointerKind::click, {}, "mouse", {}, far, {}, {0, 0, 0, 1}, {}, {}, {}});
+  receive(client, protocol::Presence{{far, {0, 0, 0, 1}, 1, {}}});
+  receive(client, protocol::Presence{{{}, {0, 0, 0, 1}, 1, {0, 0, 2e9F}}});
+  EXPECT_EQ(counters.frames_refused, 5u);
+  EXPECT_EQ(link.last_notice(), "A message was not understood: presence: a place is beyond 1e9 m");
+  EXPECT_TRUE(take_gestures().empty());
 }
 
 TEST_F(HubTest, takes_one_single_step_a_round_and_one_reset_a_second) {
@@ -368,7 +401,9 @@ TEST_F(HubTest, says_when_the_world_ends_and_forgets_who_left) {
   hub.end();
   EXPECT_FALSE(one.has_ended);
   EXPECT_TRUE(two.has_ended);
-  EXPECT_EQ(hub.take_input().back().kind, InputEvent::Kind::leave);
+  const auto left = hub.take_input().back();
+  EXPECT_EQ(left.client, client);
+  EXPECT_TRUE(std::holds_alternative<protocol::Leave>(left.what));
 }
 
 }  // namespace
