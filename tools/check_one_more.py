@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Adds one ingredient and one shape to a copy of the sources, builds it, and runs the tests that each of them passes.
+"""Adds an ingredient, a joint, a shape and a client message to a copy of the sources, builds it, and runs their tests.
 
     tools/check_one_more.py
 
-An ingredient shall cost a header, a source, a test and a line; a shape a struct, a header, a file of the page, an example
-in two tests and a line each (docs/architecture.md, docs/bodies.md). The new files are in tests/one_more, the new lines
-below; no other file is changed. The copy is build/one_more. The first run builds everything, a later one what has changed.
+An ingredient shall cost a header, a source, a test and a line; a joint with a new type of row that row, a test, its line in
+a form and a line in each of four lists; a shape a struct, a header, a file of the page, an example in two tests and a line
+each; a client message its entry in the schema, its handler and its sender (docs/architecture.md, docs/bodies.md,
+protocol/README.md). The new files are in tests/one_more, the new lines below; no other file is changed. The copy is build/one_more. The first run builds everything, a later one what has changed.
 Run `make test` before: the copy uses its packages.
 """
 
@@ -28,11 +29,49 @@ OCTAHEDRON = """struct Octahedron {
   friend bool operator==(const Octahedron&, const Octahedron&) = default;
 };
 """
+WAVE = """    {
+      "name": "wave",
+      "type": 15,
+      "doc": "A greeting.",
+      "fields": [{ "name": "hand", "type": "string", "max": 32 }, { "name": "times", "type": "u8" }]
+    },
+"""
+WAVE_HANDLER = """    @handles(protocol.Wave, share=0.1)
+    def _wave(self, client: Client, message: protocol.Wave) -> None:
+        self._notice(client, "Wave", f"{message.hand}, {message.times} times")
+
+"""
 # File -> texts that are there once, and the text that is put in front of each.
 LINES = {
     "src/ingredient/ingredient_list.h": {
         '#include "ingredient/bonds.h"': '#include "ingredient/balloons.h"\n',
         "    AngleSprings>": "    Balloons,\n",
+    },
+    "src/solver/constraints/constraint_list.h": {
+        '#include "solver/constraints/span.h"': '#include "solver/constraints/level.h"\n',
+        ">;\n\ntemplate <class C>\nstruct CheckConstraint": ", Pool<LevelConstraint>",
+    },
+    "include/iota/constraints.h": {"};\n\n/// The coordinates that joints have": "  level,  ///< a point of a keeps the height of one of b\n"},
+    "src/ingredient/constraint.h": {
+        "  bool angle = false;": "  bool level = false;  ///< 1 row: the origins have the same height\n",
+        "});\ninline const ConstraintKindInfo& info": '    {.name = "level", .level = true},\n',
+    },
+    "src/ingredient/pin_form.h": {
+        "    if (kind.line)\n": """    if (kind.level) {
+      solver::LevelConstraint row;
+      j.sides(row, {a_origin}, {b_origin});
+      j.add(row, 0, a_origin, 1), j.add(row, 0, b_origin, -1);
+      out.hold(row);
+    }
+""",
+    },
+    "bindings/bind_constraints.cpp": {
+        '  simple("weld"': '  simple("level", ConstraintKind::level, "A point of a keeps the height of a point of b.");\n',
+    },
+    "protocol/schema.json": {'    {\n      "name": "profile",': WAVE},
+    "python/iota/world/inputs.py": {"    @handles(protocol.Key": WAVE_HANDLER},
+    "web/src/ui/overlay.ts": {
+        '        if (this.profiles_) this.page_.session.send': '        this.page_.session.send({ type: "wave", hand: "left", times: 2 });\n',
     },
     "include/iota/shapes.h": {"/// Their order is that of": OCTAHEDRON, ">;\n\nusing Matrix3": ", Octahedron"},
     "src/shape/shape_list.h": {'#include "shape/sphere.h"': '#include "shape/octahedron.h"\n'},
@@ -94,20 +133,29 @@ def run(title: str, *command: str, folder: str = ".") -> None:
 def main() -> int:
     make_copy()
     jobs = str(len(os.sched_getaffinity(0)))
-    tests = "Balloons.*:IngredientList.*:*EveryShape*:Shape.*:FollowingIsland.*:Archive.*"
+    tests = "Balloons.*:Level.*:Constraint*:PinForm.*:IngredientList.*:*EveryShape*:Shape.*:FollowingIsland.*:Archive.*"
     run("configuring", "cmake", "--preset", "release", "-DCMAKE_BUILD_TYPE=Debug")  # compiles in less time
     run("building", "cmake", "--build", "build", "--parallel", jobs, "--target", "everyday", "iota_tests")
     for module in (COPY / "build" / "python" / "iota").glob("_*.*"):
         link = COPY / "python" / "iota" / module.name
         link.unlink(missing_ok=True)
         link.symlink_to(module)
-    run("tests of ingredients and shapes", "build/iota_tests", "--gtest_brief=1", f"--gtest_filter={tests}")
+    run("tests of ingredients, joints and shapes", "build/iota_tests", "--gtest_brief=1", f"--gtest_filter={tests}")
     python, npx = ".venv/bin/python", ("../.venv/bin/npx", "--no-install")
+    run(
+        "the message, from a page to its handler",
+        python,
+        "-m",
+        "pytest",
+        "-q",
+        "tests/python/test_wave.py",
+        "tests/python/test_inputs.py",
+    )
     run("distances of shapes, by the engine", python, "tests/shapes/make_samples.py")
     run("messages of the page", python, "tools/generate_protocol.py", "--ts", "web/src/protocol/generated.ts")
     run("types of the page", *npx, "tsc", "--noEmit", folder="web")
     run("shapes of the page", *npx, "vitest", "run", "test/shapes.test.ts", folder="web")
-    print("one more ingredient and one more shape work by their own files and lines")
+    print("one more ingredient, joint, shape and message work by their own files and lines")
     return 0
 
 

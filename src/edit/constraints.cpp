@@ -94,7 +94,7 @@ void wake(Editor& e, std::uint32_t constraint) {
 
 ConstraintId made(Editor& e, std::uint32_t slot) {
   model::Model& model = e.model;
-  ingredient::start_surface_pair(model, slot);
+  ingredient::start_rows(model, slot);
   constraint_changed(e, slot);
   return model.constraints.id(slot);
 }
@@ -111,7 +111,7 @@ void refresh_coordinates_of(model::Model& model, std::uint32_t body) {
 ConstraintId apply(Editor& e, const CreateJoint& c) {
   model::Model& model = e.model;
   const ingredient::ConstraintKindInfo& kind = ingredient::info(c.spec.kind);
-  if (kind.form != ingredient::ConstraintKindInfo::Form::joint)
+  if (kind.form != ingredient::ConstraintKindInfo::Form::pin)
     throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
   (void)e.require(c.spec.a);
   if (c.spec.b) (void)e.require(c.spec.b);

@@ -22,7 +22,8 @@ struct LastEnumerator<IntegrationMode> : std::integral_constant<IntegrationMode,
 template <>
 struct LastEnumerator<BodyKind> : std::integral_constant<BodyKind, BodyKind::resting> {};
 template <>
-struct LastEnumerator<ConstraintKind> : std::integral_constant<ConstraintKind, ConstraintKind::planar> {};
+struct LastEnumerator<ConstraintKind>
+    : std::integral_constant<ConstraintKind, static_cast<ConstraintKind>(ingredient::constraint_kinds.size() - 1)> {};
 template <>
 struct LastEnumerator<JointCoordinate> : std::integral_constant<JointCoordinate, JointCoordinate::second_angle> {};
 template <>

@@ -25,12 +25,12 @@ using model::Model;
 enum Place : std::uint8_t { a_origin, a_axis, a_side, a_third, b_origin, b_axis, b_side, b_third };
 inline constexpr int place_count = 8;
 
-/// The parts of a kind; `constraint_kinds` lists all. The rows are in ingredient/joint_rows.h.
+/// The parts of a kind; `constraint_kinds` lists all. The rows are made by its form, see ingredient/joint_forms.h.
 struct ConstraintKindInfo {
   const char* name;
-  /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces.
-  /// Or other constraints' coordinates.
-  enum class Form : std::uint8_t { joint, distance, path, surface, surface_pair, coupling } form = Form::joint;
+  /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces; or coordinates
+  /// of other constraints.
+  enum class Form : std::uint8_t { pin, distance, path, surface, surface_pair, coupling } form = Form::pin;
   bool meet = false;   ///< 3 rows: the origins coincide
   bool line = false;   ///< 2 rows: the origins are on one line along the axis
   bool align = false;  ///< 2 rows: the axis is common
@@ -45,10 +45,10 @@ struct ConstraintKindInfo {
   int sign = 0;
 
   /// Whether it may have a compliance: its rows have fixed directions and are its own.
-  bool may_yield() const { return form == Form::joint || (form == Form::distance && !slide); }
+  bool may_yield() const { return form == Form::pin || (form == Form::distance && !slide); }
 };
 
-inline constexpr std::array<ConstraintKindInfo, 20> constraint_kinds{{
+inline constexpr auto constraint_kinds = std::to_array<ConstraintKindInfo>({
     {.name = "ball", .meet = true},
     {.name = "universal", .meet = true, .cross = true, .angle = true, .second_angle = true},
     {.name = "revolute", .meet = true, .align = true, .angle = true},
@@ -69,7 +69,7 @@ inline constexpr std::array<ConstraintKindInfo, 20> constraint_kinds{{
     {.name = "tackle", .form = ConstraintKindInfo::Form::coupling, .sign = 1},
     {.name = "screw", .line = true, .align = true, .screw = true, .angle = true, .slide = true},
     {.name = "planar", .align = true, .plane = true, .angle = true},
-}};
+});
 inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
 
 /// A surface as plain data: of a shape or, if the key is not 0, of the function with this key.

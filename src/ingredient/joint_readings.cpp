@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/joint_readings.h"
 
-#include "ingredient/joint_rows.h"
+#include "ingredient/joint_forms.h"
 #include "ingredient/model.h"
 #include "ingredient/row_loads.h"
 
@@ -34,13 +34,13 @@ std::array<Vec3, place_count> forces_at(const LastStep& step, std::uint32_t slot
     Row loaded = row;
     double multipliers[Row::rows];
     if (use.role == Role::hold)
-      load_held(loaded, c, use, multipliers);
+      load_hold(loaded, model, c, use, multipliers);
     else
       multipliers[0] = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
     for_each_row_force(loaded, multipliers, step.stage.midpoint, start.data(), places.position.data(),
                        [&](std::uint32_t place, const Vec3& force) { forces[place] += force; });
   };
-  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+  build_rows({c, model.geometry(slot), places.arms}, sink);
   return forces;
 }
 
@@ -52,14 +52,12 @@ std::array<Vec3, place_count> coupled_forces_at(const LastStep& step, std::uint3
   const Constraint& c = model.constraints[slot];
   const std::array<Vec3, place_count> start = places.calc_start(step, c);
   std::array<Vec3, place_count> forces{};
-  auto ignore = [](const auto&, RowUse) {};
-  const JointRowBuilder<decltype(ignore)> rows(c, model.geometry(slot), places.arms, ignore);
   for (std::uint32_t t = c.coupled; t != none; t = model.coupled_terms[t].next_at_joint) {
     const CoupledTerm& term = model.coupled_terms[t];
     const Constraint& coupling = model.constraints[term.coupling];
     if (!counts(term.coupling) || !is_in_force(model, coupling)) continue;
     const double multiplier = term.ratio * coupling.multipliers[0];
-    rows.with_coordinate(term.coordinate, [&](auto row) {
+    with_coordinate({c, model.geometry(slot), places.arms}, term.coordinate, [&](auto row) {
       set_target(row, c.coordinate[static_cast<std::size_t>(term.coordinate)], 0);
       for_each_row_force(row, &multiplier, step.stage.midpoint, start.data(), places.position.data(),
                          [&](std::uint32_t place, const Vec3& force) { forces[place] += force; });
@@ -109,38 +107,28 @@ void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
     if (use.role != Role::hold) return;
     Row loaded = row;
     double multipliers[Row::rows], g[Row::rows];
-    load_held(loaded, c, use, multipliers);
-    if (info(c.kind).form == ConstraintKindInfo::Form::distance) set_length(loaded, c.length);
+    load_hold(loaded, model, c, use, multipliers);
     loaded.value(places.position.data(), 1, g);
     for (const double value : g) visit(loaded, law_of_hold(c, use, loaded), value);
   };
-  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+  build_rows({c, model.geometry(slot), places.arms}, sink);
 }
 
 }  // namespace
 
 Violation calc_violation(const Model& model, std::uint32_t slot) {
-  const Constraint& c = model.constraints[slot];
-  const ConstraintKindInfo& kind = info(c.kind);
-  Violation worst;
-  if (kind.form == ConstraintKindInfo::Form::coupling) {
-    double off = -c.length, size = 0;
-    for_each_term(model, c, [&](const CoupledTerm& term) {
-      off += term.ratio * calc_coordinate(model, term.joint, term.coordinate).first;
-      const bool is_slide = term.coordinate == JointCoordinate::slide;
-      const auto& scale = model.constraints[term.joint].scale;
-      size = std::max(size, std::abs(term.ratio) * (is_slide ? std::max(scale[0], scale[1]) : 1));
-    });
-    worst.absolute = kind.sign == 0 ? std::abs(off) : std::max(0.0, kind.sign * off);
-    worst.relative = worst.absolute / size;
+  return with_form(model.constraints[slot].kind, [&]<class F>() {
+    Violation worst;
+    if constexpr (requires { F::calc_violation(model, model.constraints[slot]); })
+      worst = F::calc_violation(model, model.constraints[slot]);
+    else
+      for_each_held_value(model, slot, [&](const auto& row, const solver::RowLaw& law, double value) {
+        const double off = law.violation(value);
+        worst.absolute = std::max(worst.absolute, off);
+        worst.relative = std::max(worst.relative, off / row.reference_length());
+      });
     return worst;
-  }
-  for_each_held_value(model, slot, [&](const auto& row, const solver::RowLaw& law, double value) {
-    const double off = law.violation(value);
-    worst.absolute = std::max(worst.absolute, off);
-    worst.relative = std::max(worst.relative, off / row.reference_length());
   });
-  return worst;
 }
 
 double calc_energy_of_holds(const Model& model, std::uint32_t slot) {
@@ -153,8 +141,6 @@ double calc_energy_of_holds(const Model& model, std::uint32_t slot) {
 std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {
   const Constraint& c = model.constraints[slot];
   const JointPlaces places(model, c);
-  auto ignore = [](const auto&, RowUse) {};
-  const JointRowBuilder<decltype(ignore)> rows(c, model.geometry(slot), places.arms, ignore);
   const auto read = [&](const auto& row) {
     using Row = std::remove_cvref_t<decltype(row)>;
     double value = 0, speed = 0;
@@ -168,9 +154,8 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
     return std::pair{value, speed};
   };
   std::pair<double, double> found{0, 0};
-  rows.with_coordinate(which, [&](auto row) {
-    if constexpr (std::is_same_v<decltype(row), solver::AngleConstraint>)
-      set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
+  with_coordinate({c, model.geometry(slot), places.arms}, which, [&](auto row) {
+    set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
     found = read(row);
   });
   return found;
@@ -178,20 +163,11 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
 
 bool has_coordinate_row(const Model& model, std::uint32_t slot, JointCoordinate which) {
   const JointPlaces places(model, model.constraints[slot]);
-  auto ignore = [](const auto&, RowUse) {};
-  const JointRowBuilder<decltype(ignore)> rows(model.constraints[slot], model.geometry(slot), places.arms, ignore);
-  return rows.with_coordinate(which, [](const auto&) {});
+  return with_coordinate({model.constraints[slot], model.geometry(slot), places.arms}, which, [](const auto&) {});
 }
 
-void start_surface_pair(Model& model, std::uint32_t slot) {
-  Constraint& c = model.constraints[slot];
-  if (info(c.kind).form != ConstraintKindInfo::Form::surface_pair) return;
-  const JointPlaces places(model, c);
-  auto ignore = [](const auto&, RowUse) {};
-  solver::SurfacePairConstraint row =
-      JointRowBuilder<decltype(ignore)>(c, model.geometry(slot), places.arms, ignore).surface_pair_row();
-  row.start(places.position.data(), 1);
-  c.nearest = row.nearest;
+void start_rows(Model& model, std::uint32_t slot) {
+  with_form(model.constraints[slot].kind, [&]<class F>() { F::start(model, slot); });
 }
 
 }  // namespace iota::ingredient

@@ -12,8 +12,8 @@ namespace iota::ingredient {
 /// Updates the model's coordinates of a joint from the present places.
 void refresh_coordinates(model::Model&, std::uint32_t joint);
 
-/// Finds the nearest points of a joint's two surfaces.
-void start_surface_pair(model::Model&, std::uint32_t joint);
+/// Finds the state from which the rows of a new joint start: the nearest points of its two surfaces.
+void start_rows(model::Model&, std::uint32_t joint);
 
 /// Force and torque of a joint (a coupling: of its first joint) on its side a in the last step, about `position`.
 struct Reaction {

@@ -74,7 +74,6 @@ class Joints : public NoAnswers {
 
  private:
   void add(const IslandMap&, std::uint32_t joint, Problem&);
-  void add_coupling(const IslandMap&, std::uint32_t coupling, Problem&);
   template <class Row>
   void add_row(const IslandMap&, std::uint32_t joint, const Row&, RowUse, Problem&);
 

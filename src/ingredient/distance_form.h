@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/joint_rows.h"
+
+namespace iota::ingredient::joint {
+
+inline void set_target(solver::SpanConstraint& row, double, double target) { row.target = target; }
+
+/// A rod, a rope, or the distance of two particles as a coordinate. Its places are the origins, without directions.
+struct DistanceForm : PlainForm {
+  static constexpr Form form = Form::distance;
+
+  template <class Sink>
+  static void build(const JointArms& j, RowSink<Sink>& out) {
+    if (j.c.kind == ConstraintKind::span) return out.coordinate(slide, span_row(j));
+    if (!j.c.compliance.is_exact()) return out.hold(span_row(j));  // its stretch is not only nearly the distance
+    if (j.c.kind == ConstraintKind::rod && joins_nodes(j)) return out.hold(rod_row(j));
+    out.hold(square_row(j));
+  }
+
+  template <class Visit>
+  static bool with_coordinate(const JointArms& j, JointCoordinate which, Visit visit) {
+    if (which != JointCoordinate::slide) return false;
+    visit(span_row(j));
+    return true;
+  }
+
+  using PlainForm::load;
+  static void load(solver::DistanceConstraint& row, const Model&, const Constraint& c, double*) {
+    row.length = c.length;
+  }
+  static void load(solver::BilinearConstraint& row, const Model&, const Constraint& c, double*) {
+    row.product = c.length * c.length;
+  }
+  static void load(solver::SpanConstraint& row, const Model&, const Constraint& c, double*) { row.target = c.length; }
+
+ private:
+  /// Whether each end is a node of its own.
+  static bool joins_nodes(const JointArms&);
+  static solver::SpanConstraint span_row(const JointArms&);
+  static solver::DistanceConstraint rod_row(const JointArms&);
+  /// (|d|^2 - L^2) / 2L: the multiplier is the tension.
+  static solver::BilinearConstraint square_row(const JointArms&);
+};
+
+}  // namespace iota::ingredient::joint

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/joint_frames.h"
+
+#include "math/mat3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace iota::ingredient::joint {
+
+Vec3 unit(const Vec3& v) {
+  const Vec3 scaled = (1 / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)})) * v;
+  return (1 / norm(scaled)) * scaled;
+}
+
+Side::Side(const Model& model, std::uint32_t slot) : body(slot) {
+  const model::Body& b = model.bodies[slot];
+  dimensions = std::max(b.rank - 1, 0);
+  for (int i = 0; i < dimensions; ++i) {
+    Vec3 axis = model.position(b.basis[i + 1]) - model.position(b.basis[0]);
+    extent = std::max(extent, norm(axis));
+    for (int j = 0; j < i; ++j) axis -= dot(axis, axes[j]) * axes[j];
+    axes[i] = unit(axis);
+  }
+}
+
+bool Side::holds(Vec3 direction) const {
+  for (int i = 0; i < dimensions; ++i) direction -= dot(direction, axes[i]) * axes[i];
+  return dimensions == 3 || norm(direction) < straight;
+}
+
+std::string Side::what() const {
+  constexpr const char* shapes[] = {"a point", "on one line", "flat", "solid"};
+  return "body " + std::to_string(body) + " is " + shapes[dimensions];
+}
+
+void cannot(const char* kind, const std::string& why) { throw std::invalid_argument(std::string(kind) + ": " + why); }
+
+void add_place(Model& model, Constraint& c, int place, std::uint32_t body, const Vec3& at) {
+  const auto bit = static_cast<std::uint8_t>(1u << place);
+  if (body == none) {
+    c.fixed[place - b_origin] = at;
+    c.in_world |= bit;
+  } else {
+    const std::uint32_t marker = c.particles[place] = model.make_marker(body, at);
+    c.owned |= bit;
+    // The ends of directions belong to the part of their origin, not to the nearest one.
+    const std::uint32_t origin = c.particles[place < b_origin ? a_origin : b_origin];
+    model.particles[marker].part = origin == marker ? model.part_at(body, at) : model.particles[origin].part;
+  }
+}
+
+void require_frame(const char* kind, const Side& side) {
+  if (side.dimensions < 3)
+    cannot(kind, side.what() + " and holds no frame for a curve or surface; give it a massive particle off its plane");
+}
+
+void make_frame(Model& model, Constraint& c, const Side& side, int origin, const Vec3& at, const Quaternion& q) {
+  const int which = origin == b_origin;
+  c.scale[which] = side.extent > 0 ? side.extent : 1;
+  const std::array<Vec3, 4> directions{Vec3{}, rotate(q, {0, 0, 1}), rotate(q, {1, 0, 0}), rotate(q, {0, 1, 0})};
+  for (int i = 0; i < 4; ++i) add_place(model, c, origin + i, side.body, at + c.scale[which] * directions[i]);
+}
+
+}  // namespace iota::ingredient::joint

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/distance_form.h"
+
+#include "ingredient/joint_readings.h"
+#include "tests/cpp/ingredient/joint_values.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace iota::ingredient {
+namespace {
+
+TEST(DistanceForm, a_rod_and_a_rope_have_one_row_that_counts_from_their_length) {
+  for (const ConstraintKind kind : {ConstraintKind::rod, ConstraintKind::rope}) {
+    TwoBlocks blocks;
+    Model& model = blocks.m.model;
+    const std::uint32_t joint = make_constraint(
+        model, DistanceSpec{.kind = kind, .p = blocks.particle(blocks.a, 0), .q = blocks.particle(blocks.b, 0)});
+    EXPECT_EQ(values_of(model, joint).held, std::vector<double>{0}) << "5 m, as they are";
+    model.constraints[joint].length = 4;
+    EXPECT_NEAR(values_of(model, joint).worst(), (25 - 16) / 8.0, 1e-12) << "(|d|^2 - L^2) / 2L";
+    model.constraints[joint].compliance.linear = 1e-3;
+    EXPECT_NEAR(values_of(model, joint).worst(), 1, 1e-12) << "a compliant one is stretched by its excess length";
+  }
+}
+
+TEST(DistanceForm, a_span_holds_nothing_and_is_a_slide) {
+  TwoBlocks blocks;
+  const std::uint32_t span = make_constraint(
+      blocks.m.model,
+      SpanSpec{
+          .p = blocks.particle(blocks.a, 0), .q = blocks.particle(blocks.b, 0), .slide = {.upper = 6}, .breaks = {}});
+  const JointValues values = values_of(blocks.m.model, span);
+  EXPECT_TRUE(values.held.empty());
+  EXPECT_EQ(values.coordinates, 1);
+  EXPECT_NEAR(calc_coordinate(blocks.m.model, span, JointCoordinate::slide).first, 5, 1e-12);
+}
+
+TEST(DistanceForm, two_particles_of_one_body_are_refused) {
+  TwoBlocks blocks;
+  EXPECT_THROW((void)make_constraint(blocks.m.model, DistanceSpec{.kind = ConstraintKind::rope,
+                                                                  .p = blocks.particle(blocks.a, 0),
+                                                                  .q = blocks.particle(blocks.a, 1)}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace iota::ingredient
