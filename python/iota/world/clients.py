@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from iota._core import Body, Grip, System, Vec3
 from iota.saving import replacing
 from iota.simulator import SimulatedGrip
+from iota.world.listeners import Listener
 from iota.world.scene import Camera, camera_or_none
 
 TakePicture = Callable[[int, float], bytes]  # client, time limit in s
@@ -21,17 +22,31 @@ LONGEST_PULSE = 5.0  # s
 
 @dataclass
 class Hold:
-    """One grab of a client while it lasts, and the grip that it makes. taken: the body at its start."""
+    """One grab of a client while it lasts. number: the page's own. taken: the body at its start. last: the body that the
+    hand holds now or held last, which an edit may have made another one. listeners: its functions of drags. grip: None
+    if one of these replaces it."""
 
+    client: int
+    number: int
     taken: Body
-    grip: Grip | SimulatedGrip
+    last: Body
+    listeners: list[Listener] = field(default_factory=list, repr=False, compare=False)
+    grip: Grip | SimulatedGrip | None = None
 
     @property
     def body(self) -> Body | None:
-        """The held body, which an edit may have made another one than the taken one; None if the grab has ended."""
-        if not self.grip.alive:
+        """The body at the grip; None without one, or if it has ended."""
+        if self.grip is None or not self.grip.alive:
             return None
         return self.grip.body if isinstance(self.grip, Grip) else alive(self.taken)
+
+    def move(self, target: Vec3) -> None:
+        if self.grip is not None and self.grip.alive:
+            self.grip.move(target)
+
+    def let_go(self) -> None:
+        if self.grip is not None and self.grip.alive:
+            self.grip.destroy()
 
 
 @dataclass
@@ -109,6 +124,7 @@ class Clients:
         self.take_picture: TakePicture | None = None
         self.send_pulse: SendPulse | None = None
         self.send_camera: SendCamera | None = None
+        self.taken_away: list[tuple[Hold, str]] = []  # with the reason; their functions wait to be told
 
     def join(self, id: int, name: str) -> None:
         self.by_id[id] = Client(
@@ -119,26 +135,31 @@ class Clients:
         del self.by_id[client.id]
         self.let_go(client)
 
-    def grab(self, client: Client, hold: int, body: Any, local_point: Vec3, target: Vec3) -> None:
-        """Grips a point of a body (body frame). Raises what the system raises if that is not possible."""
-        self.release(client, hold)
-        grip = self._system.grip(body, local_point, target, client=client.id, hold=hold)
-        client.holds[hold] = Hold(body, grip)
+    def holds(self) -> list[Hold]:
+        """Of all clients."""
+        return [hold for client in self.by_id.values() for hold in client.holds.values()]
 
-    def move(self, client: Client, hold: int, target: Vec3) -> None:
-        """Moves the hand of a grab, if it has a grip."""
-        found = client.holds.get(hold)
-        if found is not None and found.grip.alive:
-            found.grip.move(target)
-
-    def release(self, client: Client, hold: int) -> None:
-        found = client.holds.pop(hold, None)
-        if found is not None and found.grip.alive:
-            found.grip.destroy()
+    def grip(self, hold: Hold, local_point: Vec3, target: Vec3) -> None:
+        """Grips a point of the body (body frame). Raises what the system raises if that is not possible."""
+        hold.grip = self._system.grip(hold.taken, local_point, target, client=hold.client, hold=hold.number)
 
     def let_go(self, client: Client) -> None:
-        for hold in list(client.holds):
-            self.release(client, hold)
+        for hold in client.holds.values():
+            hold.let_go()
+        client.holds.clear()
+
+    def follow_grips(self) -> None:
+        """After an edit a grip may be on another body, which exists beside the one that was taken. Holds without a grip
+        stay with theirs."""
+        for hold in self.holds():
+            hold.last = hold.body or hold.last
+
+    def take_away(self, reason: str, holds: Iterable[Hold] | None = None) -> None:
+        """Ends these holds, or all, without their users. After the system was restored, the restored grips belong to no
+        present hold."""
+        for hold in self.holds() if holds is None else holds:
+            del self.by_id[hold.client].holds[hold.number]
+            self.taken_away.append((hold, reason))
 
     @property
     def is_profiled(self) -> bool:
@@ -151,18 +172,7 @@ class Clients:
         bodies = [hold.body for c in clients for hold in c.holds.values()]
         return next((body for body in reversed(bodies) if body is not None), None)
 
-    def held_by(self, hand: tuple[int, int]) -> Body | None:
-        """The body at the grip of a hand (client and hold); None without one."""
-        client = self.by_id.get(hand[0])
-        hold = None if client is None else client.holds.get(hand[1])
-        return None if hold is None else hold.body
-
     def selected(self, client: int) -> Body | None:
         """The body selected by a client."""
         found = self.by_id.get(client)
         return None if found is None else alive(found.selected)
-
-    def forget(self) -> None:
-        """Call it after the system was restored: the restored grips belong to no present grab."""
-        for client in self.by_id.values():
-            client.holds.clear()

@@ -14,10 +14,10 @@ from iota import _protocol as protocol
 from iota._core import System, Vec3
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
-from iota.world.clients import Client, alive
+from iota.world.clients import Client, Hold, alive
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event, Hand
-from iota.world.listeners import Drag, Listener
+from iota.world.listeners import Listener
 from iota.world.pace import Pace
 from iota.world.state import State
 from iota.world.widgets import Widget
@@ -123,14 +123,14 @@ class Inputs:
 
     @handles(protocol.Leave)
     def _leave(self, client: Client, message: protocol.Leave) -> None:
-        listeners = self._state.listeners
+        clients = self._state.clients
         self._pace.forget(client.id)
-        self._follow_grips()
-        for hand in [hand for hand in listeners.drags if hand[0] == client.id]:
-            self._end(hand, listeners.drags.pop(hand), "left")
+        clients.follow_grips()
+        for hold in list(client.holds.values()):
+            self._end(hold, "left")
         with self._telling(client, "That cannot be done"):
-            self._state.clients.leave(client)
-        for listener in listeners.of("leave"):
+            clients.leave(client)
+        for listener in self._state.listeners.of("leave"):
             self._tell(listener, client.id)
 
     @handles(protocol.Select)
@@ -148,37 +148,35 @@ class Inputs:
     @handles(protocol.GrabStart)
     def _grab_start(self, client: Client, message: protocol.GrabStart) -> None:
         """The script's listeners are called; they may replace the grip of a hand."""
-        body, listeners = self._find(client, message.body), self._state.listeners
+        body, clients = self._find(client, message.body), self._state.clients
         if body is None or body.kind == "inactive":
             return
-        self._follow_grips()
-        hand, drag = (client.id, message.hold), Drag(body, body, list(listeners.of("drag", body)))
-        listeners.drags[hand] = drag
-        if not any(listener.takes_over for listener in drag.listeners):
+        clients.follow_grips()
+        hold = Hold(client.id, message.hold, body, body, list(self._state.listeners.of("drag", body)))
+        client.holds[hold.number] = hold
+        if not any(listener.takes_over for listener in hold.listeners):
             with self._telling(client, "That cannot be held"):
-                self._state.clients.grab(client, message.hold, body, message.local_point, message.target)
-        self._tell_of_hand("press", hand, drag, message.target)
-        self._tell_drag("start", hand, drag, message.target)
+                clients.grip(hold, message.local_point, message.target)
+        self._tell_of_hand("press", hold, message.target)
+        self._tell_drag("start", hold, message.target)
 
     @handles(protocol.GrabMove)
     def _grab_move(self, client: Client, message: protocol.GrabMove) -> None:
-        self._follow_grips()
-        with self._telling(client, "That cannot be held"):
-            self._state.clients.move(client, message.hold, message.target)
-        hand = client.id, message.hold
-        drag = self._state.listeners.drags.get(hand)
-        if drag is not None:
-            self._tell_drag("update", hand, drag, message.target)
+        self._state.clients.follow_grips()
+        hold = client.holds.get(message.hold)
+        if hold is not None:
+            with self._telling(client, "That cannot be held"):
+                hold.move(message.target)
+            self._tell_drag("update", hold, message.target)
 
     @handles(protocol.GrabEnd)
     def _grab_end(self, client: Client, message: protocol.GrabEnd) -> None:
-        self._follow_grips()
-        with self._telling(client, "That cannot be held"):
-            self._state.clients.release(client, message.hold)
-        hand = client.id, message.hold
-        drag = self._state.listeners.drags.pop(hand, None)
-        if drag is not None:
-            self._end(hand, drag, "released")
+        self._state.clients.follow_grips()
+        hold = client.holds.pop(message.hold, None)
+        if hold is not None:
+            with self._telling(client, "That cannot be held"):
+                hold.let_go()
+            self._end(hold, "released")
 
     @handles(protocol.Action, share=1.0)
     def _action(self, client: Client, message: protocol.Action) -> None:
@@ -280,33 +278,25 @@ class Inputs:
         self._guard.call(f"on_{listener.kind} ({hook.name})", hook.function, *((given,) if hook.takes_event else ()))
 
     def _end_gone(self) -> None:
-        """Ends the drags whose body was destroyed, and tells of all that did not end by their user."""
-        listeners = self._state.listeners
-        self._follow_grips()
-        listeners.take_away("destroyed", [hand for hand, drag in listeners.drags.items() if alive(drag.body) is None])
-        taken, listeners.taken_away = listeners.taken_away, []
-        for hand, drag, reason in taken:
-            self._end(hand, drag, reason)
+        """Ends the holds whose body was destroyed, and tells of all that did not end by their user."""
+        clients = self._state.clients
+        clients.follow_grips()
+        clients.take_away("destroyed", [hold for hold in clients.holds() if alive(hold.last) is None])
+        taken, clients.taken_away = clients.taken_away, []
+        for hold, reason in taken:
+            self._end(hold, reason)
 
-    def _follow_grips(self) -> None:
-        """After an edit a grip may be on another body, which exists beside the one that was taken. Drags without a grip
-        stay with theirs."""
-        for hand, drag in self._state.listeners.drags.items():
-            drag.body = self._state.clients.held_by(hand) or drag.body
+    def _end(self, hold: Hold, reason: str) -> None:
+        self._tell_drag("end", hold, None, reason)
+        self._tell_of_hand("release", hold, None, reason)
 
-    def _end(self, hand: tuple[int, int], drag: Drag, reason: str) -> None:
-        self._tell_drag("end", hand, drag, None, reason)
-        self._tell_of_hand("release", hand, drag, None, reason)
-
-    def _tell_of_hand(self, kind: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:
-        client, hold = hand
-        body = alive(drag.body)
+    def _tell_of_hand(self, kind: str, hold: Hold, point: Vec3 | None, reason: str = "") -> None:
+        body = alive(hold.last)
         # A destroyed body is still that for which a function was registered, and so is the one that was pressed.
-        for listener in self._state.listeners.of_any(kind, {drag.taken, drag.body if body is None else body}):
-            self._tell(listener, client, body, point=point, hold=hold, reason=reason)
+        for listener in self._state.listeners.of_any(kind, {hold.taken, hold.last if body is None else body}):
+            self._tell(listener, hold.client, body, point=point, hold=hold.number, reason=reason)
 
-    def _tell_drag(self, phase: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:
-        client, hold = hand
-        body = alive(drag.body)
-        for listener in drag.listeners if body is not None or phase == "end" else ():
-            self._tell(listener, client, body, point=point, phase=phase, hold=hold, reason=reason)
+    def _tell_drag(self, phase: str, hold: Hold, point: Vec3 | None, reason: str = "") -> None:
+        body = alive(hold.last)
+        for listener in hold.listeners if body is not None or phase == "end" else ():
+            self._tell(listener, hold.client, body, point=point, phase=phase, hold=hold.number, reason=reason)

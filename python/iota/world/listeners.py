@@ -5,7 +5,7 @@ simulation."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from iota._core import Body, Constraint, Group, Particle
@@ -95,27 +95,13 @@ def bodies_of(target: Any) -> Bodies:
     raise TypeError(f"must be a body, bodies, a group, 'anything' or 'nothing', not {target!r}")
 
 
-@dataclass
-class Drag:
-    """A hand whose drag the script handles. taken: the body at its start. body: the one that it holds now or held last,
-    which an edit may have made another one."""
-
-    taken: Any
-    body: Any
-    listeners: list[Listener] = field(default_factory=list)
-
-
 class Listeners:
-    """All listeners of a world. version: rises when the input events that pages have to send may have changed."""
+    """All listeners of a world. version: rises when what pages have to send may have changed."""
 
     def __init__(self) -> None:
         self._by_kind: dict[str, list[Listener]] = {kind: [] for kind in KINDS}
         self.on_step: list[Hook] = []
         self.on_reset: list[Hook] = []
-        self.drags: dict[tuple[int, int], Drag] = {}  # by client and hold
-        self.taken_away: list[
-            tuple[tuple[int, int], Drag, str]
-        ] = []  # with the reason; their functions wait to be told
         self.version = 0
 
     def add(self, listener: Listener) -> None:
@@ -137,11 +123,6 @@ class Listeners:
 
     def _count(self) -> int:
         return sum(map(len, self._by_kind.values())) + len(self.on_step) + len(self.on_reset)
-
-    def take_away(self, reason: str, hands: Iterable[tuple[int, int]] | None = None) -> None:
-        """Ends drags of these hands, or all, without their users."""
-        for hand in list(self.drags if hands is None else hands):
-            self.taken_away.append((hand, self.drags.pop(hand), reason))
 
     def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
         """The listeners for a kind and a body; None: no hit, or an event without a body."""

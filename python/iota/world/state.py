@@ -41,7 +41,7 @@ class State:
 
     def __post_init__(self) -> None:
         self.clients = Clients(self.system)
-        self.history = History(self.system, self.clients, self.listeners)
+        self.history = History(self.system, self.clients)
         self.step_costs = StepCosts(self.costs)
 
     @classmethod

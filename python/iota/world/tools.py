@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import Any
 
 from iota._core import Body, Bond, Constraint, Particle, System, Vec3
-from iota.world.clients import alive
+from iota.world.clients import Clients, alive
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.event import Event
@@ -55,9 +55,10 @@ class Tools(Part):
         controls: Controls,
         events: Events,
         history: History,
+        clients: Clients,
     ) -> None:
         self._system, self._visuals, self._scene, self._history = system, visuals, scene, history
-        self._drawings, self._controls, self._events = drawings, controls, events
+        self._drawings, self._controls, self._events, self._clients = drawings, controls, events, clients
         self._joins = Joins()
 
     def offer(self, *parts: str) -> None:
@@ -348,8 +349,8 @@ class Socket:
         """A plug that is destroyed in the hand, or taken out of it by a reset or an undo, is not let go of."""
         if self._ghost is None:
             return
-        plug, drags = self._ghost.body, self._tools._events._listeners.drags.values()
-        held = [body for body in (alive(drag.body) for drag in drags) if body is not None]
+        plug, holds = self._ghost.body, self._tools._clients.holds()
+        held = [body for body in (alive(hold.last) for hold in holds) if body is not None]
         if not plug.alive or all(body.articulate != plug.articulate for body in held):
             self._draw(None)
             self._show(None, FREE)

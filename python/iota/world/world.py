@@ -123,7 +123,14 @@ class World:
         self._controls = Controls(state.things, state.actions, lambda action, bodies: inputs.act(action, 0, bodies))
         self._events = Events(state.listeners)
         self._tools = Tools(
-            state.system, state.visuals, state.scene, self._drawings, self._controls, self._events, state.history
+            state.system,
+            state.visuals,
+            state.scene,
+            self._drawings,
+            self._controls,
+            self._events,
+            state.history,
+            state.clients,
         )
         self._queries = Queries(state.system, state.scene, state.visuals, state.things)
         self._users = Users(state.clients, state.notices)
