@@ -10,7 +10,10 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* angle_spring_doc = "A spring on the angle that three particles span; made by `System.angle_spring`.";
+using AngleSpringHandle = Handle<AngleSpringId>;
+
+constexpr const char* angle_spring_doc =
+    "A spring on the angle that three particles span; made by `System.angle_spring`.";
 
 constexpr const char* make_angle_spring_doc =
     "A spring on the angle between the legs from `middle` to p and to q: the bending stiffness of ropes and beams, the\n"
@@ -40,8 +43,8 @@ void def_option(nb::class_<AngleSpringHandle>& type, const char* name, const cha
 }  // namespace
 
 void bind_angle_springs(nb::module_& module) {
-  nb::class_<AngleSpringHandle> type(module, "AngleSpring", angle_spring_doc, nb::type_slots(handle_slots<AngleSpringHandle>),
-                                     nb::is_weak_referenceable());
+  nb::class_<AngleSpringHandle> type(module, "AngleSpring", angle_spring_doc,
+                                     nb::type_slots(handle_slots<AngleSpringHandle>), nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def(
           "angle_spring",

@@ -23,28 +23,7 @@ using Vector3Array = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>, nb::c_cont
 
 Vector3Array make_vector3_array(std::vector<double> numbers);
 
-void bind_arrays(nb::module_&);
-void bind_vector(nb::module_&);
-void bind_shapes(nb::module_&);
-void bind_reports(nb::module_&);
-void bind_recording(nb::module_&);
-void bind_system(nb::module_&);
-void bind_body(nb::module_&);
-void bind_particle(nb::module_&);
-void bind_angle_springs(nb::module_&);
-void bind_bonds(nb::module_&);
-void bind_laws(nb::module_&);
-void bind_fields(nb::module_&);
 void def_fields(nb::class_<SystemObject>&);  ///< the functions of System
-void bind_grip(nb::module_&);
-void bind_constraints(nb::module_&);
-void bind_parts(nb::module_&);
-void bind_articulates(nb::module_&);
-void bind_edits(nb::module_&);
-void bind_emitters(nb::module_&);
-void bind_restructuring(nb::module_&);
-void bind_server(nb::module_&);
-void bind_solvers(nb::module_&);
 
 // --- handles --------------------------------------------------------------------------------------------------------
 

@@ -4,6 +4,33 @@
 #include "explained_calls.h"
 #include "places_object.h"
 
+namespace iota::bindings {
+
+// Each has a file of its name.
+void bind_vector(nb::module_&);
+void bind_shapes(nb::module_&);
+void bind_reports(nb::module_&);
+void bind_recording(nb::module_&);
+void bind_system(nb::module_&);
+void bind_body(nb::module_&);
+void bind_particle(nb::module_&);
+void bind_laws(nb::module_&);
+void bind_bonds(nb::module_&);
+void bind_angle_springs(nb::module_&);
+void bind_fields(nb::module_&);
+void bind_grip(nb::module_&);
+void bind_constraints(nb::module_&);
+void bind_restructuring(nb::module_&);
+void bind_arrays(nb::module_&);
+void bind_parts(nb::module_&);
+void bind_articulates(nb::module_&);
+void bind_edits(nb::module_&);
+void bind_emitters(nb::module_&);
+void bind_server(nb::module_&);
+void bind_solvers(nb::module_&);
+
+}  // namespace iota::bindings
+
 NB_MODULE(_core, module) {
   using namespace iota::bindings;
   module.doc() = "The engine and the server of iota. Import `iota` instead.";

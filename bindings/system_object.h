@@ -129,7 +129,6 @@ using GripHandle = Handle<GripId>;
 using EmitterHandle = Handle<EmitterId>;
 using ConstraintHandle = Handle<ConstraintId>;
 using CosmeticBondHandle = Handle<CosmeticBondId>;
-using AngleSpringHandle = Handle<AngleSpringId>;
 
 template <KindName kind>
 std::string name_of(Id<kind> id) {

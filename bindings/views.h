@@ -3,20 +3,19 @@
 
 #include <iota/system.h>
 
-/// The view of a system that an id belongs to, for code that is written once for several kinds of ids.
+#include <cstddef>
+#include <tuple>
+
 namespace iota::bindings {
 
-inline Bodies view_of(System& system, BodyId) { return system.bodies(); }
-inline Particles view_of(System& system, ParticleId) { return system.particles(); }
-inline Bonds view_of(System& system, BondId) { return system.bonds(); }
-inline CosmeticBonds view_of(System& system, CosmeticBondId) { return system.cosmetic_bonds(); }
-inline AngleSprings view_of(System& system, AngleSpringId) { return system.angle_springs(); }
-inline Joints view_of(System& system, ConstraintId) { return system.joints(); }
-inline Laws view_of(System& system, LawId) { return system.laws(); }
-inline Fields view_of(System& system, FieldId) { return system.fields(); }
-inline Pairs view_of(System& system, PairsId) { return system.pairs(); }
-inline Groups view_of(System& system, GroupId) { return system.groups(); }
-inline Grips view_of(System& system, GripId) { return system.grips(); }
-inline Emitters view_of(System& system, EmitterId) { return system.emitters(); }
+/// The view of a system that an id belongs to, for code that is written once for several kinds of ids.
+template <std::size_t first = 0, class IdType>
+auto view_of(System& system, IdType id) {
+  using V = std::tuple_element_t<first, Views>;
+  if constexpr (requires(const V& view) { view.contains(id); })
+    return system.view<V>();
+  else
+    return view_of<first + 1>(system, id);
+}
 
 }  // namespace iota::bindings

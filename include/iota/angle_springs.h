@@ -10,6 +10,8 @@
 
 namespace iota {
 
+using AngleSpringId = Id<"angle spring">;
+
 /// A spring on the angle between the legs from a middle particle to two others. It turns them towards `rest` with
 /// energy stiffness/2 (angle - rest)^2 to second order; exactly it is a function of cos(angle/2), smooth where the legs
 /// are straight, as long as the legs keep the lengths that they had when it was made.

@@ -37,7 +37,6 @@ using BodyId = Id<"body">;
 using ParticleId = Id<"particle">;  ///< one body's point of a (possibly shared) particle
 using BondId = Id<"bond">;
 using CosmeticBondId = Id<"cosmetic bond">;
-using AngleSpringId = Id<"angle spring">;
 using EmitterId = Id<"emitter">;
 using GripId = Id<"grip">;
 using ConstraintId = Id<"constraint">;

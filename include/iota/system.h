@@ -27,11 +27,16 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 /// Iota: worlds of particles, bonds and exactly jointed rigid bodies that can be restructured while they run.
 /// SI units; world frame right-handed, y up.
 namespace iota {
+
+/// The views of the objects that ids name.
+using Views = std::tuple<Bodies, Particles, Bonds, CosmeticBonds, AngleSprings, Joints, Laws, Fields, Pairs, Groups,
+                         Grips, Emitters>;
 
 /// A world, sorted by noun: `system.bodies().mass(id)`. Functions throw std::invalid_argument for bad numbers and
 /// StaleIdError for ids of destroyed objects, before any change. A system is used from one thread at a time.
@@ -80,6 +85,11 @@ class System {
   const Emitters emitters() const { return Emitters(*core_); }
   const Edits edits() const { return Edits(*core_); }
   const Viewer viewer() const { return Viewer(*core_); }
+  /// The same, for code that is written once for several views.
+  template <class V>
+  V view() {
+    return V(*core_);
+  }
   ///@}
 
   /// @name Time

@@ -10,7 +10,7 @@
 
 namespace iota {
 
-/// Kind of sealed bytes: eight letters, the last of which is the version of the format, and a word for errors.
+/// Kind of sealed bytes: eight bytes that name it and the version of its format, and a word for errors.
 struct Seal {
   std::array<char, 8> mark;
   std::string_view name;

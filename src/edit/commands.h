@@ -29,8 +29,8 @@ struct Step {
   double dt;
 };
 
-// One per line, to avoid merge conflicts. Recordings name a command by its place: change the version of their format when
-// the list changes (door.cpp).
+// One per line, to avoid merge conflicts. Recordings name a command by its place, and have the length of the list in the
+// version of their format (door.cpp).
 // clang-format off
 using Command = std::variant<
     Step,

@@ -9,42 +9,21 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', 'A'}, "snapshot"};
-
-/// `survivor()`: the object that absorbed it, called only for a stale id.
-template <class Table, KindName name, class Survivor>
-std::uint32_t slot_of(const Table& table, Id<name> id, Survivor survivor) {
-  const std::string_view kind = name.text;
-  if (table.contains(id)) return id.slot;
-  if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-  if (const std::optional<Id<name>> other = survivor())
-    throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", other->slot));
-  throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
-}
-
-template <class Table, KindName name>
-std::uint32_t slot_of(const Table& table, Id<name> id) {
-  return slot_of(table, id, [] { return std::optional<Id<name>>(); });
-}
+// The tables of a snapshot are in the order of the list of ingredients: its length is a part of the version, so that one
+// more is another format. Change the letter before it if a table changes.
+constexpr auto ingredients = static_cast<char>(std::tuple_size_v<ingredient::Ingredients>);
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'B', ingredients}, "snapshot"};
 
 }  // namespace
 
-std::uint32_t require(const model::Model& m, BodyId id) {
-  return slot_of(m.bodies, id, [&] { return m.survivor_of(id); });
+void refuse_null(std::string_view kind) {
+  throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
 }
-std::uint32_t require(const model::Model& m, ParticleId id) {
-  return slot_of(m.particles, id, [&] { return m.survivor_of(id); });
+
+void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor) {
+  if (survivor) throw StaleIdError(text(kind, " ", slot, " is gone: it was absorbed by ", kind, " ", *survivor));
+  throw StaleIdError(text(kind, " ", slot, " is gone: it was destroyed"));
 }
-std::uint32_t require(const model::Model& m, BondId id) { return slot_of(m.bonds, id); }
-std::uint32_t require(const model::Model& m, CosmeticBondId id) { return slot_of(m.cosmetic_bonds, id); }
-std::uint32_t require(const model::Model& m, AngleSpringId id) { return slot_of(m.angle_springs, id); }
-std::uint32_t require(const model::Model& m, LawId id) { return slot_of(m.laws, id); }
-std::uint32_t require(const model::Model& m, GroupId id) { return slot_of(m.groups, id); }
-std::uint32_t require(const model::Model& m, FieldId id) { return slot_of(m.fields, id); }
-std::uint32_t require(const model::Model& m, PairsId id) { return slot_of(m.pairs, id); }
-std::uint32_t require(const model::Model& m, ConstraintId id) { return slot_of(m.constraints, id); }
-std::uint32_t require(const model::Model& m, GripId id) { return slot_of(m.grips, id); }
-std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.emitters, id); }
 
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,19 +37,20 @@ struct LastEnumerator<CurveKind> : std::integral_constant<CurveKind, CurveKind::
 /// (door.h). A new command is declared and defined in the files of its noun, and added to commands.h.
 namespace iota::edit {
 
+[[noreturn]] void refuse_null(std::string_view kind);
+/// survivor: the slot of the object that absorbed it.
+[[noreturn]] void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor);
+
 /// Slot of a living thing. Throws StaleIdError, which says what became of it.
-std::uint32_t require(const model::Model&, BodyId);
-std::uint32_t require(const model::Model&, ParticleId);
-std::uint32_t require(const model::Model&, BondId);
-std::uint32_t require(const model::Model&, CosmeticBondId);
-std::uint32_t require(const model::Model&, AngleSpringId);
-std::uint32_t require(const model::Model&, LawId);
-std::uint32_t require(const model::Model&, GroupId);
-std::uint32_t require(const model::Model&, FieldId);
-std::uint32_t require(const model::Model&, PairsId);
-std::uint32_t require(const model::Model&, ConstraintId);
-std::uint32_t require(const model::Model&, GripId);
-std::uint32_t require(const model::Model&, EmitterId);
+template <KindName kind>
+std::uint32_t require(const model::Model& model, Id<kind> id) {
+  if (model::table_of(model, id).contains(id)) return id.slot;
+  if (!id) refuse_null(kind.text);
+  std::optional<std::uint32_t> survivor;
+  if constexpr (requires { model.survivor_of(id); })
+    if (const auto other = model.survivor_of(id)) survivor = other->slot;
+  refuse_stale(kind.text, id.slot, survivor);
+}
 
 /// The state on which commands act.
 struct Editor {

@@ -3,6 +3,8 @@
 
 #include "ingredient/ingredient.h"
 
+#include <iota/angle_springs.h>
+
 namespace iota::ingredient {
 
 /// A spring on the angle that three particles span at the middle one.
@@ -29,6 +31,7 @@ class AngleSprings : public NoAnswers {
   struct Tables {
     model::EndTable<AngleSpring, AngleSpringId> angle_springs;
 
+    const auto& table_of(AngleSpringId) const { return angle_springs; }
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       angle_springs.archive(ar, structure.particles.slot_count());

@@ -42,6 +42,7 @@ class Bonds : public NoAnswers {
     std::vector<std::uint32_t> breakable_bonds;
     std::uint64_t breakable_revision = ~0ull;
 
+    const auto& table_of(BondId) const { return bonds; }
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       bonds.archive(ar, structure.particles.slot_count());

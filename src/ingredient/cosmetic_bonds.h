@@ -16,6 +16,7 @@ class CosmeticBonds : public NoAnswers {
   struct Tables {
     model::EndTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
 
+    const auto& table_of(CosmeticBondId) const { return cosmetic_bonds; }
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       cosmetic_bonds.archive(ar, structure.particles.slot_count());

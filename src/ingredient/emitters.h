@@ -33,6 +33,7 @@ class Emitters : public NoAnswers {
     SlotTable<Emitter, EmitterId> emitters;
     model::ChangedSlots changed_emitters;  ///< not saved
 
+    const auto& table_of(EmitterId) const { return emitters; }
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       emitters.archive(ar);

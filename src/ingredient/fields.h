@@ -34,6 +34,7 @@ class Fields : public NoAnswers {
   struct Tables {
     SlotTable<Field, FieldId> fields;
 
+    const auto& table_of(FieldId) const { return fields; }
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       fields.archive(ar);

@@ -22,6 +22,7 @@ class Grips : public NoAnswers {
   struct Tables {
     SlotTable<Grip, GripId> grips;
 
+    const auto& table_of(GripId) const { return grips; }
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       grips.archive(ar);

@@ -24,6 +24,7 @@ class Joints : public NoAnswers {
     std::vector<ConstraintGeometry> geometries;  ///< by slot of the constraint; not saved
     model::ChangedSlots changed_constraints;     ///< not saved
 
+    const auto& table_of(ConstraintId) const { return constraints; }
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       constraints.archive(ar), places.archive(ar, structure.particles.slot_count());

@@ -45,6 +45,7 @@ class Laws : public NoAnswers {
 
     SlotTable<Law, LawId> laws;
 
+    const auto& table_of(LawId) const { return laws; }
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       laws.archive(ar);

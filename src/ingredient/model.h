@@ -97,4 +97,17 @@ void Model::archive(Archive& ar) {
       [&]<class I>() { static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this); });
 }
 
+/// The table of the objects that an id names: each ingredient knows that of its own.
+inline const auto& table_of(const Model& model, BodyId) { return model.bodies; }
+inline const auto& table_of(const Model& model, ParticleId) { return model.particles; }
+inline const auto& table_of(const Model& model, GroupId) { return model.groups; }
+template <std::size_t first = 0, class IdType>
+const auto& table_of(const Model& model, IdType id) {
+  using Own = ingredient::OwnTables<std::tuple_element_t<first, ingredient::Ingredients>>;
+  if constexpr (requires(const Own& own) { own.table_of(id); })
+    return static_cast<const Own&>(model).table_of(id);
+  else
+    return table_of<first + 1>(model, id);
+}
+
 }  // namespace iota::model

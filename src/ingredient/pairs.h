@@ -23,6 +23,7 @@ class Pairs : public NoAnswers {
   struct Tables {
     SlotTable<PairForce, PairsId> pairs;
 
+    const auto& table_of(PairsId) const { return pairs; }
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       pairs.archive(ar);

@@ -136,7 +136,7 @@ class Clients:
         self.let_go(client)
 
     def holds(self) -> list[Hold]:
-        """Of all clients."""
+        """The holds of all clients."""
         return [hold for client in self.by_id.values() for hold in client.holds.values()]
 
     def grip(self, hold: Hold, local_point: Vec3, target: Vec3) -> None:
