@@ -35,6 +35,7 @@ struct CoordinateArguments {
   std::optional<Pair> limits, motor;
   double friction = 0;
   nb::object spring = nb::none();
+  double friction_coefficient = 0;
 };
 
 /// One number, or up to three; those left out are 0. `form`: what the argument must be, for errors.
@@ -101,6 +102,8 @@ CoordinateOptions to_options(const CoordinateArguments& arguments) {
   read_limits(arguments.limits, options);
   read_motor(arguments.motor, options);
   options.friction = finite_not_negative(arguments.friction, "friction", "N or N m");
+  options.friction_coefficient =
+      finite_not_negative(arguments.friction_coefficient, "friction_coefficient", "times the reaction");
   read_spring(arguments.spring, options);
   return options;
 }
@@ -109,9 +112,10 @@ CoordinateArguments to_arguments(nb::handle dictionary, const char* name) {
   CoordinateArguments arguments;
   if (dictionary.is_none()) return arguments;
   if (!nb::isinstance<nb::dict>(dictionary))
-    throw nb::type_error(
-        (std::string(name) + " must be a dict of limits, motor, friction, spring, not " + describe(dictionary))
-            .c_str());
+    throw nb::type_error((std::string(name) +
+                          " must be a dict of limits, motor, friction, friction_coefficient, spring, not " +
+                          describe(dictionary))
+                             .c_str());
   for (const auto& [key, value] : nb::borrow<nb::dict>(dictionary)) {
     const std::string word = nb::cast<std::string>(nb::str(key));
     bool good = true;
@@ -121,11 +125,14 @@ CoordinateArguments to_arguments(nb::handle dictionary, const char* name) {
       good = nb::try_cast(value, arguments.motor);
     else if (word == "friction")
       good = nb::try_cast(value, arguments.friction);
+    else if (word == "friction_coefficient")
+      good = nb::try_cast(value, arguments.friction_coefficient);
     else if (word == "spring")
       arguments.spring = nb::borrow(value);
     else
       throw nb::type_error(
-          (std::string(name) + " has no '" + word + "'; it has limits, motor, friction, spring").c_str());
+          (std::string(name) + " has no '" + word + "'; it has limits, motor, friction, friction_coefficient, spring")
+              .c_str());
     if (!good) throw nb::type_error((std::string(name) + ": " + word + " cannot be " + describe(value)).c_str());
   }
   return arguments;
@@ -329,6 +336,16 @@ void bind_coordinate(nb::module_& module) {
             self.set(options);
           },
           "Dry: up to this torque or force against any motion.")
+      .def_prop_rw(
+          "friction_coefficient", [](const CoordinateView& self) { return self.options().friction_coefficient; },
+          [](const CoordinateView& self, double coefficient) {
+            CoordinateOptions options = self.options();
+            options.friction_coefficient =
+                finite_not_negative(coefficient, "friction_coefficient", "times the reaction");
+            self.set(options);
+          },
+          "Of the slide of a prismatic or cylindrical joint: dry friction of up to this times the reaction across the\n"
+          "axis (Coulomb). 0: none. ValueError for other coordinates, and with a compliance.")
       .def_prop_rw(
           "spring",
           [](const CoordinateView& self) -> std::optional<std::tuple<double, double, double>> {
@@ -620,7 +637,7 @@ void bind_constraint_makers(nb::class_<SystemObject>& type) {
           JointSpec spec;
           spec.kind = kind, spec.breaks = to_limits(break_force, break_torque);
           spec.axis = to_vec3(axis, "axis");
-          (kind == ConstraintKind::prismatic ? spec.slide : spec.angle) = to_options({limits, motor, friction, spring});
+          spec.angle = to_options({limits, motor, friction, spring});
           return make_joint(self, spec, a, b, at);
         },
         "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "limits"_a.none() = nb::none(),
@@ -631,11 +648,23 @@ void bind_constraint_makers(nb::class_<SystemObject>& type) {
       "revolute", ConstraintKind::revolute,
       "a turns relative to b (None: the world) about an axis through `at` (m). limits: (lower, upper) in rad. motor:\n"
       "(speed in rad/s, largest torque in N m). friction: N m, dry. spring: (N m/rad, N m s/rad, rest in rad).");
-  with_coordinate(
-      "prismatic", ConstraintKind::prismatic,
+  type.def(
+      "prismatic",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
+         std::optional<Pair> limits, std::optional<Pair> motor, double friction, double friction_coefficient,
+         SpringArgument spring, double break_force, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::prismatic, spec.breaks = to_limits(break_force, break_torque);
+        spec.axis = to_vec3(axis, "axis");
+        spec.slide = to_options({limits, motor, friction, spring, friction_coefficient});
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "limits"_a.none() = nb::none(),
+      "motor"_a.none() = nb::none(), "friction"_a = 0.0, "friction_coefficient"_a = 0.0, "spring"_a.none() = nb::none(),
+      "break_force"_a = infinity, "break_torque"_a = infinity,
       "a slides relative to b (None: the world) along an axis, without turning. limits: (lower, upper) in m. motor:\n"
-      "(speed in m/s, largest force in N). friction: N, dry. spring: (N/m, N s/m, rest in m).");
-
+      "(speed in m/s, largest force in N). friction: N, dry. friction_coefficient: dry friction of up to this times the\n"
+      "reaction across the axis (Coulomb). spring: (N/m, N s/m, rest in m).");
   with_coordinate(
       "planar", ConstraintKind::planar,
       "a slides and turns relative to b (None: the world) in a plane through `at` (m) normal to the axis. limits,\n"
@@ -670,7 +699,7 @@ void bind_constraint_makers(nb::class_<SystemObject>& type) {
       "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "angle"_a.none() = nb::none(),
       "slide"_a.none() = nb::none(), "break_force"_a = infinity, "break_torque"_a = infinity,
       "a turns about and slides along an axis of b (None: the world). angle, slide: dicts of limits, motor, friction,\n"
-      "spring.");
+      "spring; slide may have a friction_coefficient, as that of `prismatic`.");
   type.def(
       "universal",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,

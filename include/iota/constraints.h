@@ -63,6 +63,8 @@ struct CoordinateOptions {
   double stiffness = 0;  ///< of a spring towards `rest`
   double damping = 0;
   double rest = 0;
+  /// Of the slide of a prismatic or cylindrical joint: dry friction of up to this times the reaction across the axis (Coulomb).
+  double friction_coefficient = 0;
 };
 
 /// Loads above which a constraint breaks: it becomes inactive, and the step's report names it.

@@ -4,6 +4,7 @@
 #include "edit/checks.h"
 #include "ingredient/joint_readings.h"
 #include "ingredient/joint_rows.h"
+#include "ingredient/pin_form.h"
 #include "math/mat3.h"
 
 #include <cmath>
@@ -18,7 +19,8 @@ const char* name_of(JointCoordinate which) {
   return std::array{"angle", "slide", "second angle"}[static_cast<std::size_t>(which)];
 }
 
-void require_options(std::string_view name, const CoordinateOptions& o) {
+void require_options(ConstraintKind of, JointCoordinate which, const CoordinateOptions& o) {
+  const char* const name = name_of(which);
   if (!(o.lower <= o.upper))
     throw std::invalid_argument(text(name, " limits: lower must not be above upper, got ", o.lower, " and ", o.upper));
   if (o.lower == std::numeric_limits<double>::infinity() || o.upper == -std::numeric_limits<double>::infinity())
@@ -28,9 +30,15 @@ void require_options(std::string_view name, const CoordinateOptions& o) {
   require_not_negative("servo_time", o.servo_time);
   if (!(o.motor_max >= 0)) throw std::invalid_argument(text("motor_max must be zero or more, got ", o.motor_max));
   require_not_negative("friction", o.friction);
+  require_not_negative("friction_coefficient", o.friction_coefficient);
   require_not_negative("stiffness", o.stiffness);
   require_not_negative("damping", o.damping);
   require_number("rest", o.rest);
+  const ingredient::ConstraintKindInfo& kind = ingredient::info(of);
+  if (o.friction_coefficient > 0 && !(which == JointCoordinate::slide && kind.may_rub()))
+    throw std::invalid_argument(text("the ", name, " of a ", kind.name,
+                                     " constraint cannot have a friction coefficient; the slides of prismatic and "
+                                     "cylindrical joints can"));
 }
 
 void require_limits(const BreakLimits& limits) {
@@ -130,7 +138,7 @@ ConstraintId apply(Editor& e, const CreateJoint& c) {
   const std::array options{&c.spec.angle, &c.spec.slide, &c.spec.second_angle};
   for (const JointCoordinate which : joint_coordinates) {
     const CoordinateOptions& o = *options[static_cast<std::size_t>(which)];
-    require_options(name_of(which), o);
+    require_options(c.spec.kind, which, o);
     if (!has_coordinate(c.spec.kind, which) && ingredient::rows_of(o) != ingredient::RowsOf{})
       throw std::invalid_argument(text("a ", kind.name, " joint has no ", name_of(which),
                                        " for limits, motors, friction or springs to act on"));
@@ -154,7 +162,7 @@ ConstraintId apply(Editor& e, const CreatePath& c) {
     throw std::invalid_argument(text("path: particle ", particle, " is of the body that holds the path"));
   for (const Vec3& point : c.spec.points) require_finite("each point of the path", point);
   require_number("rounding", c.spec.rounding);
-  require_options("slide", c.spec.slide);
+  require_options(ConstraintKind::path, JointCoordinate::slide, c.spec.slide);
   require_limits(c.spec.breaks);
   return made(e, make_constraint(model, c.spec));
 }
@@ -192,7 +200,7 @@ ConstraintId apply(Editor& e, const CreateSpan& c) {
   (void)e.require(c.spec.p), (void)e.require(c.spec.q);
   if (c.spec.p == c.spec.q)
     throw std::invalid_argument(text("span: needs two particles, got particle ", c.spec.p.slot, " twice"));
-  require_options("slide", c.spec.slide);
+  require_options(ConstraintKind::span, JointCoordinate::slide, c.spec.slide);
   require_limits(c.spec.breaks);
   return made(e, make_constraint(e.model, c.spec));
 }
@@ -255,11 +263,15 @@ void apply(Editor& e, const SetCoordinate& c) {
   const char* const name = name_of(c.coordinate);
   if (!has_coordinate(constraint.kind, c.coordinate))
     throw std::invalid_argument(text("a ", kind.name, " has no ", name));
-  require_options(name, c.options);
+  require_options(constraint.kind, c.coordinate, c.options);
+  if (c.options.friction_coefficient > 0 && !constraint.compliance.is_exact())
+    throw std::invalid_argument("a joint with a compliance cannot have a friction coefficient; make it exact before");
   CoordinateOptions& options = constraint.options[static_cast<std::size_t>(c.coordinate)];
-  const bool same_rows = ingredient::rows_of(options) == ingredient::rows_of(c.options);
+  const bool same_line = (options.friction_coefficient > 0) == (c.options.friction_coefficient > 0);
+  const bool same_rows = ingredient::rows_of(options) == ingredient::rows_of(c.options) && same_line;
   options = c.options;
   if (same_rows) return wake(e, slot);
+  if (!same_line) constraint.multipliers.fill(0);  // other rows than those of its line follow it
   const ingredient::RowsOf rows = ingredient::rows_of(options);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i]) constraint.efforts[static_cast<std::size_t>(c.coordinate)][i] = 0;
@@ -299,6 +311,9 @@ void apply(Editor& e, const SetCompliance& c) {
   if (!c.compliance.is_exact() && !kind.may_yield())
     throw std::invalid_argument(
         text("a ", kind.name, " is always exact; joints, rods and ropes may have a compliance"));
+  if (!c.compliance.is_exact() && ingredient::joint::PinForm::rubs(constraint))
+    throw std::invalid_argument(
+        "a joint with a friction coefficient cannot have a compliance; set the coefficient to 0 before");
   const bool same_rows = constraint.compliance.is_exact() == c.compliance.is_exact();
   constraint.compliance = c.compliance;
   same_rows ? wake(e, slot) : constraint_changed(e, slot);

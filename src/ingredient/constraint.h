@@ -44,6 +44,8 @@ struct ConstraintKindInfo {
   /// One-sided: the multiplier of its row is never negative (1, pulls), never positive (-1, pushes).
   int sign = 0;
 
+  /// Whether its slide may have a friction coefficient: its line alone guides it.
+  bool may_rub() const { return line && !screw; }
   /// Whether it may have a compliance: its rows have fixed directions and are its own.
   bool may_yield() const { return form == Form::pin || (form == Form::distance && !slide); }
 };

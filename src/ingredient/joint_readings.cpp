@@ -109,7 +109,7 @@ void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
     double multipliers[Row::rows], g[Row::rows];
     load_hold(loaded, model, c, use, multipliers);
     loaded.value(places.position.data(), 1, g);
-    for (const double value : g) visit(loaded, law_of_hold(c, use, loaded), value);
+    for (int r = 0; r < Row::rows; ++r) visit(loaded, law_of_hold(c, use, loaded, r), g[r]);
   };
   build_rows({c, model.geometry(slot), places.arms}, sink);
 }
@@ -129,6 +129,10 @@ Violation calc_violation(const Model& model, std::uint32_t slot) {
       });
     return worst;
   });
+}
+
+double friction_of_line(const Constraint& c) {
+  return info(c.kind).may_rub() && PinForm::rubs(c) ? c.multipliers[2] : 0;
 }
 
 double calc_energy_of_holds(const Model& model, std::uint32_t slot) {

@@ -31,6 +31,9 @@ struct Violation {
 };
 Violation calc_violation(const model::Model&, std::uint32_t joint);
 
+/// The multiplier of the friction along a joint's line by its friction coefficient, N; 0 without one.
+double friction_of_line(const Constraint&);
+
 /// Energy of a joint's compliance at the present places, J.
 double calc_energy_of_holds(const model::Model&, std::uint32_t joint);
 

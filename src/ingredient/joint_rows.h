@@ -208,6 +208,13 @@ solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row) {
   if (law.is_compliant()) law.damping = c.compliance.time / law.compliance;
   return law;
 }
+/// Of its r-th row: along the tangent of a cone it has no value to hold.
+template <class Row>
+solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row, int r) {
+  if constexpr (solver::ConeConstraint<Row>)
+    if (Row::is_tangent(r)) return {.hold = true};
+  return law_of_hold(c, use, row);
+}
 
 }  // namespace joint
 

@@ -112,7 +112,7 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
       C& row = pool.items[item];
       if (use.role == Role::hold) {
         load_hold(row, model, c, use, pool.multiplier(item));
-        if (pool.has_laws()) std::fill_n(pool.law(item), C::rows, law_of_hold(c, use, row));
+        for (int r = 0; r < C::rows && pool.has_laws(); ++r) pool.law(item)[r] = law_of_hold(c, use, row, r);
         return;
       }
       const CoordinateOptions& o = c.options[use.coordinate];

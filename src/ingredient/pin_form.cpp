@@ -74,6 +74,22 @@ solver::BilinearConstraint PinForm::line_row(const JointArms& j, int across) {
   return row;
 }
 
+solver::FrictionLineConstraint PinForm::friction_line_row(const JointArms& j) {
+  solver::FrictionLineConstraint row;
+  j.sides(row, {a_origin, a_axis, a_side, a_third}, {b_origin, b_axis, b_side, b_third});
+  j.add(row, 0, a_origin, 1), j.add(row, 0, b_origin, -1);
+  const int first = j.c.line_side ? b_origin : a_origin;
+  const std::array<int, 3> places{j.c.has(b_axis) ? b_axis : a_axis, first + a_side, first + a_third};
+  for (int arm = 1; const int place : places) {
+    const int origin = place < b_origin ? a_origin : b_origin;
+    const double scale = 1 / j.c.scale[place >= b_origin];
+    j.add(row, arm, place, scale), j.add(row, arm, origin, -scale);
+    ++arm;
+  }
+  row.reference = std::max(j.c.scale[0], j.c.scale[1]);
+  return row;
+}
+
 solver::AffineConstraint PinForm::equal_axes_row(const JointArms& j) {
   return j.sum_of({{a_axis, 1 / j.c.scale[0]},
                    {a_origin, -1 / j.c.scale[0]},

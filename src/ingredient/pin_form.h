@@ -19,7 +19,9 @@ struct PinForm : PlainForm {
   static void build(const JointArms& j, RowSink<Sink>& out) {
     const ConstraintKindInfo& kind = info(j.c.kind);
     if (kind.meet) out.hold(j.sum_of({{a_origin, 1}, {b_origin, -1}}));
-    if (kind.line)
+    if (kind.line && rubs(j.c))
+      out.hold(friction_line_row(j));
+    else if (kind.line)
       for (const int across : {a_side, a_third}) out.hold(line_row(j, across));
     if (kind.align) align(j, out);
     if (j.c.lock == Constraint::Lock::side_of_a) out.hold(product_row(j, a_side, b_third, 0), angle);
@@ -42,9 +44,16 @@ struct PinForm : PlainForm {
   }
 
   using PlainForm::load;
+  static void load(solver::FrictionLineConstraint& line, const Model&, const Constraint& c, double*) {
+    line.friction = c.options[slide].friction_coefficient;
+  }
   static void load(solver::CouplingConstraint& screw, const Model&, const Constraint& c, double*) {
     std::get<solver::AngleConstraint>(screw.terms[0].coordinate).near = c.coordinate[angle];
   }
+
+  /// Whether its slide has a friction coefficient. Then the first three multipliers are those of its line, the third is
+  /// the friction along it.
+  static bool rubs(const Constraint& c) { return c.options[slide].friction_coefficient > 0; }
 
  private:
   /// The rows of the common axis.
@@ -71,6 +80,8 @@ struct PinForm : PlainForm {
   static solver::CouplingConstraint screw_row(const JointArms&);
   /// The origins are on one line along the axis, in one of the directions across it.
   static solver::BilinearConstraint line_row(const JointArms&, int across);
+  /// Both directions across it and the one along it, with friction.
+  static solver::FrictionLineConstraint friction_line_row(const JointArms&);
   /// Equal directions: three rows, one of them redundant, which is simpler than a special case.
   static solver::AffineConstraint equal_axes_row(const JointArms&);
   /// The angle between two directions, one of each side, is constant.

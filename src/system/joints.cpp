@@ -113,6 +113,7 @@ ConstraintState Joints::state(ConstraintId id) const {
     if (!has_coordinate(c.kind, which)) continue;
     std::tie(state.coordinate[i], state.speed[i]) = ingredient::calc_coordinate(m, slot, which);
     state.effort[i] = {-c.efforts[i][0], -c.efforts[i][1], -c.efforts[i][2], -c.efforts[i][3]};
+    if (which == JointCoordinate::slide) state.effort[i].friction -= ingredient::friction_of_line(c);
   }
   return state;
 }

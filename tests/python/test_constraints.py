@@ -59,6 +59,24 @@ def test_limits_motor_friction_and_spring_can_change_while_it_runs() -> None:
     assert joint.angle.effort == pytest.approx(40 * (0.5 - angle), abs=1e-3)
 
 
+@pytest.mark.parametrize("coefficient", [0.3, 0.9])
+def test_a_slider_on_a_slope_sticks_or_slides_by_its_friction_coefficient(coefficient: float) -> None:
+    slope, mass = 0.5, 2
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=mass)
+    down = (math.cos(slope), -math.sin(slope), 0)
+    joint = system.prismatic(box, at=(0, 0, 0), axis=down, friction_coefficient=coefficient)
+    assert joint.slide.friction_coefficient == coefficient
+    run(system, 1)
+    pull, most = mass * 9.81 * math.sin(slope), coefficient * mass * 9.81 * math.cos(slope)
+    assert joint.slide.efforts["friction"] == pytest.approx(-min(pull, most), abs=1e-3)
+    assert joint.slide.speed == pytest.approx(max(0, pull - most) / mass, abs=1e-4)
+    joint.slide.friction_coefficient = 0
+    before = joint.slide.speed
+    run(system, 0.5)
+    assert joint.slide.speed - before == pytest.approx(9.81 * math.sin(slope) * 0.5, abs=1e-3)
+
+
 def test_two_coordinates_of_a_cylindrical_joint() -> None:
     system, box = hanging_box()
     joint = system.cylindrical(
@@ -340,6 +358,14 @@ REFUSED = {
     ),
     "weak motor": (lambda s, a, b: s.revolute(a, at=(0, 0, 0), axis=(1, 0, 0), motor=(1, -1)), "motor_max.*got -1"),
     "friction": (lambda s, a, b: s.prismatic(a, at=(0, 0, 0), axis=(1, 0, 0), friction=-1), "friction.*not -1"),
+    "friction_coefficient": (
+        lambda s, a, b: s.prismatic(a, at=(0, 0, 0), axis=(1, 0, 0), friction_coefficient=-1),
+        "friction_coefficient.*not -1",
+    ),
+    "coefficient of an angle": (
+        lambda s, a, b: s.cylindrical(a, at=(0, 0, 0), axis=(1, 0, 0), angle={"friction_coefficient": 0.1}),
+        "angle of a cylindrical constraint cannot have a friction coefficient",
+    ),
     "spring": (lambda s, a, b: s.prismatic(a, at=(0, 0, 0), axis=(1, 0, 0), spring=(-5,)), "stiffness.*not -5"),
     "skew universal": (
         lambda s, a, b: s.universal(a, b, at=(0, 0, 0), axis=(1, 0, 0), second_axis=(1, 1, 0)),

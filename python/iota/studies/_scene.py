@@ -222,6 +222,8 @@ def coordinate_options(coordinate: Any) -> dict[str, Any]:
         options["motor"] = coordinate.motor
     if coordinate.friction > 0:
         options["friction"] = coordinate.friction
+    if coordinate.friction_coefficient > 0:
+        options["friction_coefficient"] = coordinate.friction_coefficient
     if coordinate.spring is not None:
         stiffness, damping, rest = coordinate.spring
         options["spring"] = numbers((stiffness, damping, rest - now))

@@ -45,5 +45,18 @@ TEST(PinForm, each_option_of_a_coordinate_is_a_row) {
   EXPECT_EQ(values_of(blocks.m.model, make_constraint(blocks.m.model, spec)).coordinates, 3);
 }
 
+TEST(PinForm, a_line_that_rubs_holds_the_same_and_leaves_the_slide_free) {
+  TwoBlocks blocks;
+  JointSpec spec = blocks.spec(ConstraintKind::prismatic);
+  spec.slide = {.friction_coefficient = 0.5};
+  const std::uint32_t rail = make_constraint(blocks.m.model, spec);
+  EXPECT_EQ(values_of(blocks.m.model, rail).held.size(), 6u) << "one of them along the axis";
+  EXPECT_LT(calc_violation(blocks.m.model, rail).absolute, 1e-12);
+  blocks.move(blocks.a, {0, 0, 0.5});
+  EXPECT_LT(calc_violation(blocks.m.model, rail).absolute, 1e-12);
+  blocks.move(blocks.a, {0, 0.25, 0});
+  EXPECT_NEAR(calc_violation(blocks.m.model, rail).absolute, 0.25, 1e-12) << "across the axis";
+}
+
 }  // namespace
 }  // namespace iota::ingredient
