@@ -144,6 +144,15 @@ void bind_body(nb::module_& module) {
           },
           "1/s, adds to the system's.")
       .def_prop_rw(
+          "radius", [](const BodyHandle& self) { return self.use().bodies().radius(self.id); },
+          [](const BodyHandle& self, double value) {
+            self.use().bodies().set_radius(self.id, finite_positive(value, "radius", "m"));
+          },
+          "m, of the lines between its particles, or of the ball of its only particle: with it the body is drawn, met by\n"
+          "queries and stands on the ground. Its own if it was assigned (that of a single particle: `Particle.radius`),\n"
+          "otherwise `System.usual_radius`, twice that for a single particle. `World.draw` with a round look assigns it.\n"
+          "0 for a body given by shape, which refuses another one (ValueError).")
+      .def_prop_rw(
           "mass", [](const BodyHandle& self) { return self.use().bodies().mass(self.id); },
           [](const BodyHandle& self, double value) {
             between_steps(self, "mass = ...").bodies().set_mass(self.id, finite_positive(value, "mass", "kg"));

@@ -117,17 +117,7 @@ void bind_places(nb::module_& module) {
           "Adds triangles without an inside; returns their number.")
       .def(
           "remove_fixed", [](PlacesObject& self, std::uint32_t number) { self.use().remove_fixed(number); }, "number"_a,
-          "Removes it; its number is used again.")
-      .def(
-          "set_thickness",
-          [](PlacesObject& self, const BodyHandle& body, double radius) {
-            if (body.is_alive()) self.use().set_thickness(body.id, radius);
-          },
-          "body"_a, "radius"_a, "Radius of the lines of a body, m.")
-      .def(
-          "set_usual_thickness",
-          [](PlacesObject& self, double line, double ball) { self.use().set_usual_thickness(line, ball); }, "line"_a,
-          "ball"_a, "Of bodies without one, of several particles and of one, m.");
+          "Removes it; its number is used again.");
 }
 
 }  // namespace iota::bindings

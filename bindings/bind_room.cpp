@@ -120,7 +120,8 @@ DrawnLine line_between(const Vec3& from, const Vec3& to) {
   return {0.5 * (from + to), length > 0 ? shortest_turn({1, 0, 0}, (1 / length) * (to - from)) : Quaternion{}, length};
 }
 
-SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double extent) {
+/// usual_radius: chosen by the first bodies.
+SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double extent, double& usual_radius) {
   SceneChanges changes;
   changes.extent = extent;
   for (const auto& [slot, generation, kind, name, articulate, particles, lines, solids] : bodies) {
@@ -136,6 +137,14 @@ SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double exte
     }
     changes.memberships.push_back({slot, articulate});
   }
+  if (usual_radius == 0) {
+    std::vector<double> rods;
+    for (const DrawnBody& body : changes.bodies.set)
+      if (body.particles == 2 && body.lines.size() == 1) rods.push_back(body.lines[0].length);
+    usual_radius = usual_radius_of(std::move(rods), extent);
+  }
+  changes.usual_radius = usual_radius;
+  for (DrawnBody& body : changes.bodies.set) body.radius = (body.particles == 1 ? 2 : 1) * usual_radius;
   return changes;
 }
 
@@ -169,7 +178,8 @@ void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBody
   if (bodies) {
     std::map<std::uint32_t, std::string> names;
     for (const auto& body : *bodies) names.emplace(std::get<0>(body), std::get<3>(body));
-    publish_changes(self, snapshot, scene_of(*bodies, extent), [&](BodyId body) { return names[body.slot]; });
+    publish_changes(self, snapshot, scene_of(*bodies, extent, self.usual_radius),
+                    [&](BodyId body) { return names[body.slot]; });
   } else {
     self.use().publish(snapshot, std::exchange(self.own, {}));
   }

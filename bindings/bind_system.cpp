@@ -163,6 +163,14 @@ void bind_settings(nb::class_<SystemObject>& type) {
           },
           "m/s, see `rest_after`.")
       .def_prop_rw(
+          "usual_radius", [](SystemObject& self) { return self.use().usual_radius(); },
+          [](SystemObject& self, double value) {
+            self.use_between_steps("usual_radius = ...").set_usual_radius(finite_positive(value, "usual_radius", "m"));
+          },
+          "m, of the lines of bodies without a radius of their own, see `Body.radius`. Chosen once, at the begin of the\n"
+          "first step that finds a body: 0.06 of the median length of rods, without rods 0.02 of the extent of all\n"
+          "particles, 0.03 m for a single place. Before that step: as it would be chosen now.")
+      .def_prop_rw(
           "threads", [](SystemObject& self) { return self.use().threads(); },
           [](SystemObject& self, int value) { self.use_between_steps("threads = ...").set_threads(value); },
           "Number of threads for a step; assign 0 for one per core. Not part of the state: results are the same bits.");
@@ -320,7 +328,8 @@ void bind_time(nb::class_<SystemObject>& type) {
 
 void bind_system(nb::module_& module) {
   bind_islands(module);
-  nb::class_<SystemObject> type(module, "System", system_doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
+  nb::class_<SystemObject> type(module, "System", system_doc, nb::type_slots(system_slots),
+                                nb::is_weak_referenceable());
   type.def(
       "__init__",
       [](SystemObject* self, VectorArgument gravity, const ModeWord& mode, double damping, int threads) {

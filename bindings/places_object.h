@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "places/places.h"
 #include "system_object.h"
 
 #include <nanobind/nanobind.h>
@@ -22,7 +21,7 @@ struct PlacesObject {
 
   nb::object system_object;  ///< keeps the system alive
   SystemObject* system = nullptr;
-  Places places{system->engine};
+  Places places = system->engine.places();
 };
 
 void bind_places(nb::module_&);

@@ -46,6 +46,7 @@ struct RoomObject {
   net::Presenter presenter;
   net::EntityChanges own;      ///< entities of the script, sent with the next poses
   protocol::WorldState state;  ///< last sent to pages
+  double usual_radius = 0;     ///< of rods of a simulator of the script, m; 0: not chosen yet
 };
 
 /// The state of a Python `RoomRecording`.

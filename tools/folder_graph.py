@@ -24,6 +24,7 @@ TREES = [ROOT / "src", ROOT / "web" / "src", ROOT / "python" / "iota"]
 FORBIDDEN = [
     *[("solver", "model"), ("net", "model"), ("net", "solver"), ("net", "edit"), ("net", "system")],
     *[("held", "read"), ("read", "edit"), ("island", "edit"), ("edit", "step"), ("edit", "system"), ("step", "system")],
+    *[("contact", "ingredient"), ("contact", "solver")],
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

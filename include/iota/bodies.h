@@ -66,6 +66,7 @@ class Bodies : public View {
   ParticleId create_attachment(BodyId, const Vec3& position);
   /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them, exact for all forces
   /// on its axis. It keeps the spin about its axis that set_angular_velocity gives it: no torque acts about that axis.
+  /// This does not set its `radius`.
   /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId, double mass, double radius);
   void destroy(BodyId);  ///< with its particles and their bonds
@@ -101,6 +102,12 @@ class Bodies : public View {
   bool is_active(BodyId) const;
   void set_active(BodyId, bool);
   void set_articulate_active(BodyId, bool);  ///< all bodies of its articulate
+  /// Of its lines, or of the ball of its only particle, m: with it the body is drawn, met by queries, and touches. The
+  /// body's own if it was set (a single particle's own: its attribute), or else System::usual_radius, twice that for a
+  /// single particle. 0 for a body given by shape.
+  double radius(BodyId) const;
+  /// Throws std::invalid_argument for a body given by shape.
+  void set_radius(BodyId, double meters);
   double damping(BodyId) const;
   void set_damping(BodyId, double per_second);
   ///@}

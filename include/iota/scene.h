@@ -46,9 +46,14 @@ struct DrawnBody {
   /// Its cosmetic bonds; without these, from each of its particles to the next; empty for one particle.
   std::vector<DrawnLine> lines;
   std::uint32_t particles = 0;
+  double radius = 0;                             ///< of its lines, or of its only particle; 0 for a body of solids
   std::optional<ParticleAttributes> attributes;  ///< of a body of one particle that has some
   std::vector<DrawnBall> balls;                  ///< particles with a radius, in a body of several
 };
+
+/// The usual radius of a system, from the lengths of its rods and its extent: 0.06 of their median length; without rods
+/// 0.02 of the extent; 0.03 m without an extent.
+double usual_radius_of(std::vector<double> rods, double extent);
 
 /// The articulate of a body.
 struct Membership {
@@ -102,7 +107,8 @@ struct Changes {
 /// Changes since the last call. If `whole`, it lists everything: an item that is not in it no longer exists.
 struct SceneChanges {
   bool is_whole = true;
-  double extent = 0;  ///< if whole: diagonal of the box around all particles
+  double extent = 0;           ///< if whole: diagonal of the box around all particles
+  double usual_radius = 0.03;  ///< of lines of bodies without a radius of their own; whole if it is another one
   Changes<DrawnBody> bodies;
   std::vector<Membership> memberships;  ///< of bodies whose articulate has changed
   Changes<DrawnTie> ties;

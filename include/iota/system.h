@@ -16,6 +16,7 @@
 #include <iota/many.h>
 #include <iota/options.h>
 #include <iota/particles.h>
+#include <iota/places.h>
 #include <iota/record.h>
 #include <iota/reports.h>
 #include <iota/scene.h>
@@ -42,8 +43,8 @@ using Views = std::tuple<Bodies, Particles, Bonds, CosmeticBonds, AngleSprings, 
 /// StaleIdError for ids of destroyed objects, before any change. A system is used from one thread at a time.
 ///
 /// During a step, functions of the script may read everything, and request the edits that `queued_edits` lists:
-/// combine, destroy, nail, release, separate, set_active, set_compliance, set_coordinate, set_kind, set_length. These are
-/// made right after the step; all others throw std::logic_error.
+/// combine, destroy, nail, release, separate, set_active, set_compliance, set_coordinate, set_kind, set_length,
+/// set_radius. These are made right after the step; all others throw std::logic_error.
 class System {
  public:
   explicit System(const SystemOptions& options = {});
@@ -69,6 +70,7 @@ class System {
   Edits edits() { return Edits(*core_); }
   Record record() { return Record(*core_); }
   Viewer viewer() { return Viewer(*core_); }
+  Places places() { return Places(*core_); }
   // For a constant system only the functions that read can be called.
   const Bodies bodies() const { return Bodies(*core_); }
   const Particles particles() const { return Particles(*core_); }
@@ -128,6 +130,10 @@ class System {
   void set_damping(double per_second);
   RestOptions rest() const;
   void set_rest(const RestOptions&);
+  /// Radius of the lines of bodies that have none of their own (Bodies::radius), m. Chosen once, at the begin of the
+  /// first step that finds a body, by usual_radius_of (iota/scene.h); before, as it would be chosen now.
+  double usual_radius() const;
+  void set_usual_radius(double meters);
   ///@}
 
   /// @name The whole

@@ -39,7 +39,7 @@ void apply(Editor& e, const SetAttributes& c) {
   require_color(c.value.color);
   model::Attributes& a = attributes_of(e, particle);
   a.age = c.value.age, a.lifetime = c.value.lifetime, a.radius = c.value.radius, a.color = c.value.color;
-  e.model.scene.bodies.note(e.model.particles[particle].body);
+  e.model.note_body(e.model.particles[particle].body);
 }
 
 void apply(Editor& e, const SetOrientation& c) {

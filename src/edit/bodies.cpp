@@ -7,6 +7,7 @@
 #include "edit/settle.h"
 #include "ingredient/followers.h"
 #include "math/mat3.h"
+#include "model/outline.h"
 #include "model/solid.h"
 
 #include <algorithm>
@@ -104,8 +105,7 @@ void apply(Editor& e, const SetRod& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_mass("mass", c.mass);
-  if (!(c.radius > 0 && c.radius <= 1e9))
-    throw std::invalid_argument(text("radius must be above 0 and at most 1e9 m, got ", c.radius));
+  require_size("radius", c.radius);
   std::vector<std::uint32_t> massive;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (!model.particles[p].is_marker()) massive.push_back(p);
@@ -191,6 +191,15 @@ void apply(Editor& e, const SetKind& c) {
   }
   change();
   e.structure_changed();
+}
+
+void apply(Editor& e, const SetRadius& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_size("radius", c.value);
+  if (model.bodies[body].first_solid != none)
+    throw std::invalid_argument(text("body ", body, " is given by shape: its outline is that, and it has no radius"));
+  set_radius(model, body, c.value);
 }
 
 // --- motion -----------------------------------------------------------------------------------------------------------

@@ -32,6 +32,12 @@ struct SetBodyDamping {
   BodyId body;
   double per_second;
 };
+struct SetRadius {
+  static constexpr std::string_view queued_as = "set_radius";
+  static constexpr bool keeps_energy = true;
+  BodyId body;
+  double value;
+};
 struct SetPose {
   BodyId body;
   Vec3 position;
@@ -52,6 +58,7 @@ ParticleId apply(Editor&, const CreateAttachment&);
 void apply(Editor&, const SetRod&);
 void apply(Editor&, const SetKind&);
 void apply(Editor&, const SetBodyDamping&);
+void apply(Editor&, const SetRadius&);
 void apply(Editor&, const SetPose&);
 void apply(Editor&, const SetBodyVelocity&);
 void apply(Editor&, const SetAngularVelocity&);

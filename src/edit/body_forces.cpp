@@ -55,7 +55,7 @@ void apply(Editor& e, const SetBodyName& c) {
     model.names.erase(body);
   else
     model.names.make(body) = name;
-  model.scene.bodies.note(body);
+  model.note_body(body);
 }
 
 void check(const Editor& e, const SetBodyMass& c) {

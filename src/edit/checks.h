@@ -29,6 +29,10 @@ inline void require_positive(std::string_view name, double v) {
   if (!(v > 0) || !std::isfinite(v)) throw std::invalid_argument(text(name, " must be positive and finite, got ", v));
 }
 
+inline void require_size(std::string_view name, double v) {
+  if (!(v > 0 && v <= 1e9)) throw std::invalid_argument(text(name, " must be above 0 and at most 1e9 m, got ", v));
+}
+
 inline void require_mass(std::string_view name, double v) {
   require_positive(name, v);
   if (v < 1e-30 || v > 1e15) throw std::invalid_argument(text(name, " must be between 1e-30 and 1e15 kg, got ", v));

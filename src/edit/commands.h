@@ -133,7 +133,9 @@ using Command = std::variant<
     SetBudget,
     CreateAngleSpring,
     SetAngleSpring,
-    Destroy<AngleSpringId>>;
+    Destroy<AngleSpringId>,
+    SetRadius,
+    SetUsualRadius>;
 // clang-format on
 
 /// The place of a command in that list.

@@ -48,6 +48,7 @@ void Door::apply_queue(StepReport& report) {
   if (queue_.empty()) return;
   report.edits.emplace();
   report.edits->articulates_before = editor_.model.articulates.size();
+  ++editor_.model.edits;
   ingredient::begin_edits(editor_.model);
   const double before = editor_.held.book().edits;
   const std::uint32_t version = editor_.model.structure_version;
@@ -135,7 +136,7 @@ namespace {
 // Commands are numbered by their places in the list: its length is a part of the version, so that one more is another
 // format. Change the letter before it if a command changes, is replaced or moved.
 constexpr auto commands = static_cast<char>(std::variant_size_v<edit::Command>);
-constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', '7', commands}, "recording"};
+constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', '8', commands}, "recording"};
 
 }  // namespace
 

@@ -80,7 +80,7 @@ void apply(Editor& e, const Destroy<EmitterId>& c) {
     if (a.emitter != slot) return;
     const ParticleAttributes look = read::attributes(model, a);  // they keep their present look
     a.radius = look.radius, a.color = look.color, a.emitter = model::none;
-    model.scene.bodies.note(model.particles[a.particle].body);
+    model.note_body(model.particles[a.particle].body);
   });
   model.emitters.destroy(slot);
   model.changed_emitters.note(slot);

@@ -49,6 +49,11 @@ void apply(Editor& e, const SetDamping& c) {
   e.model.damping = c.per_second;
 }
 
+void apply(Editor& e, const SetUsualRadius& c) {
+  require_size("usual_radius", c.value);
+  e.model.usual_radius = c.value;
+}
+
 void apply(Editor& e, const SetRest& c) {
   model::Model& model = e.model;
   require_not_negative("rest.after", c.options.after);

@@ -24,6 +24,10 @@ struct SetSolver {
 struct SetDamping {
   double per_second;
 };
+struct SetUsualRadius {
+  static constexpr bool keeps_energy = true;
+  double value;
+};
 struct SetRest {
   RestOptions options;
 };
@@ -34,6 +38,7 @@ void apply(Editor&, const SetTolerance&);
 void apply(Editor&, const SetBudget&);
 void apply(Editor&, const SetSolver&);
 void apply(Editor&, const SetDamping&);
+void apply(Editor&, const SetUsualRadius&);
 void apply(Editor&, const SetRest&);
 
 }  // namespace iota::edit

@@ -25,15 +25,24 @@ bool is_of_joint(const Model& model, std::uint32_t p) {
   return owned;
 }
 
+/// Whether a cosmetic bond begins at a particle of a body.
+bool has_bonds(const Model& model, std::uint32_t body) {
+  bool has = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) { has = has || model.cosmetic_bonds[slot].p == p; });
+  });
+  return has;
+}
+
 }  // namespace
 
 std::uint32_t CosmeticBonds::add(Model& model, const CosmeticBond& bond) {
-  model.scene.bodies.note(model.particles[bond.p].body);
+  model.note_body(model.particles[bond.p].body);
   return model.cosmetic_bonds.create(bond);
 }
 
 void CosmeticBonds::remove(Model& model, std::uint32_t bond) {
-  model.scene.bodies.note(model.particles[model.cosmetic_bonds[bond].p].body);
+  model.note_body(model.particles[model.cosmetic_bonds[bond].p].body);
   model.cosmetic_bonds.destroy(bond);
 }
 
@@ -71,27 +80,32 @@ void CosmeticBonds::validate(const Model& model, model::Audit& audit) {
 }
 
 // Without cosmetic bonds there is a line from each particle of a body to the next.
+void CosmeticBonds::visit_lines(const Model& model, std::uint32_t body, Structure::VisitLine visit) {
+  if (has_bonds(model, body)) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) {
+        const CosmeticBond& bond = model.cosmetic_bonds[slot];
+        if (bond.p == p) visit(bond.p, bond.q);
+      });
+    });
+    return;
+  }
+  std::uint32_t before = none;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (is_of_joint(model, p)) return;
+    if (before != none) visit(before, p);
+    before = p;
+  });
+}
+
 void CosmeticBonds::draw(const SceneView& view, std::uint32_t body, DrawnBody& drawn) {
   const Model& model = view.model;
   if (model.bodies[body].count == 1) return;
   const Vec3 center = model.center_of_mass(body);
   const auto local = [&](std::uint32_t p) { return view.into_body(body, model.position(p) - center); };
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) {
-      const CosmeticBond& bond = model.cosmetic_bonds[slot];
-      if (bond.p == p) drawn.lines.push_back(line(local(bond.p), local(bond.q)));
-    });
-  });
-  if (!drawn.lines.empty()) return;
-  std::uint32_t before = none;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (is_of_joint(model, p)) {
-      --drawn.particles;
-      return;
-    }
-    if (before != none) drawn.lines.push_back(line(local(before), local(p)));
-    before = p;
-  });
+  visit_lines(model, body, [&](std::uint32_t p, std::uint32_t q) { drawn.lines.push_back(line(local(p), local(q))); });
+  if (has_bonds(model, body)) return;
+  model.for_each_particle_of(body, [&](std::uint32_t p) { drawn.particles -= is_of_joint(model, p); });
 }
 
 }  // namespace iota::ingredient

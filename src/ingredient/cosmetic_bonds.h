@@ -27,6 +27,7 @@ class CosmeticBonds : public NoAnswers {
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
+  static void visit_lines(const Model&, std::uint32_t body, Structure::VisitLine);
   static void draw(const SceneView&, std::uint32_t body, DrawnBody&);
 
   static std::uint32_t add(Model&, const CosmeticBond&);  ///< returns the slot

@@ -84,6 +84,27 @@ void Emitters::describe(const SceneView& view, SceneChanges& changes) {
   }
 }
 
+ParticleAttributes Emitters::look(const Model& model, const model::Attributes& a) {
+  ParticleAttributes look{a.age, a.lifetime, a.radius, a.color};
+  if (a.emitter == none || model.emitters[a.emitter].key_count == 0) return look;
+  const Emitter& emitter = model.emitters[a.emitter];
+  const double life = a.age / a.lifetime;  // 0: birth, 1: death
+  std::uint32_t next = 0;
+  while (next < emitter.key_count && emitter.keys[next].life < life) ++next;
+  const AttributeKey& to = emitter.keys[std::min(next, emitter.key_count - 1)];
+  const AttributeKey& from = emitter.keys[next > 0 ? next - 1 : 0];
+  const double t = to.life > from.life ? std::clamp((life - from.life) / (to.life - from.life), 0.0, 1.0) : 1;
+  look.radius = from.radius + t * (to.radius - from.radius);
+  for (std::size_t i = 0; i < 4; ++i)
+    look.color[i] = static_cast<float>(from.color[i] + t * (to.color[i] - from.color[i]));
+  return look;
+}
+
+double Emitters::ball_radius(const Model& model, std::uint32_t particle) {
+  const std::uint32_t slot = model.particles[particle].attributes;
+  return slot == none || model.attributes[slot].emitter == none ? 0 : look(model, model.attributes[slot]).radius;
+}
+
 void Emitters::end_step(Model& model, double h) {
   model.emitters.for_each([&](std::uint32_t, Emitter& e) {
     if (e.active) e.due += e.rate * h;

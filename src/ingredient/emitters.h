@@ -46,6 +46,10 @@ class Emitters : public NoAnswers {
   static void check_links(const Model&, model::Audit&);
   static void end_step(Model&, double h);
   static void tell(Model&, Outcome&);
+  static double ball_radius(const Model&, std::uint32_t particle);
+
+  /// Radius and color of an emitted particle, interpolated on its emitter's curve by age; of any other one its own.
+  static ParticleAttributes look(const Model&, const model::Attributes&);
 
   /// Creates the particles that an emitter owes after a step of h seconds, and adds them to a list.
   static void bear(Model&, std::uint32_t emitter, double h, std::vector<ParticleId>& born);

@@ -82,6 +82,15 @@ struct NoAnswers {
   static void visit_companions(const Model&, std::uint32_t /*particle*/, Visit) {}
   ///@}
 
+  /// @name Outlines
+  ///@{
+
+  /// visit(p, q): of the lines between particles of a body.
+  static void visit_lines(const Model&, std::uint32_t /*body*/, Structure::VisitLine) {}
+  /// The radius that it gives to a particle instead of its attributes, m; 0: none.
+  static double ball_radius(const Model&, std::uint32_t /*particle*/) { return 0; }
+  ///@}
+
   /// @name Edits
   ///@{
 
@@ -185,49 +194,51 @@ struct NoAnswers {
 
 /// The functions of every ingredient for the model.
 template <class I>
-concept ModelIngredient =
-    requires(Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies,
-             Momenta& momenta, const LastStep& step, LoadReader& loads, std::uint32_t slot,
-             std::span<const std::uint32_t> bodies, std::vector<std::string>& notes, Visit visit, const SceneView& view,
-             SceneChanges& changes, DrawnBody& drawn, double h, Outcome& outcome) {
-      typename I::Tables;
-      I::take_over(model, model);
-      I::validate(seen, audit);
-      I::check_links(seen, audit);
-      I::add_energy(scope, energies);
-      I::add_momentum(scope, momenta);
-      { I::worst_gap(scope) } -> std::same_as<double>;
-      I::add_loads(step, slot, loads);
-      { I::holds(seen, slot) } -> std::same_as<bool>;
-      { I::uses(seen, slot) } -> std::same_as<bool>;
-      { I::replaces_gravity(seen) } -> std::same_as<bool>;
-      { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
-      I::visit_joined(seen, slot, visit);
-      { I::ties_rigidly } -> std::convertible_to<bool>;
-      I::visit_tied(seen, slot, visit);
-      { I::ties_any(seen) } -> std::same_as<bool>;
-      { I::ties_to_world(seen, slot) } -> std::same_as<bool>;
-      I::visit_companions(seen, slot, visit);
-      I::absorb(model, slot, slot);
-      I::drop(model, slot);
-      I::forget_particle(model, slot);
-      I::forget_body(model, slot);
-      I::ring_changed(model, slot);
-      I::ring_merged(model, slot, slot, true);
-      I::inertia_changed(model, slot);
-      I::acting_changed(model, slot);
-      { I::call_off(model, slot, slot) } -> std::same_as<bool>;
-      I::settle(model, bodies, notes);
-      { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
-      I::follow(model, I::remember(seen, bodies));
-      I::follow_bases(model);
-      I::prepare(model, slot);
-      { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
-      I::describe(view, changes);
-      I::draw(view, slot, drawn);
-      I::end_step(model, h);
-      I::tell(model, outcome);
-    };
+concept ModelIngredient = requires(
+    Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies, Momenta& momenta,
+    const LastStep& step, LoadReader& loads, std::uint32_t slot, std::span<const std::uint32_t> bodies,
+    std::vector<std::string>& notes, Visit visit, Structure::VisitLine visit_line, const SceneView& view,
+    SceneChanges& changes, DrawnBody& drawn, double h, Outcome& outcome) {
+  typename I::Tables;
+  I::take_over(model, model);
+  I::validate(seen, audit);
+  I::check_links(seen, audit);
+  I::add_energy(scope, energies);
+  I::add_momentum(scope, momenta);
+  { I::worst_gap(scope) } -> std::same_as<double>;
+  I::add_loads(step, slot, loads);
+  { I::holds(seen, slot) } -> std::same_as<bool>;
+  { I::uses(seen, slot) } -> std::same_as<bool>;
+  { I::replaces_gravity(seen) } -> std::same_as<bool>;
+  { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
+  I::visit_joined(seen, slot, visit);
+  { I::ties_rigidly } -> std::convertible_to<bool>;
+  I::visit_tied(seen, slot, visit);
+  { I::ties_any(seen) } -> std::same_as<bool>;
+  { I::ties_to_world(seen, slot) } -> std::same_as<bool>;
+  I::visit_companions(seen, slot, visit);
+  I::visit_lines(seen, slot, visit_line);
+  { I::ball_radius(seen, slot) } -> std::same_as<double>;
+  I::absorb(model, slot, slot);
+  I::drop(model, slot);
+  I::forget_particle(model, slot);
+  I::forget_body(model, slot);
+  I::ring_changed(model, slot);
+  I::ring_merged(model, slot, slot, true);
+  I::inertia_changed(model, slot);
+  I::acting_changed(model, slot);
+  { I::call_off(model, slot, slot) } -> std::same_as<bool>;
+  I::settle(model, bodies, notes);
+  { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
+  I::follow(model, I::remember(seen, bodies));
+  I::follow_bases(model);
+  I::prepare(model, slot);
+  { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
+  I::describe(view, changes);
+  I::draw(view, slot, drawn);
+  I::end_step(model, h);
+  I::tell(model, outcome);
+};
 
 /// The functions of every ingredient for the stages of a step of an island.
 template <class I>

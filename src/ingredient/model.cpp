@@ -2,6 +2,8 @@
 // A model calls all of its ingredients; none of them is named here.
 #include "ingredient/model.h"
 
+#include <algorithm>
+
 namespace iota::model {
 
 namespace {
@@ -118,6 +120,17 @@ void Model::visit_joined(std::uint32_t particle, Visit visit) const {
 }
 void Model::visit_companions(std::uint32_t particle, Visit visit) const {
   for_each_ingredient([&]<class I>() { I::visit_companions(*this, particle, visit); });
+}
+
+void Model::visit_lines(std::uint32_t body, VisitLine visit) const {
+  for_each_ingredient([&]<class I>() { I::visit_lines(*this, body, visit); });
+}
+double Model::ball_radius(std::uint32_t particle) const {
+  const std::uint32_t slot = particles[particle].attributes;
+  if (slot == none) return 0;
+  double radius = 0;
+  for_each_ingredient([&]<class I>() { radius = std::max(radius, I::ball_radius(*this, particle)); });
+  return radius > 0 ? radius : attributes[slot].radius;
 }
 
 std::uint64_t Model::hash() const {

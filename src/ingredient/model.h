@@ -82,6 +82,8 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   Vec3 inner_momentum(std::uint32_t body) const override;
   void visit_joined(std::uint32_t particle, Visit visit) const override;
   void visit_companions(std::uint32_t particle, Visit visit) const override;
+  void visit_lines(std::uint32_t body, VisitLine visit) const override;
+  double ball_radius(std::uint32_t particle) const override;
 };
 
 template <class Archive>

@@ -51,7 +51,7 @@ constexpr std::size_t most_local_changes = 1024;  // after more of them islands 
 }
 
 void Structure::touch_locally(std::uint32_t body) {
-  scene.bodies.note(body);
+  note_body(body);
   touch_rows(body);
 }
 
@@ -76,7 +76,7 @@ void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
   for_each_in_ring(ring, [&](std::uint32_t p) {
     const std::uint32_t body = particles[p].body;
     if (few) local_change_.bodies.push_back(body);
-    scene.bodies.note(body);
+    note_body(body);
     if (bodies[body].articulate == articulate) return;
     articulate = bodies[body].articulate;
     touch(articulate, few ? locally : anything);

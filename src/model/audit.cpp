@@ -51,6 +51,11 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a damping");
     require(std::isfinite(damping) && damping >= 0, "body ", slot, " has damping ", damping);
   });
+  model_.radii.for_each([&](std::uint32_t slot, double radius) {
+    require(model_.bodies.is_alive(slot), "dead body ", slot, " has a radius");
+    require(std::isfinite(radius) && radius > 0, "body ", slot, " has radius ", radius);
+  });
+  require(std::isfinite(model_.usual_radius) && model_.usual_radius >= 0, "the usual radius is ", model_.usual_radius);
   model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {
     require(is_point(a.particle), "attributes ", slot, " are of no living particle");
   });

@@ -52,7 +52,7 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
   constexpr double tie = 1 + 1e-6, far_enough = 0.2;
   Body& body = bodies[body_slot];
-  scene.bodies.note(body_slot);
+  note_body(body_slot);
   const std::array<std::uint32_t, 4> old_basis = body.basis;
   body.rank = 0, body.row_count = 0, body.basis_needs = 0;
   body.basis.fill(none);
@@ -142,7 +142,7 @@ bool carry_by_basis(Structure& model, std::uint32_t body_slot, std::uint32_t bef
     model.particles[particles[i]].basis_index = -1;
     model.ties.make(particles[i]) = ties[i];
   }
-  model.scene.bodies.note(body_slot);
+  model.note_body(body_slot);
   return true;
 }
 

@@ -39,7 +39,8 @@ class ChangedSlots {
 struct SceneLog {
   ChangedSlots bodies, memberships;
   std::vector<ViewEvent> events;
-  bool is_whole = true;  ///< a complete description is needed
+  bool is_whole = true;     ///< a complete description is needed
+  double usual_radius = 0;  ///< of the last description, m
 
   bool is_on() const { return bodies.is_on; }
   void note(ViewEvent::Kind kind, const Vec3& position) {

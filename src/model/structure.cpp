@@ -47,7 +47,7 @@ std::uint32_t Structure::make_body(BodyKind kind, double damping) {
   b.kind = kind;
   const std::uint32_t body = bodies.create(b).slot;
   set_damping(body, damping);
-  scene.bodies.note(body, true);
+  note_body(body, true);
   add_to_articulate(body, articulates.create({}).slot);
   return body;
 }
@@ -146,7 +146,7 @@ void Structure::remove_body(std::uint32_t body) {
   remove_solids_of(body, none);
   take_from_articulate(body);
   forget_body(body);
-  more_rows.erase(body), body_damping.erase(body);
+  more_rows.erase(body), body_damping.erase(body), radii.erase(body);
   bodies.destroy(body);
 }
 

@@ -166,6 +166,8 @@ class Structure {
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;   ///< of bodies
   SideTable<double> body_damping;  ///< of bodies, 1/s
+  SideTable<double> radii;         ///< of bodies that have one of their own, m; see outline.h
+  double usual_radius = 0;         ///< of all other bodies, m; 0: not chosen yet
   Corrections corrections;         ///< of rings
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
@@ -178,8 +180,17 @@ class Structure {
   std::uint32_t structure_version = 1;
   std::uint32_t spark_changes = 0;     ///< rises of `structure_version` by births and deaths of sparks
   std::uint64_t members_revision = 0;  ///< rises when a group or the set of active particles changes; not saved
+  std::uint64_t edits = 0;             ///< rises with each command that may move something; not saved
   std::vector<std::string> notes;      ///< of edits that have no report, for the next step's; not saved
   SceneLog scene;                      ///< log for viewers; not saved
+  ChangedSlots changed_outlines;       ///< bodies whose outline may be another one; not saved
+  /// The usual radius as it would be chosen now, as of some edits; not saved. See outline.h.
+  struct ExpectedRadius {
+    std::uint64_t edits = 0;
+    std::uint32_t version = 0;
+    double value = 0;
+  };
+  ExpectedRadius expected_radius;
 
   /// @name Membership: cheap links only, no physics
   ///@{
@@ -214,7 +225,11 @@ class Structure {
   /// Lists them anew by their flags, which are saved; the list is not.
   void list_flagged();
   void touch(std::uint32_t articulate) { touch(articulate, anything); }
-  void touch_body(std::uint32_t body) { scene.bodies.note(body), touch(bodies[body].articulate); }
+  /// A body was created or changed: viewers and outlines are told.
+  void note_body(std::uint32_t body, bool is_new = false) {
+    scene.bodies.note(body, is_new), changed_outlines.note(body, is_new);
+  }
+  void touch_body(std::uint32_t body) { note_body(body), touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
   /// Marks a change of only one body and the bodies at its rings: their problem can follow.
   void touch_locally(std::uint32_t body);
@@ -372,7 +387,11 @@ class Structure {
   virtual void visit_joined(std::uint32_t particle, Visit visit) const = 0;
   /// visit(particle): of the particles of its body that stay with it when the body is split.
   virtual void visit_companions(std::uint32_t particle, Visit visit) const = 0;
-  ///@}
+  using VisitLine = FunctionRef<void(std::uint32_t p, std::uint32_t q)>;
+  /// visit(p, q): of the lines between particles of a body, with which it touches if it has no solid.
+  virtual void visit_lines(std::uint32_t body, VisitLine visit) const = 0;
+  virtual double ball_radius(std::uint32_t particle) const = 0;  ///< a particle's own, m; 0: it has none
+                                                                 ///@}
 
  protected:
   Structure() = default;
@@ -454,6 +473,7 @@ void Structure::archive(Archive& ar) {
   ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
   first_twin.archive(ar, particles.slot_count());
   more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
+  radii.archive(ar, bodies.slot_count()), ar.value(usual_radius);
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);

@@ -21,7 +21,6 @@ constexpr double finest = 1e-6;
 constexpr std::size_t most_triangles = 50'000;
 constexpr std::size_t most_record_bytes = 8 << 20;
 constexpr std::size_t max_name = 63;  // of a body, bytes
-constexpr double usual_thickness = 0.03;
 constexpr const char* every_style = "*";
 constexpr double of_body = 0.1;  // length of a look that fits its body, m: any value
 /// The color of movable solids without a look. The page's own paint has the color of its ground, so they would hardly be
@@ -211,9 +210,9 @@ EntityChanges Presenter::present(const SceneChanges& changes, const NameOf& name
     for (std::vector<Told>& kind : told_)
       for (Told& known : kind) known.is_listed = false;
   if (changes.is_whole && changes.extent > 0) quantum_ = finest * std::min(1.0, changes.extent);
-  if (thickness_ == 0) choose_thickness(changes);
-  if (needs_all_) {
+  if (needs_all_ || usual_radius_ != changes.usual_radius) {
     needs_all_ = false;
+    usual_radius_ = changes.usual_radius;
     for (std::size_t kind = 0; kind < tie_names.size(); ++kind) {
       const std::uint32_t before = tie_visuals_[kind];
       tie_visuals_[kind] = use_tie_visual(kind);
@@ -325,7 +324,8 @@ std::uint32_t Presenter::visual_of(const DrawnBody& body, const Assignment* assi
     return own->is_solid ? protocol::no_visual : use_visual(assignment->name, on_line(own->parts, body));
   if (body.particles == 1) return use_visual("(particle)", {part_of_particle(body)});
   if (body.particles == 2 && body.balls.empty())
-    return use_visual("(rod)", on_line({make_part(every_style, to_wire(Capsule{thickness_, of_body}), "steel")}, body));
+    return use_visual("(rod)",
+                      on_line({make_part(every_style, to_wire(Capsule{body.radius, of_body}), "steel")}, body));
   return use_visual("(body)", parts_along_lines(body, own));
 }
 
@@ -358,11 +358,11 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
 
 /// Capsules along the lines of a body, with the radius of its visual's shapes.
 std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, const Given* like) const {
-  const protocol::Part plain = make_part(every_style, to_wire(Capsule{thickness_, of_body}), "steel");
+  const protocol::Part plain = make_part(every_style, to_wire(Capsule{body.radius, of_body}), "steel");
   std::vector<protocol::Part> parts;
   for (const auto& [style, first] :
        like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_style), &plain}}) {
-    const double drawn = radius_of(first->shape), radius = drawn > 0 ? drawn : thickness_;
+    const double drawn = radius_of(first->shape), radius = drawn > 0 ? drawn : body.radius;
     const std::size_t before = parts.size();
     const auto add = [&, first = first](protocol::Shape shape) -> protocol::Part& {
       protocol::Part& part = parts.emplace_back(make_part(style, std::move(shape), first->material));
@@ -385,11 +385,10 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
   return parts;
 }
 
-/// A ball; one with attributes has its radius and color.
+/// A ball; one with attributes has its color.
 protocol::Part Presenter::part_of_particle(const DrawnBody& body) const {
-  if (!body.attributes) return make_part(every_style, to_wire(Sphere{2 * thickness_}), "brass");
-  const double radius = body.attributes->radius > 0 ? body.attributes->radius : 2 * thickness_;
-  return ball(radius, body.attributes->color);
+  if (!body.attributes) return make_part(every_style, to_wire(Sphere{body.radius}), "brass");
+  return ball(body.radius, body.attributes->color);
 }
 
 std::uint32_t Presenter::use_tie_visual(std::size_t kind) {
@@ -398,10 +397,11 @@ std::uint32_t Presenter::use_tie_visual(std::size_t kind) {
   switch (static_cast<DrawnTie::Kind>(kind)) {
     case DrawnTie::Kind::spring:
       return use_visual("spring",
-                        {make_part(every_style, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
+                        {make_part(every_style, to_wire(Torus{0.8 * usual_radius_, 0.12 * usual_radius_}), "steel")});
     case DrawnTie::Kind::rope:
-      return use_visual("rope", {make_part(every_style, to_wire(Cylinder{0.35 * thickness_, of_body}), "rope")});
-    default: return use_visual("rod", {make_part(every_style, to_wire(Cylinder{0.4 * thickness_, of_body}), "steel")});
+      return use_visual("rope", {make_part(every_style, to_wire(Cylinder{0.35 * usual_radius_, of_body}), "rope")});
+    default:
+      return use_visual("rod", {make_part(every_style, to_wire(Cylinder{0.4 * usual_radius_, of_body}), "steel")});
   }
 }
 
@@ -445,19 +445,6 @@ protocol::Vec3 Presenter::rounded(const Vec3& v) const {
 
 protocol::Anchor Presenter::anchored(const Anchor& anchor) const {
   return {anchor.body ? anchor.body.slot : protocol::no_body, rounded(anchor.point)};
-}
-
-/// Default radius of rods, determined once: from their median length or, without rods, from the size of the scene.
-void Presenter::choose_thickness(const SceneChanges& changes) {
-  std::vector<double> lengths;
-  for (const DrawnBody& body : changes.bodies.set)
-    if (body.particles == 2 && body.lines.size() == 1) lengths.push_back(body.lines[0].length);
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::ranges::nth_element(lengths, middle);
-  if (middle != lengths.end() && *middle > 0)
-    thickness_ = 0.06 * *middle;
-  else
-    thickness_ = changes.extent > 0 ? 0.02 * changes.extent : usual_thickness;
 }
 
 }  // namespace iota::net

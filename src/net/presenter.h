@@ -95,7 +95,6 @@ class Presenter {
   std::uint32_t use_tie_visual(std::size_t kind);
   std::uint32_t use_visual(std::string_view name, const std::vector<protocol::Part>& parts);
   void release_visual(std::uint32_t slot);
-  void choose_thickness(const SceneChanges& changes);
   protocol::Vec3 rounded(const Vec3& v) const;
   protocol::Anchor anchored(const Anchor& anchor) const;
 
@@ -104,8 +103,8 @@ class Presenter {
   std::vector<BodyId> assigned_;
   std::vector<protocol::Part> statics_;
   bool needs_all_ = true, statics_changed_ = false;
-  double quantum_ = 1e-6;  ///< finer than visible, m
-  double thickness_ = 0;   ///< default radius of rods, m; 0: not known yet
+  double quantum_ = 1e-6;    ///< finer than visible, m
+  double usual_radius_ = 0;  ///< with which the ties are drawn, m; 0: not known yet
 
   std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot
   std::vector<DrawnAs> bodies_;                            ///< by slot

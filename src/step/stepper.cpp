@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "ingredient/quantities.h"
+#include "model/outline.h"
 #include "solver/timed.h"
 #include "step/edits.h"
 
@@ -24,6 +25,7 @@ StepReport Stepper::step(double dt) {
                   ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
                   : Clock::time_point::max();
   door_.begin_step();
+  model::choose_usual_radius(editor_.model);
   take_held_forces(report);
   update_islands();
   advance_islands(report);

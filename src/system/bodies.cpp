@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/loads.h"
 #include "ingredient/quantities.h"
+#include "model/outline.h"
 #include "model/restructure.h"
 #include "model/solid.h"
 #include "system/core.h"
@@ -181,6 +182,10 @@ std::uint32_t Bodies::articulate(BodyId id) const { return core_.model.bodies[co
 BodyKind Bodies::kind(BodyId id) const { return core_.model.bodies[core_.slot(id)].kind; }
 
 double Bodies::damping(BodyId id) const { return core_.model.body_damping[core_.slot(id)]; }
+
+double Bodies::radius(BodyId id) const { return model::radius_of(core_.model, core_.slot(id)); }
+
+void Bodies::set_radius(BodyId body, double meters) { core_.execute(edit::SetRadius{body, meters}); }
 
 double Bodies::mass(BodyId id) const { return core_.model.body_mass(core_.slot(id)); }
 

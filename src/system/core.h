@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contact/outlines.h"
 #include "edit/door.h"
 #include "step/stepper.h"
 
@@ -18,6 +19,7 @@ struct Core {
   edit::Editor editor{model, islands, held, orientations, parallel};
   edit::Door door{editor};
   step::Stepper stepper{editor, door};
+  contact::Outlines outlines{model};
 
   /// All changes go through it.
   template <class C>

@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Describes changes for viewers: the bodies in the scene log, the ingredients attached to them, and destroyed objects.
 #include "math/mat3.h"
+#include "model/outline.h"
 #include "system/core.h"
 
 #include <iota/scene.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace iota {
 
 namespace {
-
-double extent(const model::Structure& model) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Vec3 low{far, far, far}, high{-far, -far, -far};
-  model.rings.for_each([&](std::uint32_t, const model::Ring& ring) {
-    const Vec3& r = ring.position;
-    low = {std::min(low.x, r.x), std::min(low.y, r.y), std::min(low.z, r.z)};
-    high = {std::max(high.x, r.x), std::max(high.y, r.y), std::max(high.z, r.z)};
-  });
-  return model.rings.size() > 0 ? norm(high - low) : 0;
-}
 
 bool is_drawn(const model::Structure& model, std::uint32_t body) {
   if (!model.bodies.is_alive(body)) return false;
@@ -47,6 +36,7 @@ void describe_body(Core& core, const ingredient::SceneView& view, std::uint32_t 
   drawn.is_new = model.scene.bodies.is_new(slot);
   drawn.kind = body.kind;
   drawn.particles = body.count;
+  drawn.radius = model::radius_of(core.model, slot);
   const Quaternion& q = body.orientation;
   for (SolidView& solid : Bodies(core).solids(drawn.id))
     drawn.solids.push_back({std::move(solid.shape), view.point_in(slot, solid.position),
@@ -64,7 +54,8 @@ SceneChanges describe(Core& core, bool whole) {
   const ingredient::SceneView view(model, whole);
   SceneChanges changes;
   changes.is_whole = whole;
-  if (whole) changes.extent = extent(model);
+  changes.usual_radius = model::usual_radius(core.model);
+  if (whole) changes.extent = model::scene_extent(model);
   const auto bodies = [&](const model::ChangedSlots& log) {
     std::vector<std::uint32_t> slots = log.slots();
     if (!whole) return slots;
@@ -86,9 +77,11 @@ SceneChanges Viewer::take_scene_changes(bool whole, std::span<const BodyId> also
   model::Model& model = core_.model;
   for (const BodyId body : also)
     if (model.bodies.contains(body)) model.scene.bodies.note(body.slot);
-  SceneChanges changes = describe(core_, whole || model.scene.is_whole);
+  whole = whole || model.scene.is_whole || model.scene.usual_radius != model::usual_radius(model);
+  SceneChanges changes = describe(core_, whole);
   changes.events = std::move(model.scene.events);
   model.watch_scene();
+  model.scene.usual_radius = changes.usual_radius;
   return changes;
 }
 

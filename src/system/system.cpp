@@ -28,6 +28,10 @@ RestOptions System::rest() const { return {core_->model.rest_after, core_->model
 
 void System::set_rest(const RestOptions& options) { core_->execute(edit::SetRest{options}); }
 
+double System::usual_radius() const { return model::usual_radius(core_->model); }
+
+void System::set_usual_radius(double meters) { core_->execute(edit::SetUsualRadius{meters}); }
+
 System::System(const SystemOptions& options) : core_(std::make_unique<Core>()) {
   set_threads(options.threads);
   set_gravity(options.gravity);

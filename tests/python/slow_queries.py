@@ -21,7 +21,7 @@ MOST_MARCHES = 256
 
 class SlowQueries:
     def __init__(self, world: World) -> None:
-        self._system, self._scene = world.system, world.scene
+        self._system = world.system
 
     def ray(
         self, origin: Place, direction: Place, farthest: float = math.inf, bodies: Iterable[Body] | None = None
@@ -87,7 +87,7 @@ class SlowQueries:
             for solid in body.solids:
                 yield _Solid(body, solid)
             if not body.solids and body.particles:
-                yield _Line(body, self._scene.thickness_of(body))
+                yield _Line(body, body.radius)
 
 
 class _Shape:

@@ -124,6 +124,7 @@ def test_a_rigid_body_of_unequal_masses_falls_and_rests_on_its_points(name: str,
     """Its ends or feet touch the ground and nothing is below; each is pushed as hard as the whole body presses there."""
     places, masses = UNEQUAL[name]
     system, dt = iota.System(), 1 / per_second
+    system.usual_radius = 1e-6
     body = system.body()
     for (x, y, z), mass in zip(places, masses, strict=True):
         body.particle((x, y + 0.1, z), mass)
@@ -141,6 +142,7 @@ def test_a_rigid_body_of_unequal_masses_falls_and_rests_on_its_points(name: str,
 def test_a_body_of_many_particles_lies_on_the_outermost_ones() -> None:
     """A plate of 100 particles, one of them as heavy as the rest together."""
     system = iota.System()
+    system.usual_radius = 1e-6
     plate = system.body()
     for n in range(100):
         plate.particle((0.1 * (n % 10), 0.3, 0.1 * (n // 10)), 99 if n == 34 else 1)
@@ -194,8 +196,7 @@ def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
     balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(0.5 * n, 0.4, 1)) for n in range(3)]
     iota.builder.chain(6, 1.2, top=(0, 1.5, 2), direction=(1, 0, 0)).realize(system)
     system.emitter(rate=300, position=(0, 0.2, 3), velocity=(0, 1, 0), lifetime=0.1)
-    thickness = {"now": 0.01}
-    floor = Floor(system, 0.0, lambda _: thickness["now"])
+    floor = Floor(system, 0.0)
     cluster = system.body()
     for place in ((0, 0.5, -1), (0.3, 0.5, -1), (0, 0.8, -1), (0, 0.5, -0.7)):
         cluster.particle(place, 0.2)
@@ -226,7 +227,7 @@ def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
         lambda: setattr(cluster.particles[0], "position", cluster.particles[0].position + (0.02, 0.01, 0)),
         lambda: setattr(added[-1].particles[0], "position", added[-1].particles[0].position + (0.02, 0.01, 0)),
         lambda: added.pop(0).destroy(),
-        lambda: thickness.update(now=random.uniform(0.01, 0.05)),
+        lambda: setattr(some(), "radius", random.uniform(0.01, 0.05)),
     ]  # fmt: skip
     done = 0
     for _ in range(300):
@@ -241,7 +242,7 @@ def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
         if system.scene_version == before:
             continue  # it lists bodies after edits of them only
         floor._take_structure(system.positions)
-        fresh = Floor(system, 0.0, lambda _: thickness["now"])
+        fresh = Floor(system, 0.0)
         fresh._take_structure(system.positions)
         kept, new = floor._touches, fresh._touches
         assert kept is not None and new is not None and kept.ranges == new.ranges

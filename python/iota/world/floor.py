@@ -12,7 +12,7 @@ not need this.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -135,17 +135,16 @@ def level_below(system: System | Simulator) -> float:
 
 
 class Floor:
-    """Keeps all moving bodies of a system above `height` m against gravity. friction: coefficient. thickness_of: drawn
-    radius of a body of particles, m, on which it rests."""
+    """Keeps all moving bodies of a system above `height` m against gravity. friction: coefficient. A body of
+    particles rests on balls of its `Body.radius`."""
 
     def __init__(
         self,
         system: System,
         height: float,
-        thickness_of: Callable[[Body], float] = lambda _: 0.0,
         friction: float = 0.6,
     ) -> None:
-        self._system, self.height, self._friction, self._thickness_of = system, height, friction, thickness_of
+        self._system, self.height, self._friction = system, height, friction
         self._version = self._scene = self._row_count = -1
         self._touches: Touches | None = None
         self._particles: list[Particle] = []
@@ -344,7 +343,7 @@ class Floor:
         solids = len(body.solids)
         traits.append(solids)
         if not (solids and len(particles) >= 4):
-            traits.append(self._thickness_of(body))
+            traits.append(body.radius)
             traits += [particle.radius if particle.has_attributes else 0 for particle in particles]
         return traits
 
@@ -359,18 +358,17 @@ class Floor:
             carrier = Carrier(body, -1, slots[:4], weights, radii, True)
             edges = edges_of(corners[None])[0]
             return Known(particles, traits, slots[:4], masses[:4], edges, [carrier], float(reaches.max()))
-        thickness = self._thickness_of(body)
         heavy = [n for n, mass in enumerate(masses) if mass > 0]
         held, their_masses = [slots[n] for n in heavy], [masses[n] for n in heavy]
         thick = np.array(
-            [p.radius if p.has_attributes and p.radius > 0 else thickness for p in (particles[n] for n in heavy)]
+            [p.radius if p.has_attributes and p.radius > 0 else body.radius for p in (particles[n] for n in heavy)]
         )
         carriers = [
             Carrier(body, held[n], [held[n]] * 4, ALONE, thick[n : n + 1], False)
             for n in _outermost(positions[row_of[held]], thick)
         ]
         reach = float(thick.max(initial=0.0))
-        is_flat = bool(body.solids) and len(slots) >= 4  # its traits do not have thickness and radii
+        is_flat = bool(body.solids) and len(slots) >= 4  # its traits do not have radii
         return Known(particles, [] if is_flat else traits, held, their_masses, np.empty(0), carriers, reach)
 
 

@@ -65,5 +65,5 @@ def _shapes_of(scene: Scene, body: Body) -> list[tuple[Look, Pose]]:
     drawn = styles.get(scene.style or "", styles.get("*", next(iter(styles.values()), [])))
     looks = [look for look in listed(drawn) if look.shape is not None]
     if not looks:
-        looks = [capsule(scene.thickness_of(body), length=max(length, 1e-6 * scene.thickness_of(body)))]
+        looks = [capsule(body.radius, length=max(length, 1e-6 * body.radius))]
     return [(look.of_length(length or look.length), (Vec3(*look.offset), tuple(look.rotation))) for look in looks]

@@ -14,7 +14,6 @@ from iota.world.parts import Part
 from iota.world.scene import Scene, Static
 from iota.world.shown import Surface
 from iota.world.things import Things, unit_quaternion, vector
-from iota.world.visuals import Visuals
 
 Place = Sequence[float] | Vec3
 Fixed = Static | Surface
@@ -33,15 +32,15 @@ class Hit:
 
 
 class Queries(Part):
-    """Questions about places. They know the shapes of solid bodies exactly, and rods, ropes and balls of particles by the
-    thickness with which they are drawn; and what is fixed without physics: the ground, shapes of `add_static` and
+    """Questions about places. They know the shapes of solid bodies exactly, rods, ropes and balls of particles by
+    `Body.radius`, with which they are drawn; and what is fixed without physics: the ground, shapes of `add_static` and
     `add_strut`, surfaces and models at a place of the world. Other drawn things are not met. bodies: only these;
     None: all but inactive ones and sparks, and all that is fixed. A tree of boxes finds them, which follows the motion:
     each question takes some 0.1 to 0.3 ms about 10 000 bodies or in a room of 300 000 triangles, the first one after a
     step 0.5 ms, and after bodies came or went tens of ms. They raise TypeError for a World of another Simulator."""
 
-    def __init__(self, system: System, scene: Scene, visuals: Visuals, things: Things) -> None:
-        self._system, self._scene, self._visuals, self._things = system, scene, visuals, things
+    def __init__(self, system: System, scene: Scene, things: Things) -> None:
+        self._system, self._scene, self._things = system, scene, things
         self._places: Places | None = None
         self._numbers: dict[Fixed, tuple[int, tuple[Any, ...]]] = {}  # among the places; with the contents of then
         self._fixed: dict[int, Fixed] = {}  # by number
@@ -94,16 +93,11 @@ class Queries(Part):
         return Hit(what, point, distance)
 
     def _index(self) -> Places:
-        """With the thickness of all bodies that were given another look since the last question."""
         scene = self._scene
         if self._places is None:
             if not isinstance(self._system, System):
                 raise TypeError("questions about places need a System; this world has a simulator of its own")
             self._places = Places(self._system)
-            self._places.set_usual_thickness(scene.usual_thickness, 2 * scene.usual_thickness)
-        for body in self._visuals.take_drawn():
-            if isinstance(body, Body) and body.alive:
-                self._places.set_thickness(body, scene.thickness_of(body))
         as_of = (len(scene.statics), scene.ground, self._things.changes[Surface])
         if as_of != self._fixed_as_of:
             self._fixed_as_of = as_of

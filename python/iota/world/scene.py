@@ -7,8 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
-
 from iota._core import Body, System, Vec3
 from iota.arguments import SHORT
 from iota.looks import Drawn, Look, Looks, by_style
@@ -17,7 +15,7 @@ from iota.world.frames import turn_from_x
 from iota.world.images import Images
 from iota.world.parts import Part
 from iota.world.things import unit_quaternion, vector
-from iota.world.visuals import TIES, Visuals
+from iota.world.visuals import TIES, Visuals, radius_of
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,6 @@ class Scene(Part):
         self._style, self._ground = style, ground
         self._camera: Camera | None = None
         self._statics: list[Static] = []
-        self._usual_thickness: float | None = None
         self._shows_edits = True
 
     @property
@@ -119,7 +116,9 @@ class Scene(Part):
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between
-        which users switch on the page. Every second body is odd, for looks with a turn.
+        which users switch on the page. Every second body is odd, for looks with a turn. A round look gives its radius, the
+        least of several, to bodies of particles as their `Body.radius`, so that they act as they are drawn; but a single
+        particle keeps a radius of its own.
 
             world.draw(wheel, looks.solid("brass"))
             world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
@@ -128,7 +127,12 @@ class Scene(Part):
         for body in drawn:
             if not isinstance(body, Body | SimulatedBody):
                 raise TypeError(f"draw: bodies must be a body or several, not {SHORT.repr(body)}")
-        self._visuals.assign(drawn, self._visuals.name_of(by_style(look)))
+        looks = by_style(look)
+        self._visuals.assign(drawn, self._visuals.name_of(looks))
+        radius = radius_of(looks)
+        if radius is not None:
+            for body in drawn:
+                _give_radius(body, radius)
 
     def look_of(self, body: Body) -> Looks | None:
         """The looks that `draw` gave to a body, for each style; None without one. A body that another one absorbed keeps
@@ -163,30 +167,10 @@ class Scene(Part):
         direction = (b - a) * (1 / length)
         return self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
 
-    def thickness_of(self, body: Body) -> float:
-        """Radius with which a body of particles is drawn, m: of its look, or the page's default."""
-        thickness = self._visuals.thickness_of(body)
-        if thickness is not None:
-            return thickness
-        return self.usual_thickness if len(body.particles) > 1 else 2 * self.usual_thickness
 
-    @property
-    def usual_thickness(self) -> float:
-        """Radius of rods without a look, m."""
-        if self._usual_thickness is None:
-            self._usual_thickness = usual_thickness(self._system)
-        return self._usual_thickness
-
-
-def usual_thickness(system: System) -> float:
-    """Default radius of rods of this system, m, as in src/net/presenter.cpp: by their median length or the size of the
-    scene."""
-    places = system.positions
-    lengths = sorted(
-        abs(particles[1].position - particles[0].position)
-        for body in system.bodies
-        if not body.is_spark and len(particles := body.particles) == 2
-    )
-    middle = lengths[len(lengths) // 2] if lengths else 0.0
-    extent = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
-    return 0.06 * middle or 0.02 * extent or 0.03
+def _give_radius(body: Body | SimulatedBody, radius: float) -> None:
+    if not isinstance(body, Body) or not body.alive or body.radius == 0:
+        return
+    particles = body.particles
+    if len(particles) != 1 or not particles[0].has_attributes or particles[0].radius == 0:
+        body.radius = radius

@@ -48,7 +48,7 @@ class Stepper:
         state = self._state
         self._tally = Tally(state.system)
         if state.scene.ground is not None and isinstance(state.system, System):
-            self._floor = Floor(state.system, state.scene.ground, state.scene.thickness_of)
+            self._floor = Floor(state.system, state.scene.ground)
         self._start, self._camera = state.system.snapshot(), state.scene.camera
         state.schedule.begin()
         if kept is None or not isinstance(state.system, System):

@@ -281,6 +281,7 @@ def copy_body(body: Body) -> Body:
     made = system.body()
     for particle in body.particles:
         made.particle(particle.position + aside, particle.mass).velocity = particle.velocity
+    made.radius = body.radius
     return made
 
 

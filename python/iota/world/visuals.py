@@ -36,6 +36,18 @@ def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnP
     )
 
 
+def radius_of(looks: Looks) -> float | None:
+    """The least radius of round looks, m; None without one. A torus lies about a body's line with its outer radius."""
+    radii = []
+    for drawn in looks.values():
+        for look in listed(drawn):
+            if isinstance(look.shape, Capsule | Cylinder | Sphere):
+                radii.append(look.shape.radius)
+            elif isinstance(look.shape, Torus):
+                radii.append(look.shape.radius + look.shape.tube)
+    return min(radii, default=None)
+
+
 class Visuals:
     """Named looks, each for all styles, and the bodies that are drawn with them. version: rises when pages need what was not
     sent yet."""
@@ -45,7 +57,6 @@ class Visuals:
         self.looks: dict[str, Looks] = {}
         self._visual_of: dict[Body | SimulatedBody, tuple[str, int]] = {}
         self._untold: dict[Body | SimulatedBody, tuple[str, int]] = {}
-        self._drawn: set[Body | SimulatedBody] = set()
 
     @property
     def styles(self) -> list[str]:
@@ -74,7 +85,6 @@ class Visuals:
 
     def _dress(self, body: Body | SimulatedBody, name: str, odd: int) -> None:
         self._visual_of[body] = self._untold[body] = (name, odd)
-        self._drawn.add(body)
 
     def looks_of(self, body: Body) -> Looks | None:
         return self.looks[self._visual_of[body][0]] if body in self._visual_of else None
@@ -85,24 +95,6 @@ class Visuals:
             name, odd = self._visual_of[like]
             self._dress(body, name, 1 - odd)
             self.version += 1
-
-    def thickness_of(self, body: Body) -> float | None:
-        """Radius of a body's look, m, if it is round about the body's line; None otherwise."""
-        if body not in self._visual_of:
-            return None
-        radii = []
-        for drawn in self.looks[self._visual_of[body][0]].values():
-            for look in listed(drawn):
-                if isinstance(look.shape, Capsule | Cylinder | Sphere):
-                    radii.append(look.shape.radius)
-                elif isinstance(look.shape, Torus):
-                    radii.append(look.shape.radius + look.shape.tube)
-        return min(radii, default=None)
-
-    def take_drawn(self) -> set[Body | SimulatedBody]:
-        """The bodies that were given a look since the last call."""
-        drawn, self._drawn = self._drawn, set()
-        return drawn
 
     def textures(self) -> Iterator[Texture]:
         """The images on them."""

@@ -132,7 +132,7 @@ class World:
             state.history,
             state.clients,
         )
-        self._queries = Queries(state.system, state.scene, state.visuals, state.things)
+        self._queries = Queries(state.system, state.scene, state.things)
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
         self.camera = camera

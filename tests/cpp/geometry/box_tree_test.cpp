@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 namespace iota::geometry {
 namespace {
@@ -44,20 +47,122 @@ void expect_all_near(const BoxTree& tree, RandomBoxes& scene) {
   }
 }
 
-TEST(BoxTree, finds_each_item_that_is_near_once_also_after_it_moved) {
+TEST(BoxTree, finds_each_item_that_is_near_once) {
   for (const std::size_t count : {0u, 1u, 2u, 3u, 500u}) {
     RandomBoxes scene(count);
     BoxTree tree;
     tree.build(scene.boxes);
     EXPECT_EQ(tree.size(), count);
     expect_all_near(tree, scene);
-    for (Bounds& box : scene.boxes) box = RandomBoxes::around(box.low + scene.place(0.5), 0.2);
-    tree.refit(scene.boxes);
-    expect_all_near(tree, scene);
-    for (Bounds& box : scene.boxes) box = RandomBoxes::around(scene.place(10), 0.2);  // all elsewhere
-    tree.refit(scene.boxes);
-    expect_all_near(tree, scene);
   }
+}
+
+/// Items that come, move and go, and the tree that follows them.
+struct Crowd : RandomBoxes {
+  Crowd() : RandomBoxes(0) {}
+
+  void move(std::uint32_t item, const Bounds& box) { tree.set(item, there[item] = box); }
+  void change() {
+    const auto item = static_cast<std::uint32_t>(random() % 300);
+    const bool is_there = there.contains(item);
+    switch (random() % 4) {
+      case 0: return move(item, around(place(10), number(0, 0.5)));
+      case 1: return tree.remove(item), void(there.erase(item));
+      default:
+        if (!is_there) return;
+        move(item, around(0.5 * (there[item].low + there[item].high) + place(0.1), number(0, 0.5)));
+    }
+  }
+  /// Nothing that is near may be missing; what is found is at most as far as fattened boxes reach.
+  void compare() {
+    EXPECT_EQ(tree.size(), there.size());
+    const Vec3 at = place(12);
+    const double within = number(0, 3);
+    const std::multiset<std::uint32_t> found = near(tree, at, within);
+    std::multiset<std::uint32_t> overlapped;
+    const Bounds box = around(at, within);
+    tree.overlapping(box, [&](std::uint32_t item) { overlapped.insert(item); });
+    for (const auto& [item, own] : there) {
+      EXPECT_GE(found.count(item), distance(own, at) <= within ? 1u : 0u);
+      EXPECT_LE(found.count(item), distance(own, at) > within + 4 ? 0u : 1u);
+      EXPECT_GE(overlapped.count(item), overlap(own, box) ? 1u : 0u);
+      EXPECT_LE(overlapped.count(item), 1u);
+    }
+    for (const std::uint32_t item : found) EXPECT_TRUE(there.contains(item));
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    tree.for_each_pair([&](std::uint32_t a, std::uint32_t b) { pairs.insert(std::minmax(a, b)); });
+    for (const auto& [a, one] : there)
+      for (const auto& [b, other] : there)
+        if (a < b) {
+          EXPECT_LE(pairs.count({a, b}), 1u);
+          EXPECT_GE(pairs.count({a, b}), overlap(one, other) ? 1u : 0u) << a << " " << b;
+        }
+    for (const auto& [a, b] : pairs) EXPECT_TRUE(there.contains(a) && there.contains(b) && a != b);
+  }
+
+  BoxTree tree;
+  std::map<std::uint32_t, Bounds> there;
+};
+
+TEST(BoxTree, of_items_that_come_move_and_go_finds_what_a_look_at_each_finds) {
+  Crowd crowd;
+  for (int round = 0; round < 200; ++round) {
+    for (int i = round % 40; i >= 0; --i) crowd.change();
+    crowd.tree.update();
+    crowd.compare();
+  }
+  for (std::uint32_t item = 0; item < 300; ++item) crowd.tree.remove(item);
+  crowd.there.clear();
+  crowd.tree.update();
+  crowd.compare();
+}
+
+TEST(BoxTree, of_items_that_come_in_a_row_and_fly_apart_is_no_deeper_than_its_search_allows) {
+  BoxTree tree;
+  const auto all = [&] {
+    std::size_t count = 0;
+    tree.near({}, infinity, [&](std::uint32_t) { return ++count, infinity; });
+    return count;
+  };
+  for (std::uint32_t item = 0; item < 2000; ++item) {
+    tree.set(item, RandomBoxes::around({std::pow(1.01, item), 0, 0}, 0.1));
+    tree.update();
+  }
+  EXPECT_EQ(all(), 2000u);
+  for (std::uint32_t item = 0; item < 2000; ++item) tree.set(item, RandomBoxes::around({0, 1e3 * item, 0}, 0.1));
+  tree.update();
+  EXPECT_EQ(all(), 2000u);
+}
+
+TEST(BoxTree, is_as_good_after_a_long_motion_as_a_new_one) {
+  RandomBoxes scene(2000);
+  BoxTree tree, fresh;
+  std::vector<Vec3> speeds;
+  for (std::size_t i = 0; i < scene.boxes.size(); ++i) speeds.push_back(scene.place(0.2));
+  for (int step = 0; step < 100; ++step) {
+    for (std::uint32_t i = 0; i < scene.boxes.size(); ++i) {
+      scene.boxes[i] = {scene.boxes[i].low + speeds[i], scene.boxes[i].high + speeds[i]};
+      tree.set(i, scene.boxes[i]);
+    }
+    tree.update();
+  }
+  for (std::uint32_t i = 0; i < scene.boxes.size(); ++i) fresh.set(i, scene.boxes[i]);
+  fresh.update();
+  const auto visits = [&](const BoxTree& each) {
+    std::mt19937 random(1);
+    std::size_t count = 0;
+    for (int question = 0; question < 200; ++question) {
+      const auto at = [&] { return std::uniform_real_distribution<double>(-20, 20)(random); };
+      const Vec3 place{at(), at(), at()};
+      double best = infinity;
+      each.near(place, infinity, [&](std::uint32_t item) {
+        ++count;
+        return best = std::min(best, distance(scene.boxes[item], place));
+      });
+    }
+    return count;
+  };
+  EXPECT_LT(visits(tree), 3 * visits(fresh));
 }
 
 TEST(BoxTree, finds_the_nearest_with_few_visits) {

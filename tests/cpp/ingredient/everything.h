@@ -54,6 +54,7 @@ struct Everything {
     system.particles().nail(upper[0]);
     system.bodies().set_angular_velocity(links[2], {3, 0, 0});
     system.particles().set_break_force(upper[1], 1e6);
+    system.bodies().set_radius(links[1], 0.02);
     hinged = slot(upper[1]), hinge_partner = slot(lower[0]), rod = slot(links[2]);
 
     // A body of four corners and a particle that is not in its basis, with a cosmetic bond and a group.

@@ -51,6 +51,10 @@ const std::vector<Damage> damages{
      [](Everything& e) { e.model.particles[e.hinged].body = e.model.particles[e.hinge_partner].body; }},
     {"is not finite", [](Everything& e) { e.model.rings[ring_of(e, e.loner)].velocity.x = std::nan(""); }},
     {"is nailed nowhere", [](Everything& e) { e.model.rings[ring_of(e, e.loner)].nailed = 1; }},
+    // outlines
+    {"has a radius", [](Everything& e) { e.model.radii.make(nowhere) = 1; }},
+    {"has radius -1", [](Everything& e) { e.model.radii.make(e.corners_body) = -1; }},
+    {"the usual radius is -1", [](Everything& e) { e.model.usual_radius = -1; }},
     // side tables
     {"a tie of 1000, which does not live", [](Everything& e) { e.model.ties.make(nowhere); }},
     {"lists of 1000, which does not live", [](Everything& e) { e.model.bonds.heads.make(nowhere); }},

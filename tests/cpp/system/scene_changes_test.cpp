@@ -127,6 +127,7 @@ class Editor {
 TEST(SceneChanges, of_single_edits_add_up_to_the_whole_scene) {
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     System system;
+    system.set_usual_radius(0.03);
     Editor editor(seed);
     Viewer viewer;
     viewer.take(system.viewer().take_scene_changes());
@@ -153,6 +154,27 @@ TEST(SceneChanges, a_step_without_an_edit_tells_nothing) {
   const SceneChanges changes = system.viewer().take_scene_changes();
   EXPECT_FALSE(changes.is_whole);
   EXPECT_TRUE(changes.bodies.set.empty() && changes.bodies.gone.empty() && changes.memberships.empty());
+}
+
+TEST(SceneChanges, are_whole_where_the_usual_radius_is_another_one) {
+  System system;
+  const BodyId rod = system.bodies().create();
+  (void)system.particles().create(rod, {0, 0, 0});
+  (void)system.particles().create(rod, {1, 0, 0});
+  SceneChanges changes = system.viewer().take_scene_changes();
+  EXPECT_DOUBLE_EQ(changes.usual_radius, 0.06);
+  ASSERT_EQ(changes.bodies.set.size(), 1u);
+  EXPECT_DOUBLE_EQ(changes.bodies.set[0].radius, 0.06);
+  system.set_usual_radius(0.01);
+  changes = system.viewer().take_scene_changes();
+  EXPECT_TRUE(changes.is_whole);
+  EXPECT_EQ(changes.usual_radius, 0.01);
+  EXPECT_EQ(changes.bodies.set.at(0).radius, 0.01);
+  EXPECT_FALSE(system.viewer().take_scene_changes().is_whole);
+  system.bodies().set_radius(rod, 0.5);
+  changes = system.viewer().take_scene_changes();
+  EXPECT_FALSE(changes.is_whole);
+  EXPECT_EQ(changes.bodies.set.at(0).radius, 0.5);
 }
 
 TEST(SceneChanges, a_cut_touches_its_own_bodies_and_the_articulate_of_the_smaller_side) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays, nearest bodies and overlaps while bodies move, come and go; against the same questions about listed bodies, which
 // use no tree.
-#include "places/places.h"
-
 #include <gtest/gtest.h>
+#include <iota/system.h>
 
 #include <cmath>
 #include <random>
@@ -13,7 +12,7 @@ namespace {
 
 struct Crowd {
   System system{SystemOptions{.gravity = {}}};
-  Places places{system};
+  Places places = system.places();
   std::mt19937 random{11};
 
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
@@ -29,7 +28,7 @@ struct Crowd {
       const BodyId body = system.bodies().create();
       const Vec3 at = place(5);
       for (int p = 0; p < 1 + i % 3; ++p) (void)system.particles().create(body, at + place(0.4), 1, place(2));
-      if (i % 5 == 0) places.set_thickness(body, number(0.01, 0.2));
+      if (i % 5 == 0) system.bodies().set_radius(body, number(0.01, 0.2));
     }
   }
   void compare() {
@@ -79,9 +78,46 @@ TEST(Places, of_bodies_are_found_as_by_a_look_at_each_while_they_move_come_and_g
   }
 }
 
+TEST(Places, of_bodies_that_rest_are_found_after_they_are_moved_woken_or_have_other_outlines) {
+  System system({.gravity = {}, .rest = {.after = 0.05}});
+  Places places = system.places();
+  const BodyId rod = system.bodies().create(), ball = system.bodies().create(Sphere{0.5}, {.position = {0, 5, 0}});
+  (void)system.particles().create(rod, {-1, 0, 0});
+  (void)system.particles().create(rod, {1, 0, 0});
+  (void)system.step(0.01, 20);
+  ASSERT_EQ(system.bodies().kind(ball), BodyKind::resting);
+  const auto above = [&](double x) { return places.ray({x, 9, 0}, {0, -1, 0}).value_or(Hit{}); };
+  EXPECT_NEAR(above(0).distance, 3.5, 1e-6);
+  EXPECT_NEAR(above(0.9).point.y, system.usual_radius(), 1e-6);
+  system.bodies().set_radius(rod, 0.5);
+  EXPECT_NEAR(above(0.9).point.y, 0.5, 1e-6);
+  system.bodies().set_velocity(ball, {1, 0, 0});
+  (void)system.step(0.01, 300);
+  EXPECT_EQ(above(3).what.body, ball);
+  EXPECT_EQ(above(0).what.body, rod);
+  system.edits().begin();
+  system.bodies().destroy(ball);
+  (void)system.edits().end();
+  EXPECT_FALSE(above(3).what.body);
+  system.edits().undo();
+  EXPECT_EQ(above(3).what.body, ball);
+}
+
+TEST(Places, of_equally_near_ones_the_first_slot_is_found) {
+  System system;
+  Places places = system.places();
+  std::vector<BodyId> balls;
+  for (int i = 0; i < 40; ++i) balls.push_back(system.bodies().create(Sphere{0.5}, {.position = {0, 0, 5}}));
+  (void)places.add_fixed(Sphere{0.5}, {0, 0, 5}, {});
+  EXPECT_EQ(places.nearest({})->what.body, balls.front());
+  EXPECT_EQ(places.ray({}, {0, 0, 1})->what.body, balls.front());
+  system.bodies().destroy(balls.front());
+  EXPECT_EQ(places.nearest({})->what.body, balls[1]);
+}
+
 TEST(Places, follow_an_edit_between_two_questions) {
   System system;
-  Places places(system);
+  Places places = system.places();
   const BodyId body = system.bodies().create(Sphere{0.5});
   EXPECT_NEAR(places.ray({-5, 0, 0}, {2, 0, 0})->distance, 4.5, 1e-6);
   system.bodies().set_pose(body, {1, 0, 0}, {0, 0, 0, 1});
@@ -96,7 +132,7 @@ TEST(Places, know_a_half_space_from_everywhere_and_a_mesh_by_its_triangles) {
   const Mesh cube = convex_hull(std::vector<Vec3>{
       {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}});
   const BodyId block = system.bodies().create(cube, {.position = {0, 3, 0}, .kind = BodyKind::static_});
-  Places places(system);
+  Places places = system.places();
   const auto under = places.ray({1e6, 50, 0}, {0, -1, 0});
   ASSERT_TRUE(under);
   EXPECT_EQ(under->what.body, ground);
@@ -117,7 +153,7 @@ TEST(Places, have_the_holes_of_concave_shapes_and_both_sides_of_the_ground) {
   System system;
   const BodyId ring = system.bodies().create(Torus{1, 0.2}, {.position = {0, 5, 0}});
   (void)system.bodies().create(HalfSpace{{0, 1, 0}}, {.kind = BodyKind::static_});
-  Places places(system);
+  Places places = system.places();
   const auto count = [&](const Shape& shape, const Vec3& at) { return places.overlap(shape, at, {}).size(); };
   EXPECT_EQ(count(Sphere{0.7}, {0, 5, 0}), 0u) << "it is in the hole";
   EXPECT_EQ(count(Sphere{0.81}, {0, 5, 0}), 1u);
@@ -131,7 +167,7 @@ TEST(Places, have_the_holes_of_concave_shapes_and_both_sides_of_the_ground) {
 
 TEST(Places, of_fixed_shapes_and_open_surfaces_are_found_by_their_numbers_until_they_are_removed) {
   System system;
-  Places places(system);
+  Places places = system.places();
   const std::uint32_t ground = places.add_fixed(HalfSpace{{0, 1, 0}}, {0, -1, 0}, {});
   const double half = std::sqrt(0.5);
   const std::uint32_t bar = places.add_fixed(Box{{4, 0.2, 0.2}, 0}, {0, 1, 0}, {0, half, 0, half});  // along z
@@ -162,7 +198,7 @@ TEST(Places, of_fixed_shapes_and_open_surfaces_are_found_by_their_numbers_until_
 TEST(Places, refuse_places_directions_and_radii_that_are_none) {
   System system;
   const BodyId gone = system.bodies().create(Sphere{0.5});
-  Places places(system);
+  Places places = system.places();
   const double nan = std::nan("");
   EXPECT_THROW((void)places.ray({}, {}), std::invalid_argument);
   EXPECT_THROW((void)places.ray({nan, 0, 0}, {1, 0, 0}), std::invalid_argument);

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/outlines.h"
+
+#include "model/outline.h"
+#include "model/solid.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace iota::contact {
+
+using model::none;
+
+namespace {
+
+/// Steps without an edit do not move it.
+bool is_still(BodyKind kind) { return kind == BodyKind::static_ || kind == BodyKind::resting; }
+
+}  // namespace
+
+const OutlineTree& Outlines::refresh(std::uint64_t steps) {
+  // Births of sparks are edits of no outline.
+  const std::uint32_t version = structure_.structure_version - structure_.spark_changes;
+  is_edited_ = edits_ != structure_.edits || version_ != version;
+  const model::ChangedSlots& changed = structure_.changed_outlines;
+  const bool is_described =
+      changed.is_on && changed.slots().empty() && usual_radius_ == model::usual_radius(structure_);
+  if (!is_edited_ && steps == steps_ && is_described) return tree_;
+  steps_ = steps, edits_ = structure_.edits, version_ = version;
+  describe_changed();
+  for (std::uint32_t body = 0; body < tree_.count(); ++body) {
+    if (!tree_.has(body)) continue;
+    const BodyKind kind = structure_.bodies[body].kind;
+    if (!is_edited_ && kind == kinds_[body] && is_still(kind)) continue;
+    kinds_[body] = kind;
+    place(body);
+    if (kind == BodyKind::inactive)
+      tree_.hide(body);
+    else
+      tree_.show(body);
+  }
+  tree_.update();
+  return tree_;
+}
+
+void Outlines::describe_changed() {
+  model::ChangedSlots& changed = structure_.changed_outlines;
+  const double usual_radius = model::usual_radius(structure_);
+  // A restored structure has no log yet.
+  if (!changed.is_on || usual_radius != usual_radius_) {
+    usual_radius_ = usual_radius;
+    tree_.clear();
+    aging_.clear();
+    structure_.bodies.for_each([&](std::uint32_t body, const model::Body&) { describe(body); });
+    is_edited_ = true;
+  } else {
+    for (const std::uint32_t body : std::exchange(aging_, {})) describe(body);
+    for (const std::uint32_t body : changed.slots()) describe(body);
+  }
+  std::ranges::sort(aging_);
+  aging_.erase(std::ranges::unique(aging_).begin(), aging_.end());
+  changed.clear();
+  changed.is_on = true;
+}
+
+void Outlines::describe(std::uint32_t body) {
+  const bool is_there = structure_.bodies.is_alive(body) && structure_.bodies[body].count > 0;
+  if (!is_there || structure_.is_spark(structure_.bodies[body].first)) return tree_.remove(body);
+  Outline& outline = tree_.make(body);
+  if (kinds_.size() <= body) kinds_.resize(body + std::size_t{1}, BodyKind::dynamic);
+  kinds_[body] = BodyKind::dynamic;  // not still: it will be placed
+  structure_.for_each_solid_of(
+      body, [&](std::uint32_t s) { outline.solids.push_back({form_of(structure_.solids[s].shape), s, {}, {}}); });
+  if (outline.solids.empty()) add_lines(body, outline);
+}
+
+void Outlines::add_lines(std::uint32_t body, Outline& outline) {
+  const double radius = model::radius_of(structure_, body);
+  if (structure_.bodies[body].count > 1) {
+    structure_.visit_lines(body,
+                           [&](std::uint32_t p, std::uint32_t q) { outline.lines.push_back({p, q, radius, {}, {}}); });
+    structure_.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (const double own = structure_.ball_radius(p); own > 0) outline.lines.push_back({p, p, own, {}, {}});
+    });
+  }
+  const std::uint32_t first = structure_.bodies[body].first;
+  if (outline.lines.empty()) outline.lines.push_back({first, first, radius, {}, {}});
+  bool is_aging = false;
+  structure_.for_each_particle_of(body, [&](std::uint32_t p) {
+    const std::uint32_t slot = structure_.particles[p].attributes;
+    is_aging = is_aging || (slot != none && structure_.attributes[slot].emitter != none);
+  });
+  if (is_aging) aging_.push_back(body);
+}
+
+void Outlines::place(std::uint32_t body) {
+  Outline& outline = tree_[body];
+  for (Solid& solid : outline.solids) {
+    const model::SolidPose pose = solid_pose(structure_, solid.number);
+    solid.position = pose.position, solid.turn = pose.orientation;
+  }
+  for (Line& line : outline.lines) line.a = structure_.position(line.p), line.b = structure_.position(line.q);
+}
+
+std::shared_ptr<const Form> Outlines::form_of(const shape::Data& data) {
+  Shape shape = shape::from_data(data);
+  const std::shared_ptr<const Mesh> mesh = structure_.meshes.find(data.key);
+  if (!mesh && is_convex(shape)) return make_form(std::move(shape));
+  std::weak_ptr<const Form>& known = forms_[{data.kind, data.sizes, data.key}];
+  std::shared_ptr<const Form> form = known.lock();
+  if (form) return form;
+  if (mesh) shape = *mesh;
+  known = form = make_form(std::move(shape));
+  std::erase_if(forms_, [](const auto& each) { return each.second.expired(); });
+  return form;
+}
+
+}  // namespace iota::contact

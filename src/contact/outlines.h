@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contact/outline_tree.h"
+#include "model/structure.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+namespace iota::contact {
+
+/// The outlines of the bodies of a structure where they are, by the bodies' slots: of all bodies except sparks.
+/// Inactive ones are hidden: only questions that name them find them.
+class Outlines {
+ public:
+  /// `structure` must outlive it, and may be assigned another one.
+  explicit Outlines(model::Structure& structure) : structure_(structure) {}
+  Outlines(const Outlines&) = delete;
+  Outlines& operator=(const Outlines&) = delete;
+
+  /// The outlines of now, after this number of steps. Describes the bodies that have changed since the last call, and
+  /// looks where those are that may have moved: all after an edit; after a step those that are not asleep or static.
+  const OutlineTree& refresh(std::uint64_t steps);
+
+ private:
+  using FormKey = std::tuple<std::uint32_t, std::array<double, 4>, std::uint64_t>;
+
+  void describe_changed();
+  void describe(std::uint32_t body);
+  void add_lines(std::uint32_t body, Outline&);
+  void place(std::uint32_t body);
+  std::shared_ptr<const Form> form_of(const shape::Data&);
+
+  model::Structure& structure_;
+  OutlineTree tree_;
+  std::vector<BodyKind> kinds_;                         ///< by slot: when the body was placed last
+  std::vector<std::uint32_t> aging_;                    ///< bodies with balls whose radius changes by itself
+  std::map<FormKey, std::weak_ptr<const Form>> forms_;  ///< with triangles: these are shared
+  double usual_radius_ = 0;
+  std::uint64_t steps_ = 0, edits_ = 0;
+  std::uint32_t version_ = 0;
+  bool is_edited_ = true;  ///< since the last call
+};
+
+}  // namespace iota::contact
