@@ -105,10 +105,9 @@ Vec3 rotated(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
-/// Rounded radius and color, so that many share a visual.
+/// The color is rounded, so that many share a visual.
 protocol::Part ball(double radius, const Color& color) {
-  const double step = std::pow(10, std::floor(std::log10(radius)));
-  protocol::Part part = make_part(every_style, to_wire(Sphere{std::round(radius / step) * step}), "paint");
+  protocol::Part part = make_part(every_style, to_wire(Sphere{radius}), "paint");
   part.color = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double share = std::round(std::clamp<double>(color[i], 0, 1) * 7);
@@ -127,12 +126,11 @@ std::pair<Vec3, Box> box_around(const Mesh& mesh) {
 }
 
 /// Parts with a length are as long as a rod, on whose line they belong: with unequal masses its middle is not at its
-/// center of mass. The place is rounded, so that many rods share a visual.
+/// center of mass. The place is rounded, so that equal rods share a visual.
 std::vector<protocol::Part> on_line(std::vector<protocol::Part> parts, const DrawnBody& body) {
-  constexpr double visible = 1e-3;  // share of the length
   if (body.particles != 2 || body.lines.size() != 1 || !body.solids.empty()) return parts;
   const DrawnLine& line = body.lines[0];
-  const float x = round_to(visible * line.length, line.center.x);
+  const float x = round_to(finest * line.length, line.center.x);
   if (x == 0) return parts;
   for (protocol::Part& part : parts)
     shape::for_each_shape([&](const Shape& shape) {

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/presenter.h"
 
+#include "contact/outline.h"
+#include "math/mat3.h"
+#include "shape/shape_list.h"
+
 #include <gtest/gtest.h>
+#include <iota/system.h>
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -105,6 +111,105 @@ TEST(Presenter, knows_a_body_by_the_id_that_viewers_have_until_it_is_gone) {
   gone.bodies.gone.push_back(2);
   (void)presenter.present(gone);
   EXPECT_EQ(presenter.id_of({2, 5}), protocol::Id{});
+}
+
+/// The entities of one kind by slot.
+template <class Entity>
+std::map<std::uint32_t, Entity> entities(const EntityChanges& changes) {
+  std::map<std::uint32_t, Entity> found;
+  changes.for_each([&](std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record) {
+    if (kind == entity_kind<Entity>() && !record.empty())
+      found[id.slot] = protocol::decode_records<Entity>(record).value->at(0);
+  });
+  return found;
+}
+
+/// The shape of a part, as long as its body says.
+Shape shape_of(const protocol::Shape& wire, float length) {
+  if (wire.kind == "mesh") {
+    Mesh mesh;
+    for (std::size_t i = 0; i < wire.vertices.size(); i += 3)
+      mesh.vertices.push_back({wire.vertices[i], wire.vertices[i + 1], wire.vertices[i + 2]});
+    for (std::size_t i = 0; i < wire.triangles.size(); i += 3)
+      mesh.triangles.push_back({wire.triangles[i], wire.triangles[i + 1], wire.triangles[i + 2]});
+    return mesh;
+  }
+  shape::Data data;
+  shape::for_each_shape([&](const Shape& shape) {
+    if (shape::name(shape) != wire.kind) return;
+    data.kind = shape::to_data(shape).kind;
+    const std::vector<std::string> names = shape::size_names(shape);
+    for (std::size_t i = 0; i < wire.sizes.size(); ++i)
+      data.sizes[i] = names[i] == "length" && length > 0 ? length : wire.sizes[i];
+  });
+  return shape::from_data(data);
+}
+
+struct Varied {
+  System system{SystemOptions{.gravity = {}}};
+  std::mt19937 random{8};
+
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  Vec3 place() { return {number(-1, 1), number(-1, 1), number(-1, 1)}; }
+  ParticleId add_particle(BodyId body, const Vec3& at) {
+    return system.particles().create(body, at, number(0.1, 3), place());
+  }
+  void add_solids() {
+    const Mesh hull = convex_hull(std::vector<Vec3>{{0, 0, 0}, {0.7, 0, 0}, {0, 0.5, 0}, {0, 0, 0.3}});
+    for (const Shape& shape :
+         {Shape(Sphere{0.3}), Shape(Box{{0.6, 0.4, 0.2}, 0.05}), Shape(Cylinder{0.2, 0.7}), Shape(Capsule{0.1, 0.5}),
+          Shape(Torus{0.3, 0.1, 0.2}), Shape(Ellipsoid{{0.5, 0.3, 0.2}}), Shape(Cone{0.2, 0.5}), Shape(hull)}) {
+      const auto add = [&] {
+        return system.bodies().create(
+            shape, {.position = place(), .orientation = {number(0, 1), number(0, 1), 0.3, 0.2}, .spin = place()});
+      };
+      (void)add();
+      (void)system.edits().combine(add(), add());
+    }
+  }
+  void add_particles(int i) {
+    const BodyId body = system.bodies().create();
+    const Vec3 at = place();
+    const ParticleId first = add_particle(body, at);
+    for (int p = 0; p < i % 5; ++p) {
+      const ParticleId next = add_particle(body, at + 0.3 * place());
+      if (i % 7 == 1) (void)system.cosmetic_bonds().create(first, next);
+    }
+    if (i % 3 == 0) system.particles().set_attributes(first, {.radius = number(0.01, 0.2)});
+    if (i % 4 == 0) system.bodies().set_radius(body, number(0.01, 0.2));
+  }
+};
+
+TEST(Presenter, draws_the_outline_that_acts) {
+  Varied scene;
+  System& system = scene.system;
+  scene.add_solids();
+  for (int i = 0; i < 60; ++i) scene.add_particles(i);
+  (void)system.step(0.02, 20);
+  Presenter presenter;
+  const EntityChanges changes = presenter.present(system.viewer().take_scene_changes());
+  const auto bodies = entities<protocol::BodyEntity>(changes);
+  const auto visuals = entities<protocol::VisualEntity>(changes);
+  Places places = system.places();
+  int compared = 0;
+  for (const BodyId body : system.bodies().ids()) {
+    const protocol::BodyEntity& entity = bodies.at(body.slot);
+    const Vec3 center = system.bodies().center_of_mass(body);
+    const Quaternion frame = system.bodies().orientation(body);
+    contact::Outline drawn;
+    for (const protocol::Part& part : visuals.at(entity.visual).parts) {
+      const Vec3 offset{part.offset[0], part.offset[1], part.offset[2]};
+      const Quaternion turn{part.rotation[0], part.rotation[1], part.rotation[2], part.rotation[3]};
+      drawn.solids.push_back({contact::make_form(shape_of(part.shape, entity.length)), 0,
+                              center + rotate(frame, offset), multiply(frame, turn)});
+    }
+    for (int i = 0; i < 40; ++i, ++compared) {
+      const Vec3 at = center + 0.6 * scene.place();
+      EXPECT_NEAR(near(drawn, at).distance, places.nearest(at, std::span(&body, 1))->distance, 3e-6)
+          << "body " << body.slot << " drawn as " << visuals.at(entity.visual).name;
+    }
+  }
+  EXPECT_GT(compared, 2000);
 }
 
 }  // namespace
