@@ -40,7 +40,8 @@ class OutlineTree {
     tree_.along(from, unit, within, [&](std::uint32_t number) { return visit(number, entries_[number].outline); });
   }
   /// Calls visit(number, number) with each two shown outlines whose boxes overlap, once, and with each endless one and
-  /// every other. Boxes are larger than the outlines by about a tenth. The order depends on the history.
+  /// every other. Boxes are larger than the outlines, by a fifth of their longest edge on each side. The order depends on
+  /// the history.
   template <class Visit>
   void for_each_pair(Visit visit) const {
     tree_.for_each_pair(visit);

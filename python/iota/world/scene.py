@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -169,8 +170,10 @@ class Scene(Part):
 
 
 def _give_radius(body: Body | SimulatedBody, radius: float) -> None:
-    if not isinstance(body, Body) or not body.alive or body.radius == 0:
+    if not isinstance(body, Body) or not body.alive:
         return
     particles = body.particles
-    if len(particles) != 1 or not particles[0].has_attributes or particles[0].radius == 0:
+    if len(particles) == 1 and particles[0].has_attributes and particles[0].radius > 0:
+        return
+    with suppress(ValueError):  # it is given by shape
         body.radius = radius
