@@ -424,11 +424,6 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
         b"\x01" + pack("<If", 3, 0.75) + anchor(A) + anchor(B),
         {"kind": 1, "visual": 3, "length": 0.75, "a": A, "b": B},
     ),
-    (
-        "joint",
-        text("revolute") + anchor(A) + anchor(B) + vec3([0.0, 0.0, 1.0]),
-        {"kind": "revolute", "a": A, "b": B, "axis": [0.0, 0.0, 1.0]},
-    ),
     ("nail", anchor(A), {"at": A}),
     ("particle_set", b"\x01" + pack("<I", 1000), {"active": True, "capacity": 1000}),
     ("static_shape", part(PART), {"part": PART}),

@@ -78,14 +78,6 @@ struct DrawnTie {
   Anchor a, b;
 };
 
-/// An active constraint that is not drawn as a tie.
-struct DrawnJoint {
-  std::uint32_t slot = 0;
-  const char* kind = "";  ///< name
-  Anchor a, b;
-  Vec3 axis;  ///< unit vector, in the frame of a's body; zero for kinds without one
-};
-
 struct DrawnNail {
   std::uint32_t slot = 0;
   Anchor at;
@@ -112,7 +104,6 @@ struct SceneChanges {
   Changes<DrawnBody> bodies;
   std::vector<Membership> memberships;  ///< of bodies whose articulate has changed
   Changes<DrawnTie> ties;
-  Changes<DrawnJoint> joints;
   Changes<DrawnNail> nails;
   Changes<DrawnParticleSet> particle_sets;
   std::vector<ViewEvent> events;

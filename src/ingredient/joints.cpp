@@ -286,16 +286,15 @@ void Joints::tell(Model& model, Outcome& outcome) {
 
 model::ChangedSlots* Joints::scene_log(Model& model) { return &model.changed_constraints; }
 
-// A constraint is drawn as a tie, as a joint or, while it is inactive, as neither.
+// Active constraints of a distance are drawn as ties.
 void Joints::describe(const SceneView& view, SceneChanges& changes) {
   const Model& model = view.model;
   const auto list = [&](std::uint32_t p, std::vector<std::uint32_t>& slots) {
     model.for_each_constraint_of(p, [&](std::uint32_t constraint, int) { slots.push_back(constraint); });
   };
   for (const std::uint32_t slot : view.slots(model.constraints, model.changed_constraints, list)) {
-    const bool is_there = model.constraints.is_alive(slot) && model.constraints[slot].active;
-    const Form form = is_there ? info(model.constraints[slot].kind).form : Form::pin;
-    const bool is_tie = is_there && form == Form::distance;
+    const bool is_tie = model.constraints.is_alive(slot) && model.constraints[slot].active &&
+                        info(model.constraints[slot].kind).form == Form::distance;
     const std::uint32_t tie = DrawnTie::slot_of_joint(slot);
     if (is_tie) {
       const Constraint& c = model.constraints[slot];
@@ -306,15 +305,6 @@ void Joints::describe(const SceneView& view, SceneChanges& changes) {
                                   view.anchor(c.particles[a_origin]), view.anchor(c.particles[b_origin])});
     } else {
       changes.ties.gone.push_back(tie);
-    }
-    if (is_there && !is_tie && form != Form::coupling) {
-      const Constraint& c = model.constraints[slot];
-      const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
-      const Vec3 place = model.carried(c.particles[a_origin]).first;
-      changes.joints.set.push_back({slot, info(c.kind).name, view.anchor(a, place), view.anchor(b, place),
-                                    view.into_body(a, calc_axis(model, c))});
-    } else {
-      changes.joints.gone.push_back(slot);
     }
   }
 }

@@ -67,10 +67,6 @@ double radius_of(const protocol::Shape& wire) {
 }
 
 /// A zero length for any size of the scene.
-protocol::Vec3 unit_axis(const Vec3& v) {
-  return {round_to(finest, v.x), round_to(finest, v.y), round_to(finest, v.z)};
-}
-
 protocol::Part make_part(std::string style, protocol::Shape shape, std::string material) {
   protocol::Part part;
   part.style = std::move(style), part.shape = std::move(shape), part.material = std::move(material);
@@ -248,9 +244,6 @@ void Presenter::for_each_simple_kind(const SceneChanges& changes, Visit visit) c
                                size(std::max(tie.length, 0.0)),
                                anchored(tie.a),
                                anchored(tie.b)};
-  });
-  visit(changes.joints, [&](const DrawnJoint& joint) {
-    return protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)};
   });
   visit(changes.nails, [&](const DrawnNail& nail) { return protocol::NailEntity{{}, anchored(nail.at)}; });
   visit(changes.particle_sets,

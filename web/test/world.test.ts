@@ -90,16 +90,15 @@ describe("the world", () => {
     expect(membership.articulateOf(0)).toBe(-1);
   });
 
-  it("keeps joints, nails and particle sets, though it draws nothing for them", () => {
+  it("keeps nails and particle sets, though it draws nothing for them", () => {
     const test = told();
     const anchor = { body: 0, point: [0, 0, 0] as [number, number, number] };
-    test.set("joint", { id: id(1), kind: "ball", a: anchor, b: anchor, axis: [0, 0, 0] });
     test.set("nail", { id: id(2), at: anchor });
     test.set("particleSet", { id: id(3), active: true, capacity: 100 });
-    const { joint, nail, particleSet } = test.world.entities;
-    expect([joint.get(1)?.kind, nail.get(2)?.at.body, particleSet.get(3)?.capacity]).toEqual(["ball", 0, 100]);
-    test.destroy("joint", id(1));
-    expect(joint.size).toBe(0);
+    const { nail, particleSet } = test.world.entities;
+    expect([nail.get(2)?.at.body, particleSet.get(3)?.capacity]).toEqual([0, 100]);
+    test.destroy("nail", id(2));
+    expect(nail.size).toBe(0);
   });
 
   it("after a lost connection draws on the same entities, and drops those that are not sent again", () => {

@@ -32,7 +32,7 @@ struct Told {
   }
 };
 
-const std::vector<std::string> simple_kinds{"joint", "nail", "particle_set", "tie"};
+const std::vector<std::string> simple_kinds{"nail", "particle_set", "tie"};
 
 /// One of each thing that is one entity, in slot 3, as the engine describes it.
 SceneChanges one_of_each(bool is_whole) {
@@ -40,7 +40,6 @@ SceneChanges one_of_each(bool is_whole) {
   changes.is_whole = is_whole;
   const Anchor world{{}, {1, 2, 3}};
   changes.ties.set.push_back({3, DrawnTie::Kind::rope, 0.5, world, world});
-  changes.joints.set.push_back({3, "revolute", world, world, {0, 0, 1}});
   changes.nails.set.push_back({3, world});
   changes.particle_sets.set.push_back({3, true, 100});
   return changes;
@@ -49,7 +48,7 @@ SceneChanges one_of_each(bool is_whole) {
 SceneChanges all_gone() {
   SceneChanges changes;
   changes.is_whole = false;
-  for (auto* const gone : {&changes.ties.gone, &changes.joints.gone, &changes.nails.gone, &changes.particle_sets.gone})
+  for (auto* const gone : {&changes.ties.gone, &changes.nails.gone, &changes.particle_sets.gone})
     *gone = {3, 7};  // nothing was ever told of 7
   return changes;
 }

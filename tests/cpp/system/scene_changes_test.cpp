@@ -16,16 +16,14 @@ namespace {
 class Viewer {
  public:
   void take(const SceneChanges& changes) {
-    if (changes.is_whole) bodies_.clear(), memberships_.clear(), ties_.clear(), joints_.clear(), nails_.clear();
+    if (changes.is_whole) bodies_.clear(), memberships_.clear(), ties_.clear(), nails_.clear();
     for (const DrawnBody& body : changes.bodies.set) bodies_[body.id.slot] = text(body);
     for (const Membership& m : changes.memberships) memberships_[m.body] = std::to_string(m.articulate);
     for (const DrawnTie& tie : changes.ties.set)
       ties_[tie.slot] = std::to_string(static_cast<int>(tie.kind)) + text(tie.length) + text(tie.a) + text(tie.b);
-    for (const DrawnJoint& joint : changes.joints.set) joints_[joint.slot] = joint.kind + text(joint.a) + text(joint.b);
     for (const DrawnNail& nail : changes.nails.set) nails_[nail.slot] = text(nail.at);
     for (const std::uint32_t slot : changes.bodies.gone) bodies_.erase(slot), memberships_.erase(slot);
     for (const std::uint32_t slot : changes.ties.gone) ties_.erase(slot);
-    for (const std::uint32_t slot : changes.joints.gone) joints_.erase(slot);
     for (const std::uint32_t slot : changes.nails.gone) nails_.erase(slot);
   }
   bool operator==(const Viewer&) const = default;
@@ -43,7 +41,6 @@ class Viewer {
     for (const auto& [what, things] : {std::pair{"body", &Viewer::bodies_},
                                        {"membership", &Viewer::memberships_},
                                        {"tie", &Viewer::ties_},
-                                       {"joint", &Viewer::joints_},
                                        {"nail", &Viewer::nails_}}) {
       compare(what, this->*things, other.*things);
       compare(what, other.*things, this->*things);
@@ -63,7 +60,7 @@ class Viewer {
            std::to_string(body.lines.size());
   }
 
-  Things bodies_, memberships_, ties_, joints_, nails_;
+  Things bodies_, memberships_, ties_, nails_;
 };
 
 /// Edits at random; what an edit refuses is left out.

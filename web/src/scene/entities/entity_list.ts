@@ -11,7 +11,6 @@ import type { CustomView, Marks } from "./custom.ts";
 import { BodyView } from "./body.ts";
 import type { EntityView } from "./entity.ts";
 import { FrameView } from "./frame.ts";
-import { JointView } from "./joint.ts";
 import { LabelView } from "./label.ts";
 import { Later } from "./later.ts";
 import { LineView } from "./line.ts";
@@ -62,7 +61,6 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
     body,
     membership: new Memberships(),
     tie: new TieView(poses, visual),
-    joint: new JointView(),
     nail: new NailView(poses),
     particleSet: new ParticleSetView(),
     staticShape: new StaticShapeView(warn),
