@@ -25,6 +25,21 @@ TEST(DistanceForm, a_rod_and_a_rope_have_one_row_that_counts_from_their_length) 
   }
 }
 
+TEST(DistanceForm, a_row_follows_a_changed_length) {
+  TwoBlocks blocks;
+  Constraint c;
+  c.length = 3;
+  solver::DistanceConstraint rod;
+  solver::BilinearConstraint rope;
+  solver::SpanConstraint compliant;
+  joint::DistanceForm::load(rod, blocks.m.model, c, nullptr);
+  joint::DistanceForm::load(rope, blocks.m.model, c, nullptr);
+  joint::DistanceForm::load(compliant, blocks.m.model, c, nullptr);
+  EXPECT_EQ(rod.length, 3);
+  EXPECT_EQ(rope.product, 9);
+  EXPECT_EQ(compliant.target, 3);
+}
+
 TEST(DistanceForm, a_span_holds_nothing_and_is_a_slide) {
   TwoBlocks blocks;
   const std::uint32_t span = make_constraint(

@@ -28,6 +28,19 @@ TEST(PinForm, rows_of_a_new_joint_are_met_and_as_many_as_it_takes_degrees_of_fre
   }
 }
 
+TEST(PinForm, a_plate_and_a_solid_are_welded_by_six_rows_in_either_order) {
+  for (const bool plate_first : {true, false}) {
+    TwoBlocks blocks;
+    const std::uint32_t plate = blocks.m.body({{9, 0, 0}, {10, 0, 0}, {9, 0, 1}});  // it holds z and x, not y
+    JointSpec spec = blocks.spec(ConstraintKind::weld);
+    spec.at = {9.5, 0, 0};
+    (plate_first ? spec.a : spec.b) = blocks.m.model.bodies.id(plate);
+    const std::uint32_t weld = make_constraint(blocks.m.model, spec);
+    EXPECT_EQ(values_of(blocks.m.model, weld).held.size(), 6u);
+    EXPECT_LT(values_of(blocks.m.model, weld).worst(), 1e-12);
+  }
+}
+
 TEST(PinForm, what_a_joint_leaves_free_changes_no_row) {
   TwoBlocks blocks;
   const std::uint32_t rail = make_constraint(blocks.m.model, blocks.spec(ConstraintKind::prismatic));
