@@ -262,6 +262,19 @@ TEST_F(HubTest, keeps_the_newest_place_of_each_pointer_also_among_those_of_grips
   EXPECT_NE(link.last_notice().find("beyond 1e9 m"), std::string::npos) << link.last_notice();
 }
 
+TEST_F(HubTest, keeps_the_newest_value_of_a_control_until_something_else_is_done) {
+  Link link;
+  const std::uint32_t client = join(link);
+  const protocol::Id slider{1, 1}, other{2, 1};
+  for (int i = 0; i < 50; ++i) receive(client, protocol::Change{slider, 1.0 * i, ""});
+  receive(client, protocol::Change{other, 7, ""});
+  receive(client, protocol::Change{slider, 99, ""});
+  std::vector<protocol::Input> taken;
+  for (const ClientInput& input : take_gestures()) taken.push_back(input.what);
+  EXPECT_EQ(taken, (std::vector<protocol::Input>{protocol::Change{slider, 49, ""}, protocol::Change{other, 7, ""},
+                                                 protocol::Change{slider, 99, ""}}));
+}
+
 TEST_F(HubTest, refuses_grips_that_do_not_fit_and_the_client_stays) {
   Link link;
   const std::uint32_t client = join(link);
