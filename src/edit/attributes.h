@@ -19,6 +19,7 @@ struct SetSpin {
   Vec3 value;
 };
 struct ApplyTorque {
+  static constexpr bool moves_nothing = true;
   ParticleId particle;
   Vec3 value;
 };

@@ -19,12 +19,14 @@ struct SetBodyMass {
   double value;
 };
 struct ApplyBodyForce {
+  static constexpr bool moves_nothing = true;
   BodyId body;
   Vec3 force;
   bool at_center;
   Vec3 at;  ///< unless at the center of mass
 };
 struct ApplyBodyTorque {
+  static constexpr bool moves_nothing = true;
   BodyId body;
   Vec3 value;
 };

@@ -160,6 +160,10 @@ inline constexpr bool keeps_energy = requires { C::keeps_energy; };
 template <>
 inline constexpr bool keeps_energy<Destroy<GripId>> = true;
 
+/// Whether a command leaves everything where it is until the next step: forces, which scripts apply in each step.
+template <class C>
+inline constexpr bool moves_nothing = requires { C::moves_nothing; };
+
 /// The users' names of the queueable commands, each once: "combine, separate, ...".
 std::string queued_edits();
 

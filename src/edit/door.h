@@ -100,7 +100,7 @@ ResultOf<C> Door::make(const C& command) {
   if constexpr (!keeps_energy<C>) {
     editor_.held.note_change();
     editor_.model.has_edits = 1;
-    ++editor_.model.edits;
+    if constexpr (!moves_nothing<C>) ++editor_.model.edits;
   }
   if constexpr (std::is_void_v<ResultOf<C>>) {
     apply(editor_, command);

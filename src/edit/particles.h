@@ -24,6 +24,7 @@ struct SetMass {
   double value;
 };
 struct ApplyForce {
+  static constexpr bool moves_nothing = true;
   ParticleId particle;
   Vec3 value;
 };

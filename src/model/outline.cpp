@@ -92,10 +92,11 @@ void set_radius(Structure& structure, std::uint32_t body, double radius) {
 namespace iota {
 
 double usual_radius_of(std::vector<double> rods, double extent) {
+  std::erase_if(rods, [](double length) { return !std::isfinite(length); });
   constexpr double of_rods = 0.06, of_extent = 0.02, otherwise = 0.03;
   const auto middle = rods.begin() + static_cast<std::ptrdiff_t>(rods.size() / 2);
   std::ranges::nth_element(rods, middle);
-  if (middle != rods.end() && *middle > 0 && std::isfinite(*middle)) return of_rods * *middle;
+  if (middle != rods.end() && *middle > 0) return of_rods * *middle;
   return extent > 0 && std::isfinite(extent) ? of_extent * extent : otherwise;
 }
 

@@ -303,3 +303,52 @@ def test_bodies_that_are_drawn_alike_share_a_class(system: iota.System, chain: l
         world.draw(chain, "brass")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="kind must be one of spring, rope, rod, not 'bond'"):
         world.draw_ties("bond", looks.cylinder(0.01))  # type: ignore[arg-type]
+
+
+def test_a_body_of_particles_has_the_usual_radius_until_it_is_drawn_round_or_given_its_own() -> None:
+    system = iota.System()
+    rod, point, ball, box = system.body(), system.body(), system.body(), system.body(shape=iota.Box((1, 1, 1)))
+    rod.particle((0, 0, 0))
+    rod.particle((0, 2, 0))
+    point.particle((5, 0, 0))
+    ball.particle((6, 0, 0)).radius = 0.3
+    assert system.usual_radius == pytest.approx(0.12)
+    assert [rod.radius, point.radius, ball.radius, box.radius] == pytest.approx([0.12, 0.24, 0.3, 0])
+    world = iota.World(system, ground=None)
+    world.draw([rod, point, ball, box], {"rope": looks.capsule(0.05, "rope"), "chain": looks.torus(0.1, 0.02)})
+    assert [rod.radius, point.radius, ball.radius, box.radius] == [0.05, 0.05, 0.3, 0]
+    world.draw(rod, looks.solid("brass"))
+    assert rod.radius == 0.05, "this look is not round"
+    rod.radius = 0.5
+    hit = world.queries.ray((3, 1, 0), (-1, 0, 0))
+    assert hit is not None and hit.body == rod and hit.point.x == pytest.approx(0.5, abs=1e-5)
+    system.usual_radius = 0.2
+    assert rod.radius == 0.5
+    again = iota.System()
+    again.restore(system.snapshot())
+    assert [body.radius for body in again.bodies] == [0.5, 0.05, 0.3, 0]
+    assert again.usual_radius == 0.2
+    with pytest.raises(ValueError, match="given by shape"):
+        box.radius = 1
+    for bad in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="radius"):
+            rod.radius = bad
+        with pytest.raises(ValueError, match="usual_radius"):
+            system.usual_radius = bad
+
+
+def test_a_radius_that_is_assigned_during_a_step_holds_after_it() -> None:
+    system = iota.System()
+    body = system.body()
+    body.particle((0, 0, 0))
+    end, other = body.particle((0, 1, 0)), system.body().particle((0, 2, 0))
+    during = []
+
+    def force(bond: iota.Bond) -> tuple[float, float, float]:
+        body.radius = 0.4
+        during.append(body.radius)
+        return 0, 0, 0
+
+    system.bond(end, other, force)
+    system.step(0.01)
+    assert during == [system.usual_radius] and body.radius == 0.4

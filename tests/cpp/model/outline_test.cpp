@@ -27,6 +27,7 @@ TEST(BodyRadius, the_usual_radius_is_of_the_median_rod_or_else_of_the_extent) {
   EXPECT_DOUBLE_EQ(usual_radius_of({}, 2), 0.04);
   EXPECT_DOUBLE_EQ(usual_radius_of({3, 1, 100}, 2), 0.18);
   EXPECT_DOUBLE_EQ(usual_radius_of({0, 0, 0}, 2), 0.04);
+  EXPECT_DOUBLE_EQ(usual_radius_of({std::nan(""), 1, std::nan("")}, std::nan("")), 0.06);
   EXPECT_DOUBLE_EQ(usual_radius_of({}, std::nan("")), 0.03);
   System system;
   EXPECT_DOUBLE_EQ(system.usual_radius(), 0.03);
