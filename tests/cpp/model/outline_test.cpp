@@ -119,9 +119,12 @@ TEST(BodyRadius, the_radius_of_a_body_goes_to_its_pieces_is_undone_and_saved) {
   (void)system.particles().create(bar, {3, 0, 0});
   system.bodies().set_radius(bar, 0.3);
   const std::vector<ParticleId> points = system.bodies().particles(bar);
-  system.edits().begin();
-  (void)system.edits().separate(points[1], points[2]);
-  (void)system.edits().end();
+  std::vector<CosmeticBondId> bonds;
+  for (int i = 1; i < 4; ++i) bonds.push_back(system.cosmetic_bonds().create(points[i - 1], points[i]));
+  (void)system.edits().separate(points[2], points[3]);
+  ASSERT_EQ(system.bodies().ids().size(), 2u);
+  system.cosmetic_bonds().destroy(bonds[0]);
+  ASSERT_EQ(system.bodies().ids().size(), 3u);
   for (const BodyId piece : system.bodies().ids()) EXPECT_EQ(system.bodies().radius(piece), 0.3);
   const Snapshot saved = system.snapshot();
   system.edits().begin();
