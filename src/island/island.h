@@ -139,7 +139,7 @@ class Island {
                                                 std::vector<std::uint32_t>& node_of_ring);
   void remove_nodes(std::vector<std::uint32_t>);
 
-  /// What the latest try has to store.
+  /// The kind of the latest try: it tells what a commit has to store.
   enum class Tried : std::uint8_t {
     nothing,
     still,       ///< it sleeps, or nothing moves it

@@ -178,7 +178,7 @@ class Integrator {
   std::vector<std::uint32_t> piece_of_;  // of each node
   DisjointSets room_for_pieces_;
 
-  // What the latest `advance` began with; see take_back.
+  // The state with which the latest `advance` began; see take_back.
   bool has_advanced_ = false, is_taken_back_ = false;  // since the last change of structure
   bool may_have_been_in_pieces_ = false;
   std::size_t piece_count_before_ = 0;

@@ -11,8 +11,8 @@ struct RowEquation {
   double value, softness;
 };
 
-/// Of row r of item i, where its value is g. In the mid-point scheme a spring uses its mean stretch, so that its energy
-/// is kept exactly.
+/// The equation of row r of item i, where its value is g. In the mid-point scheme a spring uses its mean stretch, so that
+/// its energy is kept exactly.
 template <class C>
 RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, double g, const Stage& stage) {
   const RowLaw& law = pool.law(i)[r];
@@ -26,8 +26,8 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   return {g + ((1 - part) * stiffness - damping) / total * before, 1 / total};
 }
 
-/// Of the rows of a cone, where their values are g; `mobilities`: sum |G|^2 / m of each. Positions and impulses, on which
-/// finite forces have no effect, have no friction.
+/// The equations of a cone's rows, where their values are g; `mobilities`: sum |G|^2 / m of each. Positions and impulses, on
+/// which finite forces have no effect, have no friction.
 template <ConeConstraint C>
 ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const double* g, const double* mobilities,
                            const Stage& stage) {

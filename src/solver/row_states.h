@@ -21,7 +21,7 @@ class RowStates {
   bool is_equation(std::size_t row) const { return rows_.empty() || rows_[row].side == 0; }
   /// Whether it was at a bound at the start of the (sub-)step and is an equation now: a rope that is taut now.
   bool has_been_met(std::size_t row) const { return rows_[row].side == 0 && rows_[row].side_before != 0; }
-  /// Of a cone with three rows from this one on, the last of them along its tangent.
+  /// The state of a cone with three rows from this one on, the last of them along its tangent.
   ConeState cone(std::size_t first) const {
     const Row &normal = rows_[first], &tangent = rows_[first + 2];
     if (normal.side != 0) return {ConeState::Mode::open};

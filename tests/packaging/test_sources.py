@@ -144,7 +144,6 @@ TESTED_ELSEWHERE = {
     "held/bond_batches": "held/bonds_test.cpp: one force, written in each way",
     "ingredient/fields": "held/fields_test.cpp, model/audit_test.cpp",
     "ingredient/model": "ingredient/ingredient_list_test.cpp: all folds see an added ingredient",
-    "island/island": "every test of a step; step/step_contract_test.cpp, island/island_follow_test.cpp",
     "net/connection": "net/server_test.cpp, over real sockets",
     "solver/diagnosis": "island/diagnose_test.cpp, by numbers worked out by hand",
     "solver/general/kinsol": "solver/general/solver_test.cpp, which tests each solver of a build",

@@ -15,7 +15,7 @@ struct TwoTriangles {
   LanesOf<2>::Type value;
 };
 
-/// Of a matrix: the lower triangle alone, or both.
+/// The values of a matrix that are stored: those of the lower triangle alone, or of both.
 enum class Storage : std::uint8_t { symmetric, general };
 
 /// Values of a matrix with a `BlockPattern`, and its factors in place: L D L' for symmetric matrices, L U (without
