@@ -427,15 +427,20 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       else
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
       if constexpr (is_mid_point) means.of_node(i, rows, directions);
+      const Vec3* in_rows = rows;
+      [[maybe_unused]] Vec3 of_cone[is_cone ? C::rows : 1];
+      if constexpr (is_cone) {
+        for (std::size_t r = 0; r < 3; ++r) {
+          const auto& by = cone.by_value[r];
+          of_cone[r] = by[0] * rows[0] + by[1] * rows[1] + by[2] * rows[2];
+        }
+        in_rows = of_cone;
+      }
       const auto& slot = slots.gradients[i];
       for (int r = 0; r < C::rows; ++r) {
         if constexpr (Laws && !is_cone)
           if (!pool.is_equation(k, r)) continue;
-        Vec3 in_row = rows[r];
-        if constexpr (is_cone) {
-          const auto& by = cone.by_value[static_cast<std::size_t>(r)];
-          in_row = by[0] * rows[0] + by[1] * rows[1] + by[2] * rows[2];
-        }
+        const Vec3& in_row = in_rows[r];
         const Vec3& in_column = is_mid_point ? directions[r] : rows[r];
         const Vec3& below = slot.lower_is_row ? in_row : in_column;
         double* const l = (slot.in_diagonal ? diagonals : lower) + slot.offset + r * slot.row_stride;
