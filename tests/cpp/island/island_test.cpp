@@ -2,6 +2,7 @@
 // A step that is tried, and stored only when it is committed.
 #include "island/island.h"
 
+#include "edit/nails.h"
 #include "edit/separate.h"
 #include "scenes/chain.h"
 #include "scenes/net.h"
@@ -58,13 +59,13 @@ void build_sleepers(System& system) {
   (void)scenes::make_chain(system, {.links = 4, .top = {3, 0, 0}});
 }
 
-/// Is cut in the middle, which both halves follow in one problem.
-void build_chain(System& system) { (void)scenes::make_chain(system, {.links = 40, .direction = {0.6, -0.8, 0}}); }
+/// Long enough to follow an edit in place: a cut in the middle leaves both halves in one problem.
+void build_chain(System& system) { (void)scenes::make_chain(system, {.links = 80, .direction = {0.6, -0.8, 0}}); }
 void cut_chain(Core& core, int step) {
   if (step != 4) return;
   std::vector<ParticleId> ring;
   core.model.rings.for_each([&](std::uint32_t, const model::Ring& r) {
-    if (r.count != 2 || !ring.empty() || norm(r.position) < 2) return;
+    if (r.count != 2 || !ring.empty() || norm(r.position) < 4) return;
     const std::uint32_t next = core.model.particles[r.first].next_in_ring;
     ring = {core.model.particles.id(r.first), core.model.particles.id(next)};
   });
@@ -72,11 +73,23 @@ void cut_chain(Core& core, int step) {
   (void)core.execute(edit::Separate{ring[0], ring[1]});
 }
 
+/// Is nailed in the middle, and so may be in pieces until a step has looked.
+void nail_chain(Core& core, int step) {
+  if (step != 4) return;
+  std::uint32_t middle = model::none;
+  core.model.rings.for_each([&](std::uint32_t, const model::Ring& r) {
+    if (r.count == 2 && norm(r.position) > 4 && middle == model::none) middle = r.first;
+  });
+  ASSERT_NE(middle, model::none);
+  core.execute(edit::Nail{.particle = core.model.particles.id(middle), .in_place = true});
+}
+
 const Scene tried_scenes[] = {
     {"rows", 30, build_rows},
     {"conflict", 8, build_conflict},
     {"sleepers", 30, build_sleepers},
-    {"cut", 12, build_chain, cut_chain},
+    {"cut", 8, build_chain, cut_chain},
+    {"nailed", 8, build_chain, nail_chain},
     {"net", 4, [](System& system) { (void)scenes::make_net(system, {.side = 8}); }},
 };
 
