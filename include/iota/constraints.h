@@ -63,7 +63,7 @@ struct CoordinateOptions {
   double stiffness = 0;  ///< of a spring towards `rest`
   double damping = 0;
   double rest = 0;
-  /// Of the slide of a prismatic or cylindrical joint: dry friction of up to this times the reaction across the axis (Coulomb).
+  /// Coulomb friction, for the slide of a prismatic or cylindrical joint: up to this times the reaction across the axis.
   double friction_coefficient = 0;
 };
 

@@ -208,7 +208,7 @@ solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row) {
   if (law.is_compliant()) law.damping = c.compliance.time / law.compliance;
   return law;
 }
-/// Of its r-th row: along the tangent of a cone it has no value to hold.
+/// The law of its r-th row: along the tangent of a cone it has no value to hold.
 template <class Row>
 solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row, int r) {
   if constexpr (solver::ConeConstraint<Row>)
