@@ -2,6 +2,9 @@
 //
 // Breaking and rejoining a chain while it runs.
 #include "bench/engine/chain.h"
+#include "scenes/loose_bodies.h"
+
+#include <iota/step_times.h>
 
 #include <benchmark/benchmark.h>
 
@@ -131,6 +134,46 @@ void build(benchmark::State& state) {
   state.counters["links"] = links;
 }
 BENCHMARK(build)->Name("restructure/build")->Arg(8)->Arg(64)->Arg(512)->Arg(4096)->Arg(16384);
+
+/// Loose boxes of which a tenth of the ropes between neighbors changes in each step, and what share of the steps the
+/// islands and the patterns of their matrices take. 500 ropes leave islands of a few boxes; with 1350, half of all pairs
+/// of neighbors, most boxes are one island.
+void loose_bodies(benchmark::State& state, bool changes) {
+  System system({.gravity = {}, .mode = IntegrationMode::robust, .threads = 1});
+  scenes::LooseBodies loose(system, 10, static_cast<std::size_t>(state.range(0)));
+  StepTimes times;
+  for (int i = 0; i < 20; ++i) {
+    if (changes) loose.change(loose.ropes.size() / 10);
+    (void)system.step(1.0 / 120);
+  }
+  int iterations = 0, substeps = 0, unconverged = 0;
+  for (auto _ : state) {
+    if (changes) loose.change(loose.ropes.size() / 10);
+    const TimedSteps timed(times);
+    const StepReport report = system.step(1.0 / 120);
+    iterations = std::max(iterations, report.iterations_max), substeps = std::max(substeps, report.substeps_max);
+    unconverged += report.unconverged;
+  }
+  const double steps = static_cast<double>(state.iterations());
+  state.counters["step_ms"] = 1e3 * times.total() / steps;
+  state.counters["islands_ms"] = 1e3 * times.analyze / steps;
+  state.counters["share_of_islands"] = times.analyze / times.total();
+  state.counters["islands"] = static_cast<double>(system.islands().size());
+  state.counters["iterations_max"] = iterations, state.counters["substeps_max"] = substeps;
+  state.counters["unconverged"] = unconverged;
+}
+BENCHMARK_CAPTURE(loose_bodies, change, true)
+    ->Name("restructure/loose_bodies")
+    ->Arg(500)
+    ->Arg(1350)
+    ->Iterations(50)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(loose_bodies, stay, false)
+    ->Name("restructure/loose_bodies_tied")
+    ->Arg(500)
+    ->Arg(1350)
+    ->Iterations(50)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace iota::bench
