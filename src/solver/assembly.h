@@ -6,6 +6,7 @@
 #include "solver/stage.h"
 #include "solver/timed.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -82,7 +83,7 @@ class Assembly {
   void forget_factors() { factored_.reset(); }
   /// Whether a factorization costs much more than the rest of an iteration.
   bool is_dear() const { return factor_.is_dear(); }
-  const BlockPattern& pattern() const { return pattern_; }
+  const BlockPattern& pattern() const { return *pattern_; }
   BlockFactor& factor() { return factor_; }
 
  private:
@@ -124,7 +125,8 @@ class Assembly {
   void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
 
   StepTimes* times_ = nullptr;
-  BlockPattern pattern_;
+  std::shared_ptr<const BlockPattern> pattern_;  // small problems may share one: see PatternCache
+  std::shared_ptr<BlockPattern> own_pattern_;    // the same, if only this problem has it; else null
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;

@@ -4,6 +4,7 @@
 
 #include "base/slack.h"
 #include "solver/sparse/pattern_builder.h"
+#include "solver/sparse/pattern_cache.h"
 
 #include <algorithm>
 #include <limits>
@@ -15,12 +16,12 @@ template <class C>
 void Assembly::set_slots(ConstraintPool<C>& pool, std::size_t item, std::uint32_t unknown) const {
   auto& slots = pool.slots[item];
   const C& c = pool.items[item];
-  const auto where = pattern_.constraint_slot(pool.nodes_of(c), unknown, slots.gradients.data());
+  const auto where = pattern_->constraint_slot(pool.nodes_of(c), unknown, slots.gradients.data());
   slots.unknown = where.unknown, slots.diagonal = where.diagonal, slots.stride = where.stride;
   if constexpr (C::has_curvature)
     for (int a = 0, pair = 0; a < pool.items[item].node_count(); ++a)
       for (int b = a + 1; b < pool.items[item].node_count(); ++b, ++pair)
-        slots.pairs[pair] = pattern_.pair_slot(pool.items[item].nodes[a], pool.items[item].nodes[b]);
+        slots.pairs[pair] = pattern_->pair_slot(pool.items[item].nodes[a], pool.items[item].nodes[b]);
 }
 
 template <class F>
@@ -28,7 +29,7 @@ void Assembly::set_slots(ForcePool<F>& pool, std::size_t item) const {
   const ForceArm& arm = pool.items[item].arm;
   for (std::uint32_t a = 0, pair = 0; a < arm.count; ++a)
     for (std::uint32_t b = a + 1; b < arm.count; ++b, ++pair)
-      pool.slots[item].pairs[pair] = pattern_.pair_slot(arm.nodes[a], arm.nodes[b]);
+      pool.slots[item].pairs[pair] = pattern_->pair_slot(arm.nodes[a], arm.nodes[b]);
 }
 
 namespace {
@@ -61,10 +62,19 @@ void add_to(CouplingGraph& graph, const Problem& problem, Takes takes) {
   });
 }
 
-CouplingGraph graph_of(const Problem& problem) {
-  CouplingGraph graph;
+/// An empty graph of this thread, which keeps the room of small ones: small problems are compiled often.
+CouplingGraph& empty_graph(const Problem& problem) {
+  constexpr std::uint32_t most_kept = 1024;  // nodes
+  thread_local CouplingGraph graph;
+  if (graph.node_count > most_kept) graph = {};
   graph.node_count = static_cast<std::uint32_t>(problem.size());
-  graph.places = problem.position;
+  graph.couplings.clear(), graph.constraints.clear(), graph.nodes.clear(), graph.places.clear();
+  return graph;
+}
+
+CouplingGraph& graph_of(const Problem& problem) {
+  CouplingGraph& graph = empty_graph(problem);
+  graph.places.assign(problem.position.begin(), problem.position.end());
   std::size_t constraints = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
   graph.couplings.reserve(problem.mass_couplings.size());
@@ -77,7 +87,8 @@ CouplingGraph graph_of(const Problem& problem) {
 /// The nodes that a change concerns: touched ones, and those of their constraints.
 class Near {
  public:
-  explicit Near(const Problem& problem) : mark_(problem.size(), far) {
+  explicit Near(const Problem& problem) {
+    mark_.assign(problem.size(), far);
     for (const std::uint32_t node : problem.changes().touched) mark_[node] = touched;
     problem.for_each_constraint_pool([&](const auto& pool) {
       for (const auto& item : pool.items) {
@@ -95,8 +106,9 @@ class Near {
 
  private:
   enum Mark : std::uint8_t { far, near, touched };
-  std::vector<Mark> mark_;
+  static thread_local std::vector<Mark> mark_;
 };
+thread_local std::vector<Near::Mark> Near::mark_;
 
 /// Largest distance between the points of an arm, m.
 double calc_extent(const ForceArm& arm, const Vec3* x) {
@@ -131,9 +143,15 @@ double set_reference_lengths(Problem& problem) {
 
 void Assembly::compile(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
-  CouplingGraph graph = graph_of(problem);
-  pattern_.analyze(graph);
-  factor_.reset(pattern_);
+  CouplingGraph& graph = graph_of(problem);
+  own_pattern_ = nullptr;
+  pattern_ = PatternCache::of_thread().find(graph);
+  if (!pattern_) {
+    own_pattern_ = std::make_shared<BlockPattern>();
+    own_pattern_->analyze(graph);
+    pattern_ = own_pattern_;
+  }
+  factor_.reset(*pattern_);
   forget_factors();
   problem.fit_pools();
   auto constraint = graph.constraints.begin();
@@ -157,13 +175,13 @@ void Assembly::weigh(const Problem& problem) {
 }
 
 void Assembly::follow(Problem& problem) {
-  CouplingGraph graph;
-  graph.node_count = static_cast<std::uint32_t>(problem.size());
+  CouplingGraph& graph = empty_graph(problem);
   const Near near(problem);
   const auto is_near = [&](const auto& nodes) { return near.has_any(nodes); };
   add_to(graph, problem, is_near);
   const auto complete = [&] { add_to(graph, problem, [&](const auto& nodes) { return !is_near(nodes); }); };
-  const bool order_suits = PatternBuilder::follow_part(pattern_, graph, problem.changes(), complete);
+  if (!own_pattern_) pattern_ = own_pattern_ = std::make_shared<BlockPattern>(*pattern_);
+  const bool order_suits = PatternBuilder::follow_part(*own_pattern_, graph, problem.changes(), complete);
   problem.fit_pools();
   auto constraint = graph.constraints.begin();
   problem.for_each_constraint_pool([&](auto& pool) {
@@ -173,16 +191,16 @@ void Assembly::follow(Problem& problem) {
   problem.remove_nodes(problem.changes().removed);
   if (!order_suits) return compile(problem);
   reference_length_ = set_reference_lengths(problem);
-  factor_.grow();
+  factor_.grow(*pattern_);
   forget_factors();
   place_nodes(problem);
   weigh(problem);
-  const auto has_moved = [&](std::uint32_t node) { return pattern_.has_moved(node_unknown_[node]); };
+  const auto has_moved = [&](std::uint32_t node) { return pattern_->has_moved(node_unknown_[node]); };
   place_items(problem, [&](const auto& nodes, std::uint32_t unknown) {
     return std::any_of(nodes.begin(), nodes.end(), has_moved) ||
-           (unknown != CouplingGraph::no_unknown && pattern_.has_moved(unknown));
+           (unknown != CouplingGraph::no_unknown && pattern_->has_moved(unknown));
   });
-  pattern_.forget_moves();
+  own_pattern_->forget_moves();
   problem.note_compiled();
 }
 
@@ -195,7 +213,7 @@ bool Assembly::place_forces(Problem& problem) const {
       const ForceArm& arm = pool.items[i].arm;
       for (std::uint32_t a = 0; a < arm.count; ++a)
         for (std::uint32_t b = a + 1; b < arm.count; ++b)
-          are_coupled = are_coupled && pattern_.are_coupled(arm.nodes[a], arm.nodes[b]);
+          are_coupled = are_coupled && pattern_->are_coupled(arm.nodes[a], arm.nodes[b]);
       if (are_coupled) set_slots(pool, i);
     }
   });
@@ -206,7 +224,7 @@ bool Assembly::place_forces(Problem& problem) const {
 template <class IsDue>
 void Assembly::place_items(Problem& problem, IsDue is_due) {
   for (auto& c : problem.mass_couplings)
-    if (is_due(std::array{c.a, c.b}, CouplingGraph::no_unknown)) c.slot = pattern_.pair_slot(c.a, c.b);
+    if (is_due(std::array{c.a, c.b}, CouplingGraph::no_unknown)) c.slot = pattern_->pair_slot(c.a, c.b);
   problem.for_each_constraint_pool([&](auto& pool) {
     for (std::size_t i = 0; i < pool.items.size(); ++i)
       if (is_due(pool.nodes_of(pool.items[i]), pool.slots[i].unknown)) set_slots(pool, i, pool.slots[i].unknown);
@@ -222,11 +240,11 @@ void Assembly::place_nodes(const Problem& problem) {
   const auto make_room = [](std::size_t size, auto&... lists) { (resize_with_slack(lists, size), ...); };
   make_room(n, node_unknown_, node_diagonal_, node_stride_);
   for (std::uint32_t i = 0; i < n; ++i) {
-    node_unknown_[i] = pattern_.node_unknown(i);
-    node_diagonal_[i] = pattern_.node_diagonal(i);
-    node_stride_[i] = pattern_.node_stride(i);
+    node_unknown_[i] = pattern_->node_unknown(i);
+    node_diagonal_[i] = pattern_->node_diagonal(i);
+    node_stride_[i] = pattern_->node_stride(i);
   }
-  make_room(pattern_.unknown_count(), unknowns_);
+  make_room(pattern_->unknown_count(), unknowns_);
 }
 
 }  // namespace iota::solver

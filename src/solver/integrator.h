@@ -59,6 +59,8 @@ class Integrator {
     return runge_kutta_->velocities()[node] - h * runge_kutta_->accelerations()[node];
   }
 
+  /// The place of a node in the order of elimination of what is compiled.
+  std::uint32_t node_rank(std::uint32_t node) const { return newton_.node_rank(node); }
   void forget_factors() { newton_.forget_factors(); }                     ///< see Newton
   double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
 

@@ -58,6 +58,7 @@ class Newton {
   bool has_external() const { return external_ != nullptr; }
   /// The next step does not begin with the factors of the last one: it depends on nothing but the problem's state.
   void forget_factors() { assembly_.forget_factors(); }
+  std::uint32_t node_rank(std::uint32_t node) const { return assembly_.pattern().node_rank(node); }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what

@@ -26,6 +26,19 @@ void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size
 
 }  // namespace
 
+void Problem::clear() {
+  const auto clear = [](auto&... lists) { (lists.clear(), ...); };
+  clear(position, velocity, force, mass, damping, mass_couplings);
+  for_each_constraint_pool(
+      [&](auto& p) { clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held, p.slots); });
+  for_each_force_pool([&](auto& p) { clear(p.items, p.keys, p.slots); });
+  note_compiled();
+  gravity = origin = {};
+  has_new_rows = false;
+  standing_gap = 0, standing_steps = unsolved_steps = 0;
+  used_ = 0;
+}
+
 void Problem::add_nodes(std::size_t count) {
   const std::size_t n = size() + count;
   resize_with_slack(position, n), resize_with_slack(velocity, n), resize_with_slack(mass, n);
@@ -124,16 +137,15 @@ void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
   if (removed.empty()) return;
   std::vector<std::uint32_t> highest_first(removed.begin(), removed.end());
   std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
-  std::vector<std::uint32_t> number(size());
-  std::iota(number.begin(), number.end(), 0u);
+  std::vector<std::uint32_t> node_at(size()), number(size());  // the old number of each node, the new one of each old
+  std::iota(node_at.begin(), node_at.end(), 0u);
   for (const std::uint32_t node : highest_first) {
-    const auto last = static_cast<std::uint32_t>(size() - 1);
-    std::replace(number.begin() + last, number.end(), last, node);
     const auto take_last = [&](auto& list) {
       if (!list.empty()) list[node] = list.back(), list.pop_back();
     };
-    take_last(position), take_last(velocity), take_last(mass), take_last(damping);
+    take_last(position), take_last(velocity), take_last(mass), take_last(damping), take_last(node_at);
   }
+  for (std::uint32_t node = 0; node < node_at.size(); ++node) number[node_at[node]] = node;
   const auto renumber = [&](std::uint32_t& node) { node = number[node]; };
   for (auto& c : mass_couplings) renumber(c.a), renumber(c.b);
   for_each_constraint_pool([&](auto& pool) {

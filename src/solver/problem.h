@@ -158,6 +158,7 @@ struct Problem {
   /// are added as if the whole problem were built again (other items are refused, as they exist already); nodes without
   /// items are marked for removal. `follow` then updates the pattern.
   ///@{
+  void clear();                       ///< as a new one, but for the room of its lists
   void add_nodes(std::size_t count);  ///< without mass
   void add_mass(std::uint32_t node, double m) {
     if (is_open(node)) mass[node] += m;

@@ -52,7 +52,8 @@ void BlockFactor::reset(const BlockPattern& pattern) {
   size_fronts();
 }
 
-void BlockFactor::grow() {
+void BlockFactor::grow(const BlockPattern& pattern) {
+  pattern_ = &pattern;
   resize_with_slack(diagonals_, pattern_->diagonal_count());
   resize_with_slack(lower_, pattern_->lower_count());
   size_fronts();

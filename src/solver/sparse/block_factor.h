@@ -27,8 +27,8 @@ class BlockFactor {
   /// Whether a factorization costs several times as much as a solution: not on chains, but in nets and for many-point
   /// bodies.
   bool is_dear() const { return diagonals_.size() + lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
-  /// Resizes for a pattern that has followed a change.
-  void grow();
+  /// Resizes for a pattern that has followed a change, or for the changed copy of one.
+  void grow(const BlockPattern&);
 
   /// Sets all values to zero; in symmetric storage only the lower triangle is then filled.
   void clear(Storage);

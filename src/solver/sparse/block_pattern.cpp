@@ -10,10 +10,21 @@ namespace iota::solver {
 
 void BlockPattern::analyze(CouplingGraph& graph) {
   *this = {};
-  PatternBuilder(*this, graph).analyze();
+  PatternBuilder::of_thread(*this, graph).analyze();
   find_panels();
   find_leaves();
-  analyzed_fill_ = fill();
+  analyzed_work_ = calc_work(), analyzed_nodes_ = node_count();
+}
+
+// Of a factorization, in multiplications, up to a factor.
+double BlockPattern::calc_work() const {
+  double work = 0;
+  for (const Vertex& v : vertices_) {
+    double rows = v.pivot;
+    for (std::uint32_t e = v.first_entry; e < v.first_entry + v.entry_count; ++e) rows += entries_[e].width;
+    work += v.pivot * rows * rows;
+  }
+  return work;
 }
 
 bool BlockPattern::follow(CouplingGraph& graph, const GraphChange& change) {
@@ -22,11 +33,19 @@ bool BlockPattern::follow(CouplingGraph& graph, const GraphChange& change) {
 
 bool PatternBuilder::follow_part(BlockPattern& pattern, CouplingGraph& graph, const GraphChange& change,
                                  FunctionRef<void()> complete) {
-  constexpr std::uint32_t always_fine = 1024;  // values: not worth an analysis
-  PatternBuilder(pattern, graph).follow(change, complete);
+  PatternBuilder::of_thread(pattern, graph).follow(change, complete);
   pattern.find_panels();
   pattern.find_leaves();
-  return pattern.fill() <= 2 * pattern.analyzed_fill_ + always_fine;
+  // A kept order fits less and less. An analysis, with all that a problem must do then, costs about what two factorizations
+  // do, in heaps, and what a thousand multiplications a node do, in chains; a step takes about four factorizations. The
+  // order is made anew once it has cost as much.
+  const double always_fine = 20000 + 1000.0 * pattern.node_count();  // multiplications
+  const double growth =
+      std::max(1.0, static_cast<double>(pattern.node_count()) / std::max(1u, pattern.analyzed_nodes_));
+  const double usual = growth * pattern.analyzed_work_;
+  const double wasted = pattern.calc_work() - usual;
+  pattern.wasted_work_ = wasted > 0 ? pattern.wasted_work_ + wasted : 0;
+  return pattern.wasted_work_ <= 0.5 * usual + always_fine;
 }
 
 // From the last vertex down, each joins the panel that starts at its parent in the elimination tree, if that pads its
@@ -36,8 +55,15 @@ void BlockPattern::find_panels() {
   panels_.clear(), panel_vertices_.clear(), panel_of_.clear();
   if (std::none_of(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.is_wide(); })) return;
   const auto count = static_cast<std::uint32_t>(vertices_.size());
-  std::vector<std::uint32_t> next(count, no_panel);  // in its panel; itself: the last
-  std::vector<std::uint32_t> columns(count), below(count), begins(count, 1);
+  constexpr std::uint32_t most_kept = 1024;  // vertices: small patterns are made often
+  struct Room {
+    std::vector<std::uint32_t> next, columns, below, begins, first_of_last;
+  };
+  thread_local Room kept;
+  Room passing;
+  auto& [next, columns, below, begins, first_of_last] = count <= most_kept ? kept : passing;
+  next.assign(count, no_panel);  // in its panel; itself: the last
+  columns.assign(count, 0), below.assign(count, 0), begins.assign(count, 1);
   for (std::uint32_t v = count; v-- > 0;) {
     const Vertex& vertex = vertices_[v];
     std::uint32_t rows = 0;
@@ -52,7 +78,7 @@ void BlockPattern::find_panels() {
     next[v] = parent, columns[v] = columns[parent] + vertex.pivot, below[v] = below[parent];
   }
   panel_of_.assign(count, no_panel);
-  std::vector<std::uint32_t> first_of_last(count, no_panel);  // of panels with a wide vertex
+  first_of_last.assign(count, no_panel);  // of panels with a wide vertex
   for (std::uint32_t v = 0; v < count; ++v) {
     if (!begins[v]) continue;
     bool wide = false;

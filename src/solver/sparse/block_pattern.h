@@ -106,6 +106,8 @@ class BlockPattern {
   /// Number of used values in off-diagonal blocks: a measure of fill.
   std::uint32_t fill() const { return lower_storage_.used(); }
 
+  /// The place of a node in the order of elimination, among those of nodes and of rows by themselves.
+  std::uint32_t node_rank(std::uint32_t node) const { return node_vertex_[node]; }
   std::uint32_t node_unknown(std::uint32_t node) const { return vertices_[node_vertex_[node]].unknown; }
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
@@ -131,8 +133,11 @@ class BlockPattern {
   std::vector<std::uint32_t> panel_vertices_, panel_of_;
   BlockStorage diagonal_storage_, lower_storage_, unknown_storage_, entry_storage_, pair_storage_;
   std::uint32_t widest_front_ = 0;
-  std::uint32_t analyzed_fill_ = 0;  // of the latest analysis
-  std::vector<std::uint8_t> moved_;  // of each unknown
+  double calc_work() const;
+  double analyzed_work_ = 0;          // of the latest analysis
+  std::uint32_t analyzed_nodes_ = 0;  // its nodes
+  double wasted_work_ = 0;            // since then, see `follow_part`
+  std::vector<std::uint8_t> moved_;   // of each unknown
 };
 
 /// Nodes in order of elimination. Minimum degree, O(n) on trees; with much fill, nested dissection by places, O(n log^2

@@ -49,9 +49,12 @@ struct CouplingGraph {
 
 /// How a coupling graph has changed since its pattern was made.
 struct GraphChange {
+  /// Instead of a node to be beside: before all old ones, after those that were added to the front earlier.
+  static constexpr std::uint32_t front = 0xffffffff;
   struct NewNode {
-    std::uint32_t node;    ///< new nodes are numbered on from the old ones
-    std::uint32_t beside;  ///< the node right after which it is eliminated: an old one, or one added earlier
+    std::uint32_t node;  ///< new nodes are numbered on from the old ones
+    std::uint32_t
+        beside;  ///< the node right after which it is eliminated: an old one, or one added earlier; or `front`
   };
   std::vector<NewNode> added;
   std::vector<std::uint32_t> removed;       ///< nodes that nothing refers to any more

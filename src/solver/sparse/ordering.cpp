@@ -14,14 +14,17 @@ using Edge = std::array<std::uint32_t, 2>;
 
 /// Adjacency lists of an undirected graph without duplicates or loops, in one array.
 struct Adjacency {
-  std::vector<std::uint32_t> first, neighbors;
+  std::vector<std::uint32_t> first, neighbors, cursor;
 
-  Adjacency(std::uint32_t n, std::span<const Edge> edges) : first(n + 1, 0) {
+  Adjacency() = default;
+  Adjacency(std::uint32_t n, std::span<const Edge> edges) { set(n, edges); }
+  void set(std::uint32_t n, std::span<const Edge> edges) {
+    first.assign(n + 1, 0);
     for (auto [a, b] : edges)
       if (a != b) ++first[a + 1], ++first[b + 1];
     for (std::uint32_t i = 0; i < n; ++i) first[i + 1] += first[i];
     neighbors.resize(first[n]);
-    std::vector<std::uint32_t> cursor(first.begin(), first.end() - 1);
+    cursor.assign(first.begin(), first.end() - 1);
     for (auto [a, b] : edges)
       if (a != b) neighbors[cursor[a]++] = b, neighbors[cursor[b]++] = a;
     std::uint32_t write = 0;
@@ -46,15 +49,27 @@ struct Adjacency {
 // eliminations couple more than `most_pairs` pairs of neighbors.
 std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t own, std::span<const Edge> edges,
                                                 std::size_t most_pairs) {
-  const Adjacency graph(n, edges);
-  std::vector<std::uint32_t> degree(n);
-  std::vector<std::vector<std::uint32_t>> filled(n);  // lists changed by fill; empty: the graph's own
-  std::vector<std::uint8_t> eliminated(n, 0);
   struct Queue {
     std::vector<std::uint32_t> nodes;
     std::size_t next = 0;
   };
-  std::vector<Queue> buckets;  // by degree
+  struct Room {
+    Adjacency graph;
+    std::vector<std::uint32_t> degree, front, merged;
+    std::vector<std::vector<std::uint32_t>> filled;  // lists changed by fill; empty: the graph's own
+    std::vector<std::uint8_t> eliminated;
+    std::vector<Queue> buckets;  // by degree
+  };
+  constexpr std::uint32_t most_kept =
+      1024;  // nodes: there are many small graphs, and the lists of a large one are huge
+  thread_local Room kept;
+  Room passing;
+  auto& [graph, degree, front, merged, filled, eliminated, buckets] = n <= most_kept ? kept : passing;
+  graph.set(n, edges);
+  degree.resize(n), eliminated.assign(n, 0);
+  if (filled.size() < n) filled.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) filled[i].clear();
+  for (Queue& queue : buckets) queue.nodes.clear(), queue.next = 0;
   const auto push = [&](std::uint32_t node) {
     if (degree[node] >= buckets.size()) buckets.resize(degree[node] + 1);
     buckets[degree[node]].nodes.push_back(node);
@@ -65,7 +80,7 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t o
   for (std::uint32_t i = 0; i < n; ++i)
     if (i < own && degree[i] <= 1) push(i);
 
-  std::vector<std::uint32_t> order, front, merged;
+  std::vector<std::uint32_t> order;
   order.reserve(own);
   std::size_t lowest = 0, pairs = 0;
   while (order.size() < own) {
@@ -86,7 +101,10 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t o
       collect(graph.neighbors.begin() + graph.first[node], graph.neighbors.begin() + graph.first[node + 1]);
     else
       collect(filled[node].begin(), filled[node].end());
-    filled[node] = {};
+    if (n <= most_kept)
+      filled[node].clear();
+    else
+      filled[node] = {};
     pairs += front.size() * (front.size() + 1) / 2;
     if (pairs > most_pairs) return {};
 
@@ -104,7 +122,7 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t o
         else
           add_list(filled[neighbor].begin(), filled[neighbor].end());
         std::erase_if(merged, [&](std::uint32_t other) { return other == neighbor || eliminated[other]; });
-        filled[neighbor] = merged;
+        filled[neighbor].assign(merged.begin(), merged.end());
         degree[neighbor] = static_cast<std::uint32_t>(merged.size());
       }
       if (neighbor >= own) continue;

@@ -18,10 +18,11 @@ namespace iota::solver {
 ///   3. vertices: nodes with their rows, and separate rows, in order of elimination
 ///   4. fronts: for each vertex the later ones that its elimination couples, and storage for their blocks
 ///   5. targets: where the elimination of each vertex subtracts its products
-/// An analysis uses all nodes, following a change only the touched ones. An object is used once.
+/// An analysis uses all nodes, following a change only the touched ones.
 class PatternBuilder {
  public:
-  PatternBuilder(BlockPattern& pattern, CouplingGraph& graph) : pattern_(pattern), graph_(graph) {}
+  /// That of this thread, which keeps the room of small patterns: these are made too often to allocate it each time.
+  static PatternBuilder& of_thread(BlockPattern&, CouplingGraph&);
   void analyze();
   /// BlockPattern::follow of a graph that has no more than what couples with the touched nodes and with the nodes of their
   /// constraints; `complete` adds the rest behind it, and few changes spread so far that it is called.
@@ -29,6 +30,9 @@ class PatternBuilder {
                                         FunctionRef<void()> complete);
 
  private:
+  PatternBuilder() = default;
+  void begin(BlockPattern&, CouplingGraph&);
+  void end();
   void follow(const GraphChange&, FunctionRef<void()> complete);
 
   using Vertex = BlockPattern::Vertex;
@@ -52,7 +56,7 @@ class PatternBuilder {
 
   void make_all_vertices();
   void renew_vertices(const GraphChange&);
-  std::vector<std::uint32_t> list_changing_vertices(const GraphChange&) const;
+  void list_changing_vertices(const GraphChange&);
   std::uint32_t add_vertex(Vertex, bool is_resized);
   void add_own_rows_of(std::uint32_t node);
   void note_homes(std::size_t nodes);
@@ -75,8 +79,8 @@ class PatternBuilder {
   void note_moves(const GraphChange&);
   void renumber_nodes(const GraphChange&);
 
-  BlockPattern& pattern_;
-  CouplingGraph& graph_;
+  BlockPattern* pattern_ = nullptr;
+  CouplingGraph* graph_ = nullptr;
 
   // By node.
   std::uint32_t old_nodes_ = 0;               // how many are in the order that there is
@@ -88,7 +92,7 @@ class PatternBuilder {
   bool all_are_listed_ = false;               // or all
   std::vector<std::uint64_t> rank_of_added_;  // of each new node: see rank_of
 
-  /// New nodes in their order, each with the old vertex that they come after.
+  /// New nodes in their order, each with the number of old vertices that it comes after.
   struct Insertion {
     std::uint32_t after, node;
     friend auto operator<=>(const Insertion&, const Insertion&) = default;
@@ -118,7 +122,13 @@ class PatternBuilder {
   };
   std::vector<std::uint32_t> first_coupling_;
   std::vector<Coupling> couplings_;
-  std::vector<std::uint32_t> front_;  // scratch: later vertices, in order
+
+  // Scratch.
+  std::vector<std::uint32_t> front_;  // later vertices, in order
+  std::vector<std::uint32_t> scratch_, changing_;
+  std::vector<Vertex> old_vertices_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<std::pair<std::uint32_t, Coupling>> found_;
 };
 
 }  // namespace iota::solver

@@ -58,7 +58,7 @@ struct ChangingGraph {
   /// Half of what ends at a node ends at a new one instead.
   void split(std::uint32_t node, std::mt19937& random) {
     const std::uint32_t fresh = graph.node_count++;
-    change.added.push_back({fresh, node});
+    change.added.push_back({fresh, random() % 3 ? node : GraphChange::front});
     touch(node), touch(fresh);
     for (auto& c : graph.couplings)
       if ((c[0] == node || c[1] == node) && random() % 2) touch(c[0]), touch(c[1]), c[c[1] == node] = fresh;
@@ -136,7 +136,7 @@ TEST(BlockPattern, following_random_changes_factors_like_a_dense_matrix) {
     }
     followed += changing.followed, analyzed += changing.analyzed;
   }
-  EXPECT_GT(followed, 20 * analyzed);
+  EXPECT_GT(followed, 10 * analyzed);
 }
 
 /// What couples with touched nodes and with the nodes of their constraints, and then all the rest.
