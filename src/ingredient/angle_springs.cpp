@@ -150,7 +150,7 @@ void AngleSprings::drop(Model& model, std::uint32_t particle) {
 std::uint32_t AngleSprings::add(Model& model, const AngleSpring& spring) {
   for (const std::uint32_t particle : spring.particles) {
     ++model.particles[particle].uses;
-    model.touch_particle(particle);
+    model.touch_locally(model.particles[particle].body);
   }
   return model.angle_springs.create(spring);
 }
@@ -158,7 +158,7 @@ std::uint32_t AngleSprings::add(Model& model, const AngleSpring& spring) {
 void AngleSprings::remove(Model& model, std::uint32_t slot) {
   for (const std::uint32_t particle : model.angle_springs[slot].particles) {
     --model.particles[particle].uses;
-    model.touch_particle(particle);
+    model.touch_locally(model.particles[particle].body);
   }
   model.angle_springs.destroy(slot);
 }

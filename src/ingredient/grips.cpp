@@ -36,7 +36,7 @@ void Grips::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     // The nodes of another island may come and go meanwhile: islands are built in parallel.
-    if (!is_free(model.bodies[g.body].kind) || !map.nodes.has(g.body)) return;
+    if (!is_free(model.bodies[g.body].kind) || !map.nodes.has(model, g.body)) return;
     solver::GripForce force;
     for (std::uint32_t i = 0; i < g.count; ++i) {
       const std::uint32_t node = map.node_of(g.points[i]);

@@ -4,10 +4,14 @@
 #include "base/text.h"
 #include "ingredient/model.h"
 
+#include <functional>
+#include <numeric>
+
 namespace iota::ingredient {
 
-void IslandNodes::build(const Model& model, std::span<const std::uint32_t> articulates,
+void IslandNodes::build(const Model& model, std::span<const std::uint32_t> members,
                         std::vector<std::uint32_t>& node_of_ring) {
+  articulates.assign(members.begin(), members.end());
   // Lists that grow by doubling would waste a quarter of their memory.
   std::size_t body_count = 0, point_count = 0;
   for (const std::uint32_t a : articulates)
@@ -32,12 +36,21 @@ void IslandNodes::build(const Model& model, std::span<const std::uint32_t> artic
   for (const std::uint32_t p : carried) carriers.push_back(map.nodes_of(p));
 }
 
+bool IslandNodes::has(const Model& model, std::uint32_t body) const {
+  return std::binary_search(articulates.begin(), articulates.end(), model.bodies[body].articulate);
+}
+
 void IslandNodes::find_carried_again(const Model& model, std::span<const std::uint32_t> changed,
+                                     std::span<const std::uint32_t> left,
                                      const std::vector<std::uint32_t>& node_of_ring) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < carried.size(); ++i)
-    if (!std::binary_search(changed.begin(), changed.end(), model.particles[carried[i]].body))
-      carried[kept] = carried[i], carriers[kept] = carriers[i], ++kept;
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    const std::uint32_t body = model.particles[carried[i]].body;
+    const auto is_in = [&](std::span<const std::uint32_t> list) {
+      return std::binary_search(list.begin(), list.end(), body);
+    };
+    if (!is_in(changed) && !is_in(left)) carried[kept] = carried[i], carriers[kept] = carriers[i], ++kept;
+  }
   carried.resize(kept), carriers.resize(kept);
   const IslandMap map(model, *this, changed, node_of_ring);
   for (const std::uint32_t body : changed)
@@ -46,13 +59,20 @@ void IslandNodes::find_carried_again(const Model& model, std::span<const std::ui
     });
 }
 
-void IslandNodes::remove(std::uint32_t node) {
-  const auto last = static_cast<std::uint32_t>(rings.size() - 1);
+void IslandNodes::remove(std::span<const std::uint32_t> nodes) {
+  if (nodes.empty()) return;
+  std::vector<std::uint32_t> node_at(size()), number(size());  // the old number of each node, the new one of each old
+  std::iota(node_at.begin(), node_at.end(), 0u);
+  std::vector<std::uint32_t> highest_first(nodes.begin(), nodes.end());
+  std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
+  for (const std::uint32_t node : highest_first) {
+    const auto take_last = [&](auto& list) { list[node] = list.back(), list.pop_back(); };
+    take_last(rings), take_last(pinned), take_last(node_at);
+  }
+  for (std::uint32_t node = 0; node < node_at.size(); ++node) number[node_at[node]] = node;
   for (WeightedNodes& list : carriers)
     for (auto& [carrier, weight] : list)
-      if (weight != 0 && carrier == last) carrier = node;
-  rings[node] = rings.back(), pinned[node] = pinned.back();
-  rings.pop_back(), pinned.pop_back();
+      if (weight != 0) carrier = number[carrier];
 }
 
 std::string name_of_ring(const Model& model, std::uint32_t ring) {

@@ -22,21 +22,27 @@ using WeightedNodes = std::array<std::pair<std::uint32_t, double>, 4>;
 
 /// The unknown points of an island (its nodes), and the particles that follow from them.
 struct IslandNodes {
-  std::vector<std::uint32_t> bodies;    ///< with particles; none is inactive
-  std::vector<std::uint32_t> rings;     ///< of each node
-  std::vector<std::uint8_t> pinned;     ///< of each node: 1 if a nail, a static or a scripted body holds it
-  std::vector<std::uint32_t> carried;   ///< particles that are not nodes: affine combinations of their body's basis
-  std::vector<WeightedNodes> carriers;  ///< of each carried particle
+  std::vector<std::uint32_t> articulates;  ///< in order
+  std::vector<std::uint32_t> bodies;       ///< with particles; none is inactive
+  std::vector<std::uint32_t> rings;        ///< of each node
+  std::vector<std::uint8_t> pinned;        ///< of each node: 1 if a nail, a static or a scripted body holds it
+  std::vector<std::uint32_t> carried;      ///< particles that are not nodes: affine combinations of their body's basis
+  std::vector<WeightedNodes> carriers;     ///< of each carried particle
 
   /// `node_of_ring` has an entry for each ring of the model, `none` before and for rings outside of the island after.
   void build(const Model&, std::span<const std::uint32_t> articulates, std::vector<std::uint32_t>& node_of_ring);
-  /// Call it if the carried particles of some bodies (sorted) or their weights may have changed.
-  void find_carried_again(const Model&, std::span<const std::uint32_t> bodies,
+  void clear() {
+    articulates.clear(), bodies.clear(), rings.clear(), pinned.clear();
+    carried.clear(), carriers.clear();
+  }
+  /// Call it if the carried particles of some bodies (sorted) or their weights may have changed; `left`: bodies (sorted)
+  /// that are no longer here.
+  void find_carried_again(const Model&, std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> left,
                           const std::vector<std::uint32_t>& node_of_ring);
-  /// The last node takes the number of a removed node.
-  void remove(std::uint32_t node);
+  /// The last nodes take the numbers of removed ones, the highest first.
+  void remove(std::span<const std::uint32_t> nodes);
 
-  bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
+  bool has(const Model&, std::uint32_t body) const;
   std::size_t size() const { return rings.size(); }
   std::size_t pinned_count() const { return static_cast<std::size_t>(std::count(pinned.begin(), pinned.end(), 1)); }
   template <class Visit>
@@ -69,8 +75,8 @@ class IslandMap {
   const IslandNodes& nodes;
   std::span<const std::uint32_t> bodies;
 
-  /// Whether its items are to be added.
-  bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
+  /// Whether it is one of the bodies, which are in order if the island follows a change.
+  bool has(std::uint32_t body) const { return std::binary_search(bodies.begin(), bodies.end(), body); }
 
   /// The node of the ring of an island's particle; `none` if the particle is carried or its body inactive. Do not ask
   /// for those of other islands, which may be built at the same time.

@@ -67,8 +67,20 @@ void Joints::build(const IslandMap& map, Problem& problem) {
 }
 
 void Joints::leave(const IslandMap& map) {
+  const Model& model = map.model;
   const std::vector<std::uint32_t> again = active_joints_of(map);
-  const auto goes = [&](std::uint32_t slot) { return std::binary_search(again.begin(), again.end(), slot); };
+  // Some were destroyed, or belong to bodies that have left the island; a slot may have a new joint of other bodies.
+  const auto is_elsewhere = [&](const Constraint& c) {
+    for (const int side : {0, 1})
+      if (const std::uint32_t body = body_of_side(model, c, side); body != none) return !map.nodes.has(model, body);
+    return false;
+  };
+  const auto goes = [&](std::uint32_t slot) {
+    if (!model.constraints.is_alive(slot) || std::binary_search(again.begin(), again.end(), slot)) return true;
+    const Constraint& c = model.constraints[slot];
+    return !c.active ||
+           is_elsewhere(c.first_term == none ? c : model.constraints[model.coupled_terms[c.first_term].joint]);
+  };
   std::erase_if(joints_, goes), std::erase_if(pinned_, goes);
 }
 

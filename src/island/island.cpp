@@ -33,7 +33,6 @@ solver::IntegratorSettings settings_of(const Model& model) {
 
 Island::Island() : integrator_(std::make_unique<solver::Integrator>()) {}
 Island::~Island() = default;
-Island& Island::operator=(Island&&) noexcept = default;
 
 void MovedRings::put(Model& model, std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
   Ring& r = model.rings[ring];
@@ -51,12 +50,21 @@ void MovedRings::exchange(Model& model) {
   }
 }
 
+// It keeps the room of its lists: bodies that are tied and parted need new islands all the time.
+void Island::clear() {
+  nodes_.clear();
+  ingredients_ = {};
+  problem_.clear();
+  solver_name_ = {}, solver_.reset(), integrator_->set_external(nullptr);
+  idle_ = to_wake_ = is_still_ = has_stepped_ = false;
+  book_epoch_ = 0, last_ = {};
+}
+
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring) {
-  *this = Island{};
+  clear();
   nodes_.build(model, articulates, node_of_ring);
-  idle_ = std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
-                       [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
+  idle_ = has_no_free_body(model);
   problem_.add_nodes(nodes_.size());
   std::uint8_t owner = 0;
   for_each_ingredient([&](auto& i) { i.owner = ++owner; });
@@ -66,6 +74,11 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   integrator_->compile(problem_);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
   look_whether_still(model);
+}
+
+bool Island::has_no_free_body(const Model& model) const {
+  return std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
+                      [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
 }
 
 void Island::carry_along(Model& model, MovedRings& moved) {

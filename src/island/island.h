@@ -45,18 +45,29 @@ class Island {
  public:
   Island();
   ~Island();
-  Island& operator=(Island&&) noexcept;
 
   /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after.
   /// Islands have no ring in common, so they may be built in parallel with the same scratch.
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
 
-  /// Follows a change at some bodies and rings; its other bodies, and its set of bodies, are unchanged. In a fraction
-  /// of the time it is then as if assembled again, except for the order of elimination. False if so much changed that
-  /// it must be assembled.
-  bool follow(model::Model&, std::span<const std::uint32_t> articulates, const model::Model::LocalChange&,
+  /// A change of its bodies and of what acts on them.
+  struct Change {
+    model::Model::LocalChange local;          ///< bodies: changed and joined ones, in order
+    std::vector<std::uint32_t> left, joined;  ///< bodies, in order
+    std::vector<std::uint32_t> joined_rings;  ///< of islands that it takes over: in their order of elimination
+    void clear() {
+      local.bodies.clear(), local.rings.clear(), local.pulled.clear();
+      left.clear(), joined.clear(), joined_rings.clear();
+    }
+  };
+  /// Follows a change; `articulates`: those that it then has, in order. It is then as if assembled again, except for the
+  /// order of elimination: joined points are eliminated first, in their order, so that the rest of the matrix keeps its
+  /// places. This takes the time of what has changed. False if so much has changed that it must be assembled.
+  bool follow(model::Model&, std::span<const std::uint32_t> articulates, const Change&,
               std::vector<std::uint32_t>& node_of_ring, MovedRings&);
+  /// Appends the rings of its nodes in order of elimination.
+  void append_order(std::vector<std::uint32_t>& rings) const;
   /// Updates pulls that were added or removed: see Structure::touch_pull. False if it must be assembled.
   bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
@@ -133,11 +144,14 @@ class Island {
     return std::apply([&](const auto&... ingredient) { return (test(ingredient) || ...); }, ingredients_);
   }
 
+  void clear();
   Vec3 choose_origin(const model::Model&) const;
   bool has_finite_motion() const;
-  std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const model::Model::LocalChange&,
+  void add_node(const model::Model&, std::uint32_t ring, std::uint32_t beside,
+                std::vector<std::uint32_t>& node_of_ring);
+  std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const Change&,
                                                 std::vector<std::uint32_t>& node_of_ring);
-  void remove_nodes(std::vector<std::uint32_t>);
+  bool has_no_free_body(const model::Model&) const;
 
   /// The kind of the latest try: it tells what a commit has to store.
   enum class Tried : std::uint8_t {

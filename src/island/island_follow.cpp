@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An island that follows a local change: cuts and hinges, grips, closings, nails, damping.
+// An island that follows a change: cuts, hinges, ties, closings, nails, damping, and bodies that join or leave it.
 #include "island/island.h"
 
 #include "solver/integrator.h"
@@ -37,28 +37,48 @@ struct Around {
 
 }  // namespace
 
-bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Model::LocalChange& change,
+bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Change& change,
                     std::vector<std::uint32_t>& node_of_ring, MovedRings& moved) {
-  constexpr std::size_t part = 8;      // share of the nodes: if more of them change, a new assembly is as fast
+  constexpr std::size_t part = 3;      // share of the nodes: if more of them change, a new assembly is as fast
   if (idle_ || solver_) return false;  // another solver needs unknowns without gaps
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
+  nodes_.articulates.assign(articulates.begin(), articulates.end());
+  if (!change.left.empty())
+    std::erase_if(nodes_.bodies,
+                  [&](std::uint32_t body) { return std::binary_search(change.left.begin(), change.left.end(), body); });
+  nodes_.bodies.insert(nodes_.bodies.end(), change.joined.begin(), change.joined.end());
   const std::vector<std::uint32_t> changed = find_changed_nodes(model, change, node_of_ring);
   const bool are_few = changed.size() * part <= nodes_.size();
   if (are_few) {
     const Around around(model, articulates, nodes_, changed);
-    nodes_.find_carried_again(model, around.bodies, node_of_ring);
+    nodes_.find_carried_again(model, around.bodies, change.left, node_of_ring);
     problem_.open(changed);
+    std::vector<std::uint32_t> leaving(around.bodies);
+    leaving.insert(leaving.end(), change.left.begin(), change.left.end());
+    ingredient::sort_unique(leaving);
+    const ingredient::IslandMap before(model, nodes_, leaving, node_of_ring);
     const ingredient::IslandMap map(model, nodes_, around.bodies, node_of_ring);
-    for_each_ingredient([&](auto& i) { i.leave(map), i.build(map, problem_); });
+    for_each_ingredient([&](auto& i) { i.leave(before), i.build(map, problem_); });
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
-    remove_nodes(around.empty_nodes);
+    for (const std::uint32_t node : around.empty_nodes) problem_.mark_for_removal(node);
+    nodes_.remove(around.empty_nodes);
     integrator_->follow(problem_);
-    if (!change.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
+    idle_ = has_no_free_body(model);
+    if (!change.local.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
     carry_along(model, moved);
+    look_whether_still(model);
   } else {
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
   }
   return are_few;
+}
+
+void Island::append_order(std::vector<std::uint32_t>& rings) const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // rank and ring
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node)
+    order.push_back({integrator_->node_rank(node), nodes_.rings[node]});
+  std::sort(order.begin(), order.end());
+  for (const auto& [rank, ring] : order) rings.push_back(ring);
 }
 
 bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of_ring) {
@@ -69,28 +89,48 @@ bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of
   return integrator_->place_forces(problem_);
 }
 
-// The nodes of the rings that changed and of all particles of the bodies that changed. A particle without a node gets one,
-// beside that of the ring from which its own was split or of another particle of the body.
-std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Model::LocalChange& change,
+void Island::add_node(const Model& model, std::uint32_t ring, std::uint32_t beside,
+                      std::vector<std::uint32_t>& node_of_ring) {
+  node_of_ring[ring] = problem_.add_node_beside(beside);
+  nodes_.rings.push_back(ring), nodes_.pinned.push_back(model.is_pinned(ring));
+}
+
+// The nodes of the rings that changed and of all particles of the bodies that changed, joined or left, also of those that
+// are no longer unknowns: without a bond, or outside of a new basis. An unknown without a node gets one: in the order of the island that it comes from, beside that of the ring from which its own was split, or
+// beside another particle of the body.
+std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Change& change,
                                                       std::vector<std::uint32_t>& node_of_ring) {
   std::vector<std::uint32_t> changed;
-  for (const auto& [ring, split_from] : change.rings)
+  const auto is_needed = [&](std::uint32_t ring) {  // its bodies may have left, or it is one of other bodies meanwhile
+    bool any = false;
+    if (model.rings.is_alive(ring))
+      model.for_each_in_ring(ring, [&](std::uint32_t p) {
+        any = any || (model.is_unknown(model.particles[p]) && nodes_.has(model, model.particles[p].body));
+      });
+    return any;
+  };
+  for (const std::uint32_t ring : change.joined_rings)
+    if (node_of_ring[ring] == none && is_needed(ring)) add_node(model, ring, solver::GraphChange::front, node_of_ring);
+  for (const auto& [ring, split_from] : change.local.rings)
     if (node_of_ring[ring] != none) changed.push_back(node_of_ring[ring]);
-  for (const std::uint32_t body : change.bodies) {
+  for (const std::uint32_t body : change.left)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (const std::uint32_t node = node_of_ring[model.particles[p].ring]; node != none) changed.push_back(node);
+    });
+  for (const std::uint32_t body : change.local.bodies) {
     if (model.bodies[body].kind == BodyKind::inactive) continue;
-    std::uint32_t beside = 0;
+    std::uint32_t beside = solver::GraphChange::front;
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       if (const std::uint32_t node = node_of_ring[model.particles[p].ring]; node != none) beside = node;
     });
     model.for_each_particle_of(body, [&](std::uint32_t p) {
-      if (!model.is_unknown(model.particles[p])) return;
       const std::uint32_t ring = model.particles[p].ring;
       if (node_of_ring[ring] == none) {
-        for (const auto& [other, split_from] : change.rings)
+        if (!model.is_unknown(model.particles[p])) return;
+        for (const auto& [other, split_from] : change.local.rings)
           if (other == ring && split_from != none && node_of_ring[split_from] != none)
             beside = node_of_ring[split_from];
-        node_of_ring[ring] = problem_.add_node_beside(beside);
-        nodes_.rings.push_back(ring), nodes_.pinned.push_back(0);
+        add_node(model, ring, beside, node_of_ring);
       }
       changed.push_back(node_of_ring[ring]);
     });
@@ -98,15 +138,9 @@ std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const 
   ingredient::sort_unique(changed);
   for (const std::uint32_t node : changed) {
     const std::uint32_t ring = nodes_.rings[node];
-    nodes_.pinned[node] = model.rings.is_alive(ring) && model.is_pinned(ring);
+    nodes_.pinned[node] = is_needed(ring) && model.is_pinned(ring);
   }
   return changed;
-}
-
-// The last nodes take the numbers of removed ones, here and, when it follows, in the problem.
-void Island::remove_nodes(std::vector<std::uint32_t> nodes) {
-  std::sort(nodes.begin(), nodes.end(), std::greater<>());
-  for (const std::uint32_t node : nodes) problem_.mark_for_removal(node), nodes_.remove(node);
 }
 
 }  // namespace iota::island

@@ -11,94 +11,64 @@ using model::Model;
 using model::none;
 
 void Islands::forget() {
-  island_of_leader_.clear(), leader_of_.clear(), next_member_.clear(), is_waiting_.clear();
-  members_.clear(), is_member_.clear();
-  followed_.clear();
+  places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_.clear();
   free_particles_.forget();
   knows_all_ = false, order_is_old_ = true;
 }
 
 void Islands::renew() {
   renew_ = true;
-  for (const auto& island : island_of_leader_)
-    if (island) island->forget_factors();
+  for (const auto& home : home_of_leader_)
+    if (home) home->island.forget_factors();
 }
 
-// Its articulates will get a new one.
-void Islands::drop(std::uint32_t leader) {
-  island_of_leader_[leader].reset();
-  std::erase_if(followed_, [&](const Followed& f) { return f.leader == leader; });
-  for (std::uint32_t a = leader; a != none; a = next_member_[a]) {
-    leader_of_[a] = none;
-    if (!is_waiting_[a]) is_waiting_[a] = 1, waiting_.push_back(a);
+void Islands::wait(std::uint32_t articulate) {
+  Place& place = places_[articulate];
+  if (place.is_waiting) return;
+  place.is_waiting = true;
+  waiting_.push_back(articulate);
+}
+
+// Its articulates will get another one.
+void Islands::drop(Home& home) {
+  forget_suspects(home);
+  std::erase(changed_, &home);
+  for (const std::uint32_t a : home.articulates) {
+    places_[a].home = nullptr;
+    wait(a);
   }
+  retire(home.leader);
 }
 
-// With all articulates of its island.
-void Islands::put_on_waiting_list(std::uint32_t articulate) {
-  if (leader_of_[articulate] != none)
-    drop(leader_of_[articulate]);
-  else if (!is_waiting_[articulate])
-    is_waiting_[articulate] = 1, waiting_.push_back(articulate);
+Islands::Home& Islands::new_home(std::uint32_t leader) {
+  std::unique_ptr<Home>& home = home_of_leader_[leader];
+  if (spare_.empty())
+    home = std::make_unique<Home>();
+  else
+    home = std::move(spare_.back()), spare_.pop_back();
+  home->leader = leader;
+  return *home;
 }
 
-// `members_` become one island.
-void Islands::set_members(std::uint32_t leader) {
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    free_particles_.set(members_[m], false);
-    leader_of_[members_[m]] = leader;
-    next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
+void Islands::retire(std::uint32_t leader) {
+  constexpr std::size_t most_spare = 1024, most_points = 1024;
+  std::unique_ptr<Home> home = std::move(home_of_leader_[leader]);
+  home->clear();
+  if (spare_.size() < most_spare && home->island.size() <= most_points) spare_.push_back(std::move(home));
+}
+
+void Islands::set_leader(Home& home) {
+  auto holder = std::move(home_of_leader_[home.leader]);
+  home.leader = home.articulates.front();
+  home_of_leader_[home.leader] = std::move(holder);
+}
+
+void Islands::set_members(Home& home, std::span<const std::uint32_t> articulates) {
+  home.articulates.assign(articulates.begin(), articulates.end());
+  for (const std::uint32_t a : articulates) {
+    free_particles_.set(a, false);
+    places_[a].home = &home, places_[a].is_waiting = false;
   }
-}
-
-// Puts the articulates of an island's bodies into `members_`. False if a body is gone, or they have other bodies, too.
-bool Islands::find_members(const Island& island, const Model& model) {
-  for (const std::uint32_t a : members_) is_member_[a] = 0;
-  members_.clear();
-  std::size_t expected = 0;
-  for (const std::uint32_t body : island.bodies()) {
-    if (!model.bodies.is_alive(body)) return false;
-    const std::uint32_t a = model.bodies[body].articulate;
-    if (is_member_[a]) continue;
-    is_member_[a] = 1;
-    members_.push_back(a);
-    expected += model.articulates[a].count;
-  }
-  std::sort(members_.begin(), members_.end());
-  return expected == island.bodies().size();
-}
-
-// An island of which only a few bodies changed may follow. It then still contains parts that were cut off.
-bool Islands::follow(Model& model, std::uint32_t old_leader, MovedRings& moved) {
-  constexpr std::size_t smallest = 64;  // points: smaller ones are built anew as quickly
-  Island& island = *island_of_leader_[old_leader];
-  if (island.size() < smallest || !find_members(island, model)) return false;
-  const auto is_member = [&](std::uint32_t a) { return is_member_[a] != 0; };
-  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
-    if (!touched_.only_locally[i] && is_member(touched_.articulates[i])) return false;
-  change_.bodies.clear();
-  for (const std::uint32_t body : touched_.local.bodies)
-    if (model.bodies.is_alive(body) && is_member(model.bodies[body].articulate)) change_.bodies.push_back(body);
-  ingredient::sort_unique(change_.bodies);
-  change_.rings = touched_.local.rings, change_.pulled = touched_.local.pulled;
-  for (const std::uint32_t body : change_.bodies) make_ready(model, body);
-  ingredient::follow_bases(model);
-  if (!island.follow(model, members_, change_, node_of_ring_, moved)) return false;
-
-  auto holder = std::move(island_of_leader_[old_leader]);
-  for (std::uint32_t a = old_leader; a != none; a = next_member_[a]) leader_of_[a] = none;
-  const std::uint32_t leader = members_.front();
-  set_members(leader);
-  island_of_leader_[leader] = std::move(holder);
-  std::erase_if(followed_, [&](const Followed& f) { return f.leader == old_leader; });
-  followed_.push_back({leader, model.step});
-  return true;
-}
-
-// Parts that were cut off get their own islands after some steps without edits.
-bool Islands::is_due(const Followed& followed, const Model& model) const {
-  constexpr std::uint64_t calm = 120;  // steps
-  return renew_ || (followed.step + calm <= model.step && next_member_[followed.leader] != none);
 }
 
 // Prepares data and table rows of an island before the parallel build.
@@ -109,112 +79,389 @@ void Islands::make_ready(Model& model, std::uint32_t body) {
 
 bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) {
   model.take_touched(touched_);
+  const bool renews = std::exchange(renew_, false);
   if (!knows_all_) {
     touched_.articulates.clear();
     model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.articulates.push_back(a); });
     touched_.only_locally.assign(touched_.articulates.size(), 0);
     knows_all_ = true;
   }
+  waiting_.clear(), changed_.clear(), fresh_.clear();
+  if (renews)
+    for (const auto& home : home_of_leader_)
+      if (home && home->has_followed) drop(*home);
   const bool any_is_due =
-      std::any_of(followed_.begin(), followed_.end(), [&](const Followed& f) { return is_due(f, model); });
-  if (touched_.articulates.empty() && touched_.local.pulled.empty() && !any_is_due) return false;
+      std::any_of(suspected_.begin(), suspected_.end(), [&](const Home* home) { return is_due(*home, model); });
+  if (touched_.articulates.empty() && touched_.local.pulled.empty() && waiting_.empty() && !any_is_due) return false;
   order_is_old_ = awake_is_old_ = true;
-  const std::size_t slots = model.articulates.slot_count();
-  island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
-  is_waiting_.resize(slots, 0), is_member_.resize(slots, 0);
-  node_of_ring_.resize(model.rings.slot_count(), none);
+  places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
+  node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
 
-  follow_or_drop_touched(model, moved);
+  drop_touched(renews);
+  find_changed(model);
+  take_parts_out(model);
+  find_groups(model);
+  const bool any = group_count_ > 0;
+  settle_groups(model, moved);
   renew_pulls(model);
-  gather_waiting(model);
+  touched_.local.bodies.clear(), changed_.clear(), joins_.clear();
+  if (!waiting_.empty()) find_groups(model), settle_groups(model, moved);  // of homes that could not follow
   build_fresh(model, parallel, moved);
-  return !fresh_.empty();
+  note_suspects(model);
+  return any || !fresh_.empty();
 }
 
-// 1. Touched articulates, and all others of their islands, lose their island, unless it can follow.
-void Islands::follow_or_drop_touched(Model& model, MovedRings& moved) {
-  waiting_.clear();
-  for (const Followed& f : std::vector<Followed>(followed_))
-    if (is_due(f, model)) put_on_waiting_list(f.leader);
-  renew_ = false;
-  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
-    if (!touched_.only_locally[i]) put_on_waiting_list(touched_.articulates[i]);
-  std::vector<Island*> done;
+// 1. Homes with other than local changes are dropped. After a snapshot all changed ones are, as a restored system has
+// none of them.
+void Islands::drop_touched(bool all) {
   for (std::size_t i = 0; i < touched_.articulates.size(); ++i) {
+    if (touched_.only_locally[i] && !all) continue;
     const std::uint32_t a = touched_.articulates[i];
-    if (!touched_.only_locally[i] || leader_of_[a] == none) continue;
-    Island* const island = island_of_leader_[leader_of_[a]].get();
-    if (std::find(done.begin(), done.end(), island) != done.end()) continue;
-    if (follow(model, leader_of_[a], moved))
-      done.push_back(island);
+    if (Home* const home = places_[a].home)
+      drop(*home);
     else
-      put_on_waiting_list(a);
+      wait(a);
   }
-  for (const std::uint32_t a : touched_.articulates)  // made by a cut that no island followed
-    if (leader_of_[a] == none) put_on_waiting_list(a);
+}
+
+// 2. Homes that must follow local changes, with their present articulates. Small ones are dropped.
+void Islands::find_changed(const Model& model) {
+  for (const std::uint32_t a : touched_.articulates)
+    if (Home* const home = places_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
+  const std::vector<Home*> changed(changed_);
+  for (Home* const home : changed) find_members(model, *home);
+  for (const std::uint32_t a : touched_.articulates)  // made by a cut, of a home that was dropped
+    if (!places_[a].home) wait(a);
+}
+
+void Islands::note_changed(Home& home) {
+  if (std::exchange(home.is_changed, true)) return;
+  changed_.push_back(&home);
+}
+
+// Articulates of its bodies. Some are new, made by cuts; hinges have put bodies into those of other homes.
+void Islands::find_members(const Model& model, Home& home) {
+  const auto bodies = home.island.bodies();
+  if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return model.bodies.is_alive(body); }))
+    return drop(home);
+  for (const std::uint32_t a : home.articulates) places_[a].home = nullptr;
+  home.articulates.clear();
+  std::uint32_t elsewhere = none;  // the latest
+  for (const std::uint32_t body : bodies) {
+    const std::uint32_t a = model.bodies[body].articulate;
+    Place& place = places_[a];
+    if (place.home == &home || a == elsewhere) continue;
+    if (place.home || place.is_waiting)
+      joins_.push_back({&home, elsewhere = a});
+    else
+      place.home = &home, home.articulates.push_back(a);
+  }
+  if (home.articulates.empty()) return;
+  std::sort(home.articulates.begin(), home.articulates.end());
+  set_leader(home);
+}
+
+bool Islands::is_due(const Home& home, const Model& model) {
+  constexpr std::uint64_t patience = 120;  // steps
+  return home.suspected_at + patience <= model.step;
+}
+
+// 3. Parts that were cut off wait for homes of their own: small ones at once, so that of loose bodies the islands are
+// those of the present ties alone. A large part costs as much as an assembly, and a cut is often closed soon: it leaves
+// some steps after the cut, also if other cuts go on. Until then the solver needs no more time for it than it would by
+// itself, but what happens in one part may halve the step of both.
+void Islands::take_parts_out(const Model& model) {
+  constexpr std::size_t small = 16;  // bodies
+  for (const std::uint32_t a : touched_.articulates)
+    if (Home* const home = places_[a].home) home->touched.push_back(a);
+  for (Home* const home : changed_) {
+    take_parts_out(model, *home, home->touched, small);
+    home->touched.clear();
+  }
+  const std::vector<Home*> suspected(suspected_);
+  for (Home* const home : suspected) {
+    if (!is_due(*home, model)) continue;
+    std::vector<std::uint32_t> suspects(home->suspects);
+    forget_suspects(*home);
+    std::erase_if(suspects, [&](std::uint32_t a) { return places_[a].home != home; });
+    take_parts_out(model, *home, suspects, none);
+  }
+}
+
+void Islands::take_parts_out(const Model& model, Home& home, std::span<const std::uint32_t> suspects,
+                             std::size_t most_bodies) {
+  const auto is_member = [&](std::uint32_t a) { return places_[a].home == &home; };
+  const std::size_t before = home.leaving.size();
+  cut_search_.find(model, suspects, most_bodies, is_member, home.leaving);
+  if (home.leaving.size() == before) return;
+  for (const std::uint32_t a : home.leaving) places_[a].home = nullptr, wait(a);
+  std::erase_if(home.articulates, [&](std::uint32_t a) { return !is_member(a); });
+  set_leader(home);
+  note_changed(home);
+}
+
+std::uint32_t Islands::unit_of(Home& home) {
+  if (home.unit == none) {
+    home.unit = static_cast<std::uint32_t>(units_.size());
+    units_.push_back({&home, none, home.unit});
+  }
+  return home.unit;
+}
+
+// Of an articulate with a home, or that waits for one from now on.
+std::uint32_t Islands::unit_of(std::uint32_t articulate) {
+  Place& place = places_[articulate];
+  if (place.home && place.home->is_small()) drop(*place.home);
+  if (place.home) return unit_of(*place.home);
+  wait(articulate);
+  if (place.unit == none) {
+    place.unit = static_cast<std::uint32_t>(units_.size());
+    units_.push_back({nullptr, articulate, place.unit});
+  }
+  return place.unit;
+}
+
+std::uint32_t Islands::root_of(std::uint32_t unit) {
+  while (units_[unit].parent != unit) unit = units_[unit].parent = units_[units_[unit].parent].parent;
+  return unit;
+}
+
+// 4. What bonds and constraints tie together is solved together: a search from all that waits, and from all bodies of
+// homes that have changed.
+void Islands::find_groups(const Model& model) {
+  units_.clear();
+  const auto search = [&](std::uint32_t unit, std::uint32_t body) {
+    const Home* const own = units_[unit].home;
+    const auto reach = [&](std::uint32_t far) {
+      const std::uint32_t a = model.bodies[far].articulate;
+      if (a == units_[unit].articulate || (own && places_[a].home == own)) return;
+      const std::uint32_t with = unit_of(a);
+      units_[root_of(unit)].parent = root_of(with);
+    };
+    model.for_each_particle_of(body, [&](std::uint32_t p) { model.visit_tied(p, Model::Ties::all, reach); });
+  };
+  for (Home* const home : changed_) (void)unit_of(*home);
+  for (const auto& [home, articulate] : joins_)
+    if (places_[articulate].home != home) {
+      const std::uint32_t with = unit_of(articulate);
+      units_[root_of(unit_of(*home))].parent = root_of(with);
+    }
+  ingredient::sort_unique(touched_.local.bodies);
+  for (const std::uint32_t body : touched_.local.bodies)
+    if (model.bodies.is_alive(body))
+      if (Home* const home = places_[model.bodies[body].articulate].home) search(unit_of(*home), body);
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    const std::uint32_t a = waiting_[i];
+    Place& place = places_[a];
+    const bool is_alive = model.articulates.is_alive(a), is_free = is_alive && FreeParticles::is_free(model, a);
+    free_particles_.set(a, is_free);
+    if (!is_alive || is_free) {
+      place.is_waiting = false;
+      continue;
+    }
+    const std::uint32_t unit = unit_of(a);
+    model.for_each_body_of(a, [&](std::uint32_t body) { search(unit, body); });
+  }
+  waiting_.clear();
+  collect_groups(model);
+}
+
+Islands::Group& Islands::group_of(std::uint32_t unit) {
+  std::uint32_t& group = group_of_[root_of(unit)];
+  if (group == none) {
+    group = static_cast<std::uint32_t>(group_count_++);
+    if (groups_.size() < group_count_) groups_.emplace_back();
+    groups_[group].clear();
+  }
+  return groups_[group];
+}
+
+// The result does not depend on the order of discovery.
+void Islands::collect_groups(const Model& model) {
+  group_of_.assign(units_.size(), none);
+  group_count_ = 0;
+  for (std::uint32_t unit = 0; unit < units_.size(); ++unit)
+    if (Home* const home = units_[unit].home)
+      group_of(unit).homes.push_back(home);
+    else
+      group_of(unit).waiting.push_back(units_[unit].articulate);
+  for (const std::uint32_t body : touched_.local.bodies)
+    if (model.bodies.is_alive(body))
+      if (Home* const home = places_[model.bodies[body].articulate].home) group_of(home->unit).bodies.push_back(body);
+  for (const Unit& unit : units_) (unit.home ? unit.home->unit : places_[unit.articulate].unit) = none;
+  by_lowest_.clear();
+  for (std::uint32_t g = 0; g < group_count_; ++g) {
+    Group& group = groups_[g];
+    std::sort(group.homes.begin(), group.homes.end(),
+              [](const Home* x, const Home* y) { return x->leader < y->leader; });
+    std::sort(group.waiting.begin(), group.waiting.end());
+    group.lowest = std::min(group.homes.empty() ? none : group.homes.front()->leader,
+                            group.waiting.empty() ? none : group.waiting.front());
+    by_lowest_.push_back(g);
+  }
+  std::sort(by_lowest_.begin(), by_lowest_.end(),
+            [&](std::uint32_t x, std::uint32_t y) { return groups_[x].lowest < groups_[y].lowest; });
+}
+
+// 5. In each group the largest home follows, or all become a new one.
+void Islands::settle_groups(Model& model, MovedRings& moved) {
+  for (const std::uint32_t g : by_lowest_) {
+    const Group& group = groups_[g];
+    if (group.homes.empty()) {
+      Home& home = new_home(group.waiting.front());
+      set_members(home, group.waiting);
+      fresh_.push_back(&home);
+    } else if (!follow(model, group, moved)) {
+      for (Home* const home : group.homes) drop(*home);
+      for (const std::uint32_t a : group.waiting) places_[a].is_waiting = false, wait(a);
+    }
+  }
+}
+
+// The largest home takes the others over, at the cost of these.
+bool Islands::follow(Model& model, const Group& group, MovedRings& moved) {
+  Home& host = **std::max_element(group.homes.begin(), group.homes.end(),
+                                  [](const Home* a, const Home* b) { return a->island.size() < b->island.size(); });
+  std::vector<std::uint32_t>& members = members_;
+  members = group.waiting;
+  for (const Home* const home : group.homes)
+    members.insert(members.end(), home->articulates.begin(), home->articulates.end());
+  std::sort(members.begin(), members.end());
+  const auto is_member = [&](std::uint32_t a) { return std::binary_search(members.begin(), members.end(), a); };
+
+  Island::Change& change = change_;
+  change.clear();
+  std::size_t joined_points = 0;
+  const auto join = [&](std::uint32_t body) {
+    if (is_own_[body] || model.bodies[body].kind == BodyKind::inactive || model.bodies[body].count == 0) return;
+    change.joined.push_back(body);
+    joined_points += model.bodies[body].count;
+  };
+  const bool keeps_all = group.homes.size() == 1 && group.waiting.empty() && host.leaving.empty();
+  if (!keeps_all) {
+    for (const std::uint32_t body : host.island.bodies()) is_own_[body] = 1;
+    for (const std::uint32_t a : host.leaving)
+      if (!is_member(a))
+        model.for_each_body_of(a, [&](std::uint32_t body) {
+          if (is_own_[body]) change.left.push_back(body);
+        });
+    for (const Home* const home : group.homes) {
+      if (home == &host) continue;
+      home->island.append_order(change.joined_rings);
+      for (const std::uint32_t body : home->island.bodies())
+        if (is_member(model.bodies[body].articulate)) join(body);
+    }
+    for (const std::uint32_t a : group.waiting) model.for_each_body_of(a, join);
+    for (const std::uint32_t body : host.island.bodies()) is_own_[body] = 0;
+    ingredient::sort_unique(change.joined), ingredient::sort_unique(change.left);
+  }
+  std::size_t expected = 0;
+  for (const std::uint32_t a : members) expected += model.articulates[a].count;
+  if (expected != host.island.body_count() - change.left.size() + change.joined.size()) return false;
+  if (joined_points > host.island.size()) return false;
+
+  change.local.bodies = group.bodies;
+  change.local.bodies.insert(change.local.bodies.end(), change.joined.begin(), change.joined.end());
+  ingredient::sort_unique(change.local.bodies);
+  change.local.rings = touched_.local.rings, change.local.pulled = touched_.local.pulled;
+  for (const std::uint32_t body : change.local.bodies) make_ready(model, body);
+  ingredient::follow_bases(model);
+  if (!host.island.follow(model, members, change, node_of_ring_, moved)) return false;
+
+  host.leaving.clear(), host.is_changed = false, host.has_followed = true;
+  for (Home* const home : group.homes) {
+    if (home == &host) continue;
+    for (const std::uint32_t a : home->suspects) add_suspect(host, a, home->suspected_at);
+    std::erase(suspected_, home);
+    retire(home->leader);
+  }
+  set_members(host, members);
+  set_leader(host);
+  return true;
+}
+
+void Islands::add_suspect(Home& home, std::uint32_t articulate, std::uint64_t step) {
+  if (home.suspects.empty()) suspected_.push_back(&home), home.suspected_at = step;
+  home.suspected_at = std::min(home.suspected_at, step);
+  home.suspects.push_back(articulate);
+}
+
+void Islands::forget_suspects(Home& home) {
+  for (const std::uint32_t a : home.suspects) places_[a].is_suspect = false;
+  if (!home.suspects.empty()) std::erase(suspected_, &home);
+  home.suspects.clear();
+}
+
+// A cut touches articulates on both of its sides.
+void Islands::note_suspects(const Model& model) {
+  for (const std::uint32_t a : touched_.articulates) {
+    Home* const home = places_[a].home;
+    if (!home || !home->has_followed || home->articulates.size() == 1) continue;
+    if (!std::exchange(places_[a].is_suspect, true)) add_suspect(*home, a, model.step);
+  }
 }
 
 void Islands::renew_pulls(const Model& model) {
   for (const std::uint32_t body : touched_.local.pulled) {
     if (!model.bodies.is_alive(body)) continue;
-    const std::uint32_t a = model.bodies[body].articulate;
-    Island* const island = of_articulate(a);  // null: it will be built, with its pulls
-    if (island && !island->renew_pulls(model, node_of_ring_)) put_on_waiting_list(a);
+    Home* const home = places_[model.bodies[body].articulate].home;  // null: it will be built, with its pulls
+    if (home && !home->island.renew_pulls(model, node_of_ring_)) drop(*home);
   }
 }
 
-// 2. Articulates that implicit bonds and constraints tie together are solved together: a search from each.
-void Islands::gather_waiting(const Model& model) {
-  fresh_.clear();
-  for (std::size_t i = 0; i < waiting_.size(); ++i) {
-    if (!is_waiting_[waiting_[i]]) continue;  // an earlier search has found it
-    const bool alive = model.articulates.is_alive(waiting_[i]);
-    const bool free = alive && FreeParticles::is_free(model, waiting_[i]);
-    free_particles_.set(waiting_[i], free);
-    is_waiting_[waiting_[i]] = 0;
-    if (!alive || free) continue;
-    for (const std::uint32_t a : members_) is_member_[a] = 0;
-    members_.assign(1, waiting_[i]);
-    for (std::size_t next = 0; next < members_.size(); ++next)
-      model.for_each_body_of(members_[next], [&](std::uint32_t body) {
-        model.for_each_particle_of(body, [&](std::uint32_t p) {
-          const auto reach = [&](std::uint32_t far) {
-            const std::uint32_t a = model.bodies[far].articulate;
-            if (leader_of_[a] != none) drop(leader_of_[a]);
-            if (free_particles_.contains(a)) free_particles_.set(a, false), is_waiting_[a] = 1;  // no longer free
-            if (is_waiting_[a]) is_waiting_[a] = 0, members_.push_back(a);
-          };
-          model.visit_tied(p, Model::Ties::all, reach);
-        });
-      });
-    std::sort(members_.begin(), members_.end());  // so that the result does not depend on the order of discovery
-    set_members(members_.front());
-    fresh_.push_back(members_.front());
-  }
-}
-
-// 3. Each is built separately, in parallel if there are many.
+// 6. New ones are built separately, in parallel if there are many.
 void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& moved) {
-  for (const std::uint32_t leader : fresh_) {
-    island_of_leader_[leader] = std::make_unique<Island>();
-    for (std::uint32_t a = leader; a != none; a = next_member_[a])
+  for (const Home* const home : fresh_)
+    for (const std::uint32_t a : home->articulates)
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
-  }
   ingredient::follow_bases(model);
   std::vector<MovedRings> moved_by(fresh_.size(), MovedRings{.is_asked_for = moved.is_asked_for});
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
-    std::vector<std::uint32_t> members;
-    for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
-    Island& island = *island_of_leader_[fresh_[i]];
-    island.assemble(model, members, node_of_ring_);
-    island.carry_along(model, moved_by[i]);
+    fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_);
+    fresh_[i]->island.carry_along(model, moved_by[i]);
   });
   for (const MovedRings& part : moved_by)
     moved.before.insert(moved.before.end(), part.before.begin(), part.before.end());
 }
 
+void Islands::validate(const Model& model, model::Audit& audit) const {
+  if (!knows_all_ || model.is_touched()) return;
+  model.articulates.for_each([&](std::uint32_t a, const model::Articulate& articulate) {
+    const Home* const home = places_[a].home;
+    audit.require((home != nullptr) != free_particles_.contains(a), "articulate ", a, " is not in one island");
+    if (!home) return;
+    audit.require(std::binary_search(home->articulates.begin(), home->articulates.end(), a),
+                  "the island of articulate ", a, " does not know it");
+    for (std::uint32_t b = articulate.first; b != none; b = model.bodies[b].next_in_articulate)
+      model.for_each_particle_of(b, [&](std::uint32_t p) {
+        model.visit_tied(p, Model::Ties::all, [&](std::uint32_t far) {
+          audit.require(places_[model.bodies[far].articulate].home == home, "bodies ", b, " and ", far,
+                        " are tied, and in two islands");
+        });
+      });
+  });
+  for (std::uint32_t leader = 0; leader < home_of_leader_.size(); ++leader) {
+    const Home* const home = home_of_leader_[leader].get();
+    if (!home) continue;
+    audit.require(home->leader == leader && !home->articulates.empty() && home->articulates.front() == leader,
+                  "the island of leader ", leader, " has another leader");
+    std::size_t bodies = 0;
+    for (const std::uint32_t a : home->articulates) {
+      audit.require(places_[a].home == home, "articulate ", a, " is listed by an island that it is not in");
+      model.for_each_body_of(a, [&](std::uint32_t b) {
+        bodies += model.bodies[b].kind != BodyKind::inactive && model.bodies[b].count > 0;
+      });
+    }
+    audit.require(bodies == home->island.body_count(), "the island of leader ", leader, " has ",
+                  home->island.body_count(), " bodies, and its articulates ", bodies);
+    for (const std::uint32_t b : home->island.bodies())
+      audit.require(model.bodies.is_alive(b) && places_[model.bodies[b].articulate].home == home, "body ", b,
+                    " is in an island without its articulate");
+  }
+}
+
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
-  for (std::uint32_t& a : articulates) a = leader_of_[a];
+  for (std::uint32_t& a : articulates) a = places_[a].home ? places_[a].home->leader : none;
   std::sort(articulates.begin(), articulates.end());
   articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
   if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // free particles have no island
@@ -223,8 +470,8 @@ void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const 
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
     in_order_.clear();
-    for (const auto& island : island_of_leader_)
-      if (island) in_order_.push_back(island.get());
+    for (const auto& home : home_of_leader_)
+      if (home) in_order_.push_back(&home->island);
     order_is_old_ = false;
   }
   return in_order_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/parallel.h"
+#include "island/cut_search.h"
 #include "island/free_particles.h"
 #include "island/island.h"
 
@@ -9,7 +10,9 @@
 
 namespace iota::island {
 
-/// All islands of a model, rebuilt only if articulates or their ties changed: an edit costs what it touches.
+/// All islands of a model. They follow edits, and an edit costs what it touches: an island that is tied to others takes
+/// the smaller ones over, and a part that was cut off leaves it after some steps. It is assembled anew where too much of
+/// it has changed.
 class Islands {
  public:
   /// True if any was built, which may change carried particles slightly.
@@ -40,44 +43,110 @@ class Islands {
   ingredient::Book book(const model::Model&);
   /// Null for a free particle.
   Island* of_articulate(std::uint32_t articulate) const {
-    const std::uint32_t leader = leader_of_[articulate];
-    return leader == model::none ? nullptr : island_of_leader_[leader].get();
+    return places_[articulate].home ? &places_[articulate].home->island : nullptr;
   }
   /// Replaces a list of articulates by the leaders of their islands, each once, in order: a net of particles is one
   /// island with an articulate for each particle.
   void replace_by_leaders(std::vector<std::uint32_t>& articulates) const;
   FreeParticles& free_particles() { return free_particles_; }
+  /// Checks, if the model was not touched since the last update, that each active body is in one island or is a free
+  /// particle, that islands and their articulates agree, and that what is tied together is in one island.
+  void validate(const model::Model&, model::Audit&) const;
 
  private:
-  struct Followed {
-    std::uint32_t leader;
-    std::uint64_t step;  // of its last follow
+  static constexpr std::uint32_t none = model::none;
+
+  /// An island, and what the others have to know of it.
+  struct Home {
+    Island island;
+    std::uint32_t leader = none;             ///< the lowest of its articulates, after the latest update
+    std::vector<std::uint32_t> articulates;  ///< in order
+    std::vector<std::uint32_t> touched;      ///< in an update: those with changes
+    std::vector<std::uint32_t> leaving;      ///< in an update: those that it is about to lose
+    std::vector<std::uint32_t> suspects;     ///< those at which something may have been cut, each once
+    std::uint64_t suspected_at = 0;          ///< step of the first of these
+    std::uint32_t unit = none;               ///< while units are grouped
+    bool is_changed = false;                 ///< it must follow
+    bool has_followed = false;
+
+    void clear() {
+      articulates.clear(), touched.clear(), leaving.clear(), suspects.clear();
+      leader = unit = none, suspected_at = 0, is_changed = has_followed = false;
+    }
+    /// Whether it is assembled anew as quickly as it could follow.
+    bool is_small() const { return island.size() <= 24; }
+  };
+  struct Place {
+    Home* home = nullptr;
+    std::uint32_t unit = none;  ///< while units are grouped, of one that waits
+    bool is_waiting = false;    ///< for a home
+    bool is_suspect = false;    ///< listed by its home
+  };
+  /// A home, or an articulate that waits for one.
+  struct Unit {
+    Home* home;
+    std::uint32_t articulate, parent;
+  };
+  /// Units that are tied together, which become one island.
+  struct Group {
+    std::uint32_t lowest = none;  ///< of its articulates
+    std::vector<Home*> homes;
+    std::vector<std::uint32_t> waiting;  ///< articulates
+    std::vector<std::uint32_t> bodies;   ///< changed ones of its homes
+    void clear() { lowest = none, homes.clear(), waiting.clear(), bodies.clear(); }
   };
 
-  void drop(std::uint32_t leader);
-  void put_on_waiting_list(std::uint32_t articulate);
-  void set_members(std::uint32_t leader);
-  bool find_members(const Island&, const model::Model&);
-  bool follow(model::Model&, std::uint32_t leader, MovedRings&);
+  Home& new_home(std::uint32_t leader);
+  void retire(std::uint32_t leader);
+  void wait(std::uint32_t articulate);
+  void drop(Home&);
+  void set_leader(Home&);
+  void set_members(Home&, std::span<const std::uint32_t> articulates);
+  void note_changed(Home&);
+  void add_suspect(Home&, std::uint32_t articulate, std::uint64_t step);
+  void forget_suspects(Home&);
+  static bool is_due(const Home&, const model::Model&);
   static void make_ready(model::Model&, std::uint32_t body);
   void refresh_awake(const model::Model&);
-  bool is_due(const Followed&, const model::Model&) const;
-  void follow_or_drop_touched(model::Model&, MovedRings&);
-  void renew_pulls(const model::Model&);
-  void gather_waiting(const model::Model&);
-  void build_fresh(model::Model&, const Parallel&, MovedRings&);
 
-  // All by articulate slot. The leader of an island is the lowest of its articulates.
-  std::vector<std::unique_ptr<Island>> island_of_leader_;
-  std::vector<std::uint32_t> leader_of_;
-  std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
-  std::vector<std::uint8_t> is_waiting_;    // without an island
-  std::vector<std::uint8_t> is_member_;     // listed in `members_` by find_members
-  model::Model::Touched touched_;
-  std::vector<std::uint32_t> waiting_, members_, fresh_;
-  model::Model::LocalChange change_;  // of the island that follows
-  std::vector<Followed> followed_;    // islands that have followed
+  void drop_touched(bool all);
+  void find_changed(const model::Model&);
+  void find_members(const model::Model&, Home&);
+  void take_parts_out(const model::Model&);
+  void take_parts_out(const model::Model&, Home&, std::span<const std::uint32_t> suspects, std::size_t most_bodies);
+  void find_groups(const model::Model&);
+  void collect_groups(const model::Model&);
+  Group& group_of(std::uint32_t unit);
+  std::uint32_t unit_of(Home&);
+  std::uint32_t unit_of(std::uint32_t articulate);
+  std::uint32_t root_of(std::uint32_t unit);
+  void settle_groups(model::Model&, MovedRings&);
+  bool follow(model::Model&, const Group&, MovedRings&);
+  void renew_pulls(const model::Model&);
+  void build_fresh(model::Model&, const Parallel&, MovedRings&);
+  void note_suspects(const model::Model&);
+
+  // By articulate slot.
+  std::vector<Place> places_;
+  std::vector<std::unique_ptr<Home>> home_of_leader_;
+  std::vector<std::unique_ptr<Home>> spare_;  // with room for the next ones
+  std::vector<Home*> suspected_;              // homes with suspects
   bool renew_ = false;
+
+  // Of the present update.
+  model::Model::Touched touched_;
+  std::vector<std::uint32_t> waiting_, members_;
+  std::vector<Home*> changed_, fresh_;
+  std::vector<std::pair<Home*, std::uint32_t>> joins_;  // homes with a body of an articulate that is elsewhere
+  std::vector<Unit> units_;
+  std::vector<Group> groups_;             // the first ones; others keep their room
+  std::vector<std::uint32_t> group_of_;   // unit
+  std::vector<std::uint32_t> by_lowest_;  // of groups
+  std::size_t group_count_ = 0;
+  Island::Change change_;             // of the home that follows
+  std::vector<std::uint8_t> is_own_;  // by body slot, in the home that follows; zeros before and after
+  CutSearch cut_search_;
+
   std::vector<Island*> in_order_;
   std::vector<Island*> awake_;                       // of those in order
   std::size_t total_size_ = 0, largest_size_ = 0;    // of those awake, points

@@ -46,19 +46,14 @@ void Structure::touch(std::uint32_t articulate, Touch what) {
   touched = std::max(touched, what);
 }
 
-namespace {
-constexpr std::size_t most_local_changes = 1024;  // after more of them islands are rebuilt
-}
-
 void Structure::touch_locally(std::uint32_t body) {
   note_body(body);
   touch_rows(body);
 }
 
 void Structure::touch_rows(std::uint32_t body) {
-  const bool few = local_change_.bodies.size() < most_local_changes;
-  if (few) local_change_.bodies.push_back(body);
-  touch(bodies[body].articulate, few ? locally : anything);
+  if (local_change_.bodies.empty() || local_change_.bodies.back() != body) local_change_.bodies.push_back(body);
+  touch(bodies[body].articulate, locally);
 }
 
 void Structure::touch_pull(std::uint32_t body) {
@@ -68,18 +63,15 @@ void Structure::touch_pull(std::uint32_t body) {
 }
 
 void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
-  // If there is no room, the bodies of the ring are in islands that are rebuilt, so the ring is not needed.
-  if (local_change_.bodies.size() < most_local_changes || rings[ring].count == 0)
-    local_change_.rings.push_back({ring, split_from});
-  const bool few = local_change_.bodies.size() + rings[ring].count <= most_local_changes;
+  local_change_.rings.push_back({ring, split_from});
   std::uint32_t articulate = none;  // of all of them, unless they will be hinged
   for_each_in_ring(ring, [&](std::uint32_t p) {
     const std::uint32_t body = particles[p].body;
-    if (few) local_change_.bodies.push_back(body);
+    local_change_.bodies.push_back(body);
     note_body(body);
     if (bodies[body].articulate == articulate) return;
     articulate = bodies[body].articulate;
-    touch(articulate, few ? locally : anything);
+    touch(articulate, locally);
   });
 }
 

@@ -69,7 +69,7 @@ TEST(IslandNodes, keep_carrying_when_a_node_is_removed) {
     };
     const bool was_used[] = {carries(0, removed), carries(1, removed)};
     ASSERT_TRUE(carries(0, 4)) << "the last node, which takes the number of the removed one";
-    c.nodes.remove(removed);
+    c.nodes.remove(Slots{removed});
     ASSERT_EQ(c.nodes.size(), 4u);
     if (removed < 4) EXPECT_EQ(c.nodes.rings[removed], rings[4]) << "the last node takes its number";
     for (std::size_t i = 0; i < 2; ++i)
@@ -82,10 +82,10 @@ TEST(IslandNodes, find_the_carried_particles_of_a_changed_body_again) {
   // A bond makes the first of them an unknown of its own.
   const std::uint32_t inner = c.nodes.carried[0], other = c.nodes.carried[1];
   ++c.small.model.particles[inner].uses;
-  c.nodes.find_carried_again(c.small.model, Slots{c.body}, c.node_of_ring);
+  c.nodes.find_carried_again(c.small.model, Slots{c.body}, {}, c.node_of_ring);
   EXPECT_EQ(c.nodes.carried, Slots{other});
   --c.small.model.particles[inner].uses;
-  c.nodes.find_carried_again(c.small.model, Slots{c.body}, c.node_of_ring);
+  c.nodes.find_carried_again(c.small.model, Slots{c.body}, {}, c.node_of_ring);
   EXPECT_EQ(c.nodes.carried, (Slots{inner, other}));
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(norm(c.place(i) - c.small.model.position(c.nodes.carried[i])), 1e-15);
 }

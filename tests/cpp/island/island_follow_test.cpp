@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large islands follow edits in place; what comes out is what islands give that are built anew.
 #include "scenes/chain.h"
+#include "scenes/loose_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -218,6 +219,50 @@ TEST(FollowingIsland, replays_to_the_same_bits_from_a_snapshot_amid_the_cuts) {
   const Recording recording = world.system.record().stop();
   System other;
   EXPECT_EQ(other.record().replay(recording), std::nullopt);
+}
+
+/// Boxes that are tied and parted: with few ropes in islands of some boxes, with many most of them in one.
+struct BusyBoxes {
+  System system{{.gravity = {}, .mode = IntegrationMode::robust}};
+  scenes::LooseBodies boxes;
+  std::size_t changes;
+  BusyBoxes(std::size_t ropes, std::size_t changes) : boxes(system, 5, ropes), changes(changes) {}
+  StepReport step() {
+    boxes.change(changes);
+    return system.step(1.0 / 120);
+  }
+};
+
+TEST(FollowingIsland, of_loose_bodies_that_are_tied_and_parted_gives_what_islands_that_are_built_anew_give) {
+  for (const std::size_t ropes : {60u, 160u}) {
+    for (const std::size_t changes : {ropes / 10, std::size_t{2}}) {
+      BusyBoxes followed(ropes, changes), renewed(ropes, changes);
+      for (int step = 0; step < 60; ++step) {
+        (void)renewed.system.snapshot();  // builds all islands anew
+        const StepReport a = followed.step(), b = renewed.step();
+        ASSERT_EQ(a.unconverged + b.unconverged, 0);
+        ASSERT_EQ(followed.system.islands().size(), renewed.system.islands().size()) << "step " << step;
+        ASSERT_EQ(followed.system.validate(), std::vector<std::string>{});
+        for (std::size_t i = 0; i < followed.boxes.knots.size(); ++i)
+          ASSERT_LT(norm(followed.system.particles().position(followed.boxes.knots[i]) -
+                         renewed.system.particles().position(renewed.boxes.knots[i])),
+                    1e-9)
+              << ropes << " ropes, step " << step;
+      }
+    }
+  }
+}
+
+TEST(FollowingIsland, of_loose_bodies_replays_to_the_same_bits_from_a_snapshot_amid_the_changes) {
+  for (const std::size_t ropes : {60u, 160u}) {
+    BusyBoxes world(ropes, 4);
+    for (int i = 0; i < 10; ++i) (void)world.step();
+    world.system.record().start();
+    for (int i = 0; i < 20; ++i) (void)world.step();
+    const Recording recording = world.system.record().stop();
+    System other;
+    EXPECT_EQ(other.record().replay(recording), std::nullopt);
+  }
 }
 
 TEST(FollowingIsland, ends_with_an_island_for_each_piece) {

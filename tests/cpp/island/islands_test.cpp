@@ -25,7 +25,12 @@ struct Room {
   Islands islands;
   Parallel parallel{1};
 
-  void update() { (void)islands.update(m.model, parallel); }
+  void update() {
+    (void)islands.update(m.model, parallel);
+    model::Audit audit(m.model);
+    islands.validate(m.model, audit);
+    EXPECT_EQ(std::move(audit).complaints(), std::vector<std::string>{});
+  }
   Island* of(std::uint32_t body) const { return islands.of_articulate(m.model.bodies[body].articulate); }
   std::uint32_t bond(std::uint32_t a, std::uint32_t b) {
     ingredient::Bond spring;
@@ -126,6 +131,55 @@ TEST(Islands, follow_a_cut_in_place_also_in_chains_that_are_held_damped_or_closi
     closing.distance = 30, closing.duration = 1;
     ingredient::Closings::add(room.m.model, closing);
   }));
+}
+
+// A chain of 200 rods is a large island, a rod is a small one.
+TEST(Islands, take_smaller_ones_over_and_give_them_back) {
+  Room room;
+  const auto chain = room.m.chain(200), other = room.m.chain(60, {0, 9, 0});
+  const auto rods = room.rods(3);
+  room.update();
+  Island* const large = room.of(chain[0]);
+  const std::uint32_t bond = room.bond(chain[50], rods[0]);
+  (void)room.bond(rods[0], rods[1]);
+  room.update();
+  EXPECT_EQ(room.of(chain[0]), large);
+  EXPECT_EQ(room.of(rods[1]), large);
+  EXPECT_EQ(large->body_count(), 202u);
+  EXPECT_EQ(large->size(), 201u + 4u);
+  const std::uint32_t bridge = room.bond(other[59], chain[199]);
+  room.update();
+  EXPECT_EQ(room.of(other[0]), large) << "also of another large one";
+  EXPECT_EQ(large->body_count(), 262u);
+  ingredient::Bonds::remove(room.m.model, bond);
+  room.update();
+  EXPECT_EQ(room.of(chain[0]), large);
+  EXPECT_NE(room.of(rods[1]), large) << "a small part leaves at once";
+  EXPECT_EQ(room.of(rods[1]), room.of(rods[0]));
+  EXPECT_EQ(large->size(), 201u + 61u);
+  ingredient::Bonds::remove(room.m.model, bridge);
+  room.update();
+  EXPECT_EQ(room.of(other[0]), large) << "a large one stays for a while";
+}
+
+TEST(Islands, let_large_parts_go_some_steps_after_the_cut_while_other_cuts_go_on) {
+  Room room;
+  const auto chain = room.m.chain(200), other = room.m.chain(60, {0, 9, 0});
+  const auto rods = room.rods(1);
+  const std::uint32_t bridge = room.bond(other[59], chain[199]);
+  room.update();
+  Island* const large = room.of(chain[0]);
+  ingredient::Bonds::remove(room.m.model, bridge);
+  for (int step = 0; step < 130; ++step) {
+    const std::uint32_t bond = room.bond(chain[10], rods[0]);
+    room.update();
+    ingredient::Bonds::remove(room.m.model, bond);
+    ++room.m.model.step;
+    room.update();
+  }
+  EXPECT_EQ(room.of(chain[0]), large);
+  EXPECT_NE(room.of(other[0]), large);
+  EXPECT_EQ(room.islands.all().size(), 3u);
 }
 
 // Against a search through all bonds, over random bonds that come and go.

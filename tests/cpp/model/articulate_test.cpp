@@ -105,18 +105,6 @@ TEST(Touched, names_each_articulate_once_and_tells_local_changes_from_others) {
   EXPECT_EQ(touched.only_locally, std::vector<std::uint8_t>{0}) << "something else has changed, too";
 }
 
-TEST(Touched, of_very_many_rings_asks_for_a_problem_that_is_built_anew) {
-  SmallModel m;
-  const auto chain = m.chain(80);
-  constexpr int rounds = 10;
-  Model::Touched touched;
-  m.model.take_touched(touched);
-  for (int round = 0; round < rounds; ++round)
-    for (int i = 1; i < 80; ++i) m.model.touch_ring(m.model.particles[m.particle(chain[i], 0)].ring);
-  m.model.take_touched(touched);
-  EXPECT_EQ(touched.only_locally, std::vector<std::uint8_t>{0});
-}
-
 TEST(TiedBodies, are_those_that_hinges_and_implicit_bonds_connect) {
   SmallModel m;
   const auto left = m.chain(2), right = m.chain(2, {0, 3, 0}), apart = m.chain(1, {0, 6, 0});
