@@ -102,7 +102,7 @@ class Bodies : public View {
   bool is_active(BodyId) const;
   void set_active(BodyId, bool);
   void set_articulate_active(BodyId, bool);  ///< all bodies of its articulate
-  /// Of its lines, or of the ball of its only particle, m: with it the body is drawn, met by queries, and touches. The
+  /// The radius of its lines, or of the ball of its only particle, m. The body is drawn and met by queries with it. It is the
   /// body's own if it was set (a single particle's own: its attribute), or else System::usual_radius, twice that for a
   /// single particle. 0 for a body given by shape.
   double radius(BodyId) const;

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-/// What bodies touch with, where they are. Lengths in m, places in the world frame unless a function says otherwise.
+/// Outlines: the surfaces with which bodies touch, at their places. Lengths in m, places in the world frame unless a function says otherwise.
 namespace iota::contact {
 
 /// A shape with what questions about it need. It does not change, so that solids share it.

@@ -50,8 +50,7 @@ void Meshes::archive(Reader& reader) {
 std::string complaint_about(std::uint64_t key, const Mesh& mesh) {
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle)
-      if (vertex >= mesh.vertices.size())
-        return text("a triangle has vertex ", vertex, " of ", mesh.vertices.size());
+      if (vertex >= mesh.vertices.size()) return text("a triangle has vertex ", vertex, " of ", mesh.vertices.size());
   if (shape::Traits<Mesh>::key(mesh) != key) return "its key is not that of its content";
   try {
     (void)mass_properties(mesh);

@@ -58,8 +58,7 @@ void Stream::encrypt(boost::asio::ssl::context& context) {
 }
 
 void Stream::start_handshake(boost::asio::const_buffer read, DoneHandshake done) {
-  std::get<Encrypted>(*layer_).async_handshake(boost::asio::ssl::stream_base::server, read,
-                                              on_stream(std::move(done)));
+  std::get<Encrypted>(*layer_).async_handshake(boost::asio::ssl::stream_base::server, read, on_stream(std::move(done)));
 }
 
 void Stream::start_read(const FirstBuffers<boost::asio::mutable_buffer>& buffers, DoneSome done) {
@@ -71,7 +70,8 @@ void Stream::start_write(const FirstBuffers<boost::asio::const_buffer>& buffers,
 }
 
 void Stream::start_shutdown_send(Done done) {
-  if (auto* encrypted = std::get_if<Encrypted>(layer_.get())) return encrypted->async_shutdown(on_stream(std::move(done)));
+  if (auto* encrypted = std::get_if<Encrypted>(layer_.get()))
+    return encrypted->async_shutdown(on_stream(std::move(done)));
   error_code error;
   socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
   boost::asio::post(get_executor(), [done = std::move(done), error]() mutable { std::move(done)(error); });

@@ -91,7 +91,9 @@ class Stream {
 
   // Called by Beast's WebSocket, found by argument-dependent lookup.
   friend void beast_close_socket(Stream& stream) { stream.close(); }
-  friend void teardown(boost::beast::role_type role, Stream& stream, error_code& error) { stream.tear_down(role, error); }
+  friend void teardown(boost::beast::role_type role, Stream& stream, error_code& error) {
+    stream.tear_down(role, error);
+  }
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, Stream& stream, Handler&& handler) {
     stream.start_teardown(role, Done(std::forward<Handler>(handler)));

@@ -146,6 +146,12 @@ class PageClient:
     def send(self, message: str, /, **values: Any) -> None:
         self.socket.send(encode(message, **values))
 
+    def single_step(self) -> None:
+        """Pauses the world, and makes one step of it."""
+        before = self.last["poses"]["step"]
+        self.send("control", command=2, value=0)
+        self.wait_for(lambda: self.last["poses"]["step"] > before)
+
     def send_bytes(self, data: bytes) -> None:
         self.socket.send(data)
 

@@ -445,9 +445,7 @@ def test_a_carried_body_follows_the_hand_exactly_with_all_that_hangs_on_it_and_i
         page.wait_for(lambda: page.last["world_state"]["paused"])
         for step in range(1, 31):
             page.send("grab_move", hold=1, target=(grip[0] + 0.5 + 0.04 * step, grip[1] + 1.0, grip[2]))
-            now = page.last["poses"]["step"]
-            page.send("control", command=2, value=0)
-            page.wait_for(lambda now=now: page.last["poses"]["step"] > now)
+            page.single_step()
         page.send("grab_end", hold=1)
         page.send("control", command=1, value=0)
         page.wait_for(lambda: world.call(lambda: links[0].kind == "dynamic"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import pairwise
 
 from iota._core import Body, Constraint, JointCoordinate, System, Vec3
 from iota.world.drawings import Drawings
@@ -91,7 +92,7 @@ class JointMarks:
 
 
 def _limits(joint: Constraint, name: str) -> tuple[float, float] | None:
-    """Of a coordinate, rad or m; None: it has none, or the kind of joint has no such coordinate."""
+    """The limits of a coordinate, rad or m. None: it has none, or the kind of joint has no such coordinate."""
     coordinate: JointCoordinate | None = getattr(joint, name, None)
     return None if coordinate is None else coordinate.limits
 
@@ -110,4 +111,4 @@ def _sector(place: Vec3, axis: Vec3, arm: Vec3, low: float, high: float) -> list
     side = axis.cross(arm)
     angles = [low + (high - low) * i / count for i in range(count + 1)]
     rim = [place + arm * math.cos(angle) + side * math.sin(angle) for angle in angles]
-    return [*zip(rim, rim[1:], strict=False), (place, rim[0]), (place, rim[-1])]
+    return [*pairwise(rim), (place, rim[0]), (place, rim[-1])]

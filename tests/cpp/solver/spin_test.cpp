@@ -18,7 +18,6 @@
 namespace iota {
 namespace {
 
-
 BodyId add_bar(System& system, const Vec3& from, const Vec3& to) {
   const BodyId body = system.bodies().create();
   system.particles().create(body, from);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gravity.h"
 #include "step/edits.h"
+#include "gravity.h"
 
 #include <iota/system.h>
 

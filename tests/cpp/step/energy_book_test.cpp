@@ -16,7 +16,6 @@
 namespace iota {
 namespace {
 
-
 /// Two particles on a damped spring in empty space. The stretch is s(t) = s0 e^(-ct) (cos wt + c/w sin wt) with c = d / (2 mu);
 /// the dashpot has taken what the oscillator has no more.
 TEST(EnergyBook, counts_the_work_of_a_dashpot_as_dissipated_and_the_scheme_s_own_as_lost) {
