@@ -31,7 +31,7 @@ void CutSearch::find(const model::Model& model, std::span<const std::uint32_t> s
           break;
         }
       }
-  // What is open is the rest; if all are complete, the largest one is.
+  // The open flood is the rest; if all are complete, the largest one is.
   std::uint32_t rest = none;
   if (open_ == 0)
     for (std::uint32_t f = 0; f < suspects.size(); ++f)
@@ -71,7 +71,7 @@ void CutSearch::visit_next(const model::Model& model, std::uint32_t f, FunctionR
   });
 }
 
-// What both have visited comes first.
+// The bodies that both have visited come first.
 void CutSearch::join(std::uint32_t from, std::uint32_t into) {
   Flood &gone = floods_[from], &flood = floods_[into];
   const auto first = gone.found.begin(), unvisited = first + static_cast<std::ptrdiff_t>(gone.next);

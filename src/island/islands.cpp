@@ -208,7 +208,7 @@ std::uint32_t Islands::unit_of(Home& home) {
   return home.unit;
 }
 
-// Of an articulate with a home, or that waits for one from now on.
+// The unit of the home of an articulate, or of the articulate, which waits for one from now on.
 std::uint32_t Islands::unit_of(std::uint32_t articulate) {
   Place& place = places_[articulate];
   if (place.home && place.home->is_small()) drop(*place.home);

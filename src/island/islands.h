@@ -133,7 +133,7 @@ class Islands {
   std::vector<Home*> suspected_;              // homes with suspects
   bool renew_ = false;
 
-  // Of the present update.
+  // State of the present update.
   model::Model::Touched touched_;
   std::vector<std::uint32_t> waiting_, members_;
   std::vector<Home*> changed_, fresh_;

@@ -16,7 +16,7 @@ void BlockPattern::analyze(CouplingGraph& graph) {
   analyzed_work_ = calc_work(), analyzed_nodes_ = node_count();
 }
 
-// Of a factorization, in multiplications, up to a factor.
+// The multiplications of a factorization, up to a factor.
 double BlockPattern::calc_work() const {
   double work = 0;
   for (const Vertex& v : vertices_) {
