@@ -25,6 +25,8 @@ export const sharedBrowser = "IOTA_TEST_BROWSER";
 const flags = [
   "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist",
+  // Software composes the page faster itself than by the commands of a graphics card.
+  "--disable-gpu-compositing",
 ];
 
 export interface BrowserOptions {
@@ -49,8 +51,12 @@ type Draws = "always" | "asked" | "never";
 /** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
 export const small: BrowserOptions = { width: 640, height: 360 };
 
-/** For a page that draws less than always: leaves out the commands that fill pixels. What the processor does for a picture stays. */
+/** For a page that draws less than always: leaves out the commands that fill pixels, and the blur of what is behind a panel. What the
+ * processor does for a picture stays. */
 const drawLess = (isAsked: boolean) => {
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync("* { backdrop-filter: none !important; -webkit-backdrop-filter: none !important; }");
+  document.adoptedStyleSheets = [sheet];
   let inFrame = false;
   let isOnScreen = true;
   const nextFrame = globalThis.requestAnimationFrame;
