@@ -83,7 +83,8 @@ SHAPES = [
           # Elsewhere on the page a mesh is a drawn object of three.js.
           ("include", "src", "bindings", "python", "protocol", "web/src/scene/shape.ts", "web/src/scene/geometry.ts",
            "web/src/scene/mesh.ts", "web/src/scene/shapes")),
-    Thing("cone", ("cone",)),
+    # A cone of multipliers (friction) is another thing.
+    Thing("cone", ("=Cone", "cone shape", "shape cone", "cone geometry", "cone mesh", "=cone"), ("include", "src/shape", "bindings", "python", "web", "protocol")),
     Thing("ellipsoid", ("ellipsoid",)),
     Thing("half-space", ("half space", "=Plane", "=plane")),
 ]  # fmt: skip

@@ -3,7 +3,7 @@
 
 #include "ingredient/ingredient.h"
 
-#include <iota/angle_springs.h>
+#include <iota/ids.h>
 
 namespace iota::ingredient {
 
@@ -29,9 +29,9 @@ struct AngleSpring : model::ThreeEnds {
 class AngleSprings : public NoAnswers {
  public:
   struct Tables {
-    model::EndTable<AngleSpring, AngleSpringId> angle_springs;
+    model::EndTable<AngleSpring, Id<"angle spring">> angle_springs;
 
-    const auto& table_of(AngleSpringId) const { return angle_springs; }
+    const auto& table_of(Id<"angle spring">) const { return angle_springs; }
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       angle_springs.archive(ar, structure.particles.slot_count());
