@@ -16,6 +16,7 @@ from iota.world.many import Segments
 AXIS, STOPS, POINTER = "#3f7fd0", "#d0402b", "#f2a324"
 CHORD = math.radians(10)  # the longest of an arc
 FULL_TURN = 2 * math.pi
+REACHES = 1.6  # in an axis
 NOT_DRAWN = ("rod", "rope", "coupling")  # drawn as ties, or without a place of its own
 
 Line = tuple[Vec3, Vec3]
@@ -31,9 +32,9 @@ class JointMarks:
         drawings: Drawings,
         events: Events,
         joints: Iterable[Constraint] | None,
-        length: float,
+        length: float | None,
     ) -> None:
-        """length: of an axis, m."""
+        """length: of an axis, m; None: by the size of the joint's first body."""
         self._system, self._drawings, self._events = system, drawings, events
         self._joints = None if joints is None else list(joints)
         self._length = length
@@ -63,32 +64,38 @@ class JointMarks:
             self._draw(joint)
 
     def _draw(self, joint: Constraint) -> None:
-        place, axis, length = joint.position, joint.axis, self._length
+        place, axis = joint.position, joint.axis
+        length = _reach(joint) * REACHES if self._length is None else self._length
         if not abs(axis):
             arms = [Vec3(length / 4, 0, 0), Vec3(0, length / 4, 0), Vec3(0, 0, length / 4)]
-            self._add(joint.a, [(place - arm, place + arm) for arm in arms], AXIS)
+            self._add(joint.a, [(place - arm, place + arm) for arm in arms], AXIS, length)
             return
-        self._add(joint.a, [(place - axis * (length / 2), place + axis * (length / 2))], AXIS)
-        across = _across(axis) * (length / 2)
+        self._add(joint.a, [(place - axis * (length / 2), place + axis * (length / 2))], AXIS, length)
+        across = _across(axis, joint.a.center_of_mass - place) * (length / 2)
         if limits := _limits(joint, "angle"):
             low, high = (limit - joint.angle.value for limit in limits)
-            self._add(joint.a, [(place, place + across)], POINTER)
-            self._add(joint.b, _sector(place, axis, across, low, high), STOPS)
+            self._add(joint.a, [(place, place + across)], POINTER, length)
+            self._add(joint.b, _sector(place, axis, across, low, high), STOPS, length)
         if limits := _limits(joint, "slide"):
             low, high = (limit - joint.slide.value for limit in limits)
-            self._add(joint.a, [(place - across / 2, place + across / 2)], POINTER)
+            self._add(joint.a, [(place - across / 2, place + across / 2)], POINTER, length)
             ends = [place + axis * low, place + axis * high]
             ticks = [(end - across / 2, end + across / 2) for end in ends]
-            self._add(joint.b, [(ends[0], ends[1]), *ticks], STOPS)
+            self._add(joint.b, [(ends[0], ends[1]), *ticks], STOPS, length)
 
-    def _add(self, body: Body | None, lines: list[Line], color: str) -> None:
-        """Fixes lines, given in the world, to a body; None: to the world."""
+    def _add(self, body: Body | None, lines: list[Line], color: str, length: float) -> None:
+        """Fixes lines, given in the world, to a body; None: to the world. length: of an axis, m."""
         if body is not None:
             center, turn = body.center_of_mass, body.orientation
             lines = [(into_frame(start, center, turn), into_frame(end, center, turn)) for start, end in lines]
         starts, ends = [tuple(start) for start, _ in lines], [tuple(end) for _, end in lines]
-        mark = self._drawings.segments(starts, ends, radius=self._length / 60, color=color, at=body)
+        mark = self._drawings.segments(starts, ends, radius=length / 80, color=color, at=body)
         self._marks.append(mark)
+
+
+def _reach(joint: Constraint) -> float:
+    """The distance of the farthest particle of the first body from the joint, m."""
+    return max((abs(p.position - joint.position) for p in joint.a.particles), default=0.0) or 1.0
 
 
 def _limits(joint: Constraint, name: str) -> tuple[float, float] | None:
@@ -97,10 +104,11 @@ def _limits(joint: Constraint, name: str) -> tuple[float, float] | None:
     return None if coordinate is None else coordinate.limits
 
 
-def _across(axis: Vec3) -> Vec3:
-    """A unit vector at right angles to a unit vector."""
-    other = Vec3(1, 0, 0) if abs(axis.x) < 0.6 else Vec3(0, 1, 0)
-    across = axis.cross(other)
+def _across(axis: Vec3, arm: Vec3) -> Vec3:
+    """The unit vector at right angles to a unit vector that is nearest to an arm; any if the arm lies along it."""
+    across = arm - axis * arm.dot(axis)
+    if abs(across) <= 1e-6 * abs(arm):
+        across = axis.cross(Vec3(1, 0, 0) if abs(axis.x) < 0.6 else Vec3(0, 1, 0))
     return across / abs(across)
 
 

@@ -100,14 +100,13 @@ class Tools(Part):
 
     def show_joints(self, joints: Iterable[Constraint] | None = None, length: float | None = None) -> JointMarks:
         """Lines for joints (None: all): the axis (blue), stops as an arc or a track (red), the present value (amber). Ropes,
-        rods and couplings have none. length: of an axis, m; None: a tenth of the scene. `marks.destroy()` removes
-        them.
+        rods and couplings have none. length: of an axis, m; None: by the size of the joint's first body.
+        `marks.destroy()` removes them.
 
         marks = world.tools.show_joints()
         """
         if length is not None and not 0 < length < math.inf:
             raise ValueError(f"length must be a finite number above 0 m, not {length}")
-        length = (_size(self._system) or 1.0) / 10 if length is None else length
         return JointMarks(self._system, self._drawings, self._events, joints, length)
 
     def show_articulates(self) -> Articulates:
