@@ -51,9 +51,16 @@ void Structure::touch_locally(std::uint32_t body) {
   touch_rows(body);
 }
 
+// A longer list would take as long as to assemble all islands anew: while a scene is built, everything changes.
+bool Structure::lists_local_changes() const {
+  return local_change_.bodies.size() < std::max<std::size_t>(1024, bodies.size() / 4);
+}
+
 void Structure::touch_rows(std::uint32_t body) {
-  if (local_change_.bodies.empty() || local_change_.bodies.back() != body) local_change_.bodies.push_back(body);
-  touch(bodies[body].articulate, locally);
+  const bool is_listed = lists_local_changes();
+  if (is_listed && (local_change_.bodies.empty() || local_change_.bodies.back() != body))
+    local_change_.bodies.push_back(body);
+  touch(bodies[body].articulate, is_listed ? locally : anything);
 }
 
 void Structure::touch_pull(std::uint32_t body) {
@@ -63,15 +70,17 @@ void Structure::touch_pull(std::uint32_t body) {
 }
 
 void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
-  local_change_.rings.push_back({ring, split_from});
+  const bool is_listed = lists_local_changes();
+  // If it is not, the bodies of the ring are in islands that are assembled anew.
+  if (is_listed || rings[ring].count == 0) local_change_.rings.push_back({ring, split_from});
   std::uint32_t articulate = none;  // of all of them, unless they will be hinged
   for_each_in_ring(ring, [&](std::uint32_t p) {
     const std::uint32_t body = particles[p].body;
-    local_change_.bodies.push_back(body);
+    if (is_listed) local_change_.bodies.push_back(body);
     note_body(body);
     if (bodies[body].articulate == articulate) return;
     articulate = bodies[body].articulate;
-    touch(articulate, locally);
+    touch(articulate, is_listed ? locally : anything);
   });
 }
 

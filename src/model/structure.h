@@ -410,6 +410,7 @@ class Structure {
   Marks body_marks_;
   std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
   enum Touch : std::uint8_t { untouched, locally, anything };
+  bool lists_local_changes() const;
   void touch(std::uint32_t articulate, Touch);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
