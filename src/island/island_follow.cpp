@@ -96,8 +96,9 @@ void Island::add_node(const Model& model, std::uint32_t ring, std::uint32_t besi
 }
 
 // The nodes of the rings that changed and of all particles of the bodies that changed, joined or left, also of those that
-// are no longer unknowns: without a bond, or outside of a new basis. An unknown without a node gets one: in the order of the island that it comes from, beside that of the ring from which its own was split, or
-// beside another particle of the body.
+// are no longer unknowns: without a bond, or outside of a new basis. An unknown without a node gets one: in the order of
+// the island that it comes from, beside that of the ring from which its own was split, or beside another particle of the
+// body.
 std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Change& change,
                                                       std::vector<std::uint32_t>& node_of_ring) {
   std::vector<std::uint32_t> changed;
