@@ -27,6 +27,15 @@ constexpr const char* make_body_doc =
     "    for hinge in door.attachments:\n"
     "        hinge.nail()";
 
+constexpr const char* make_obstacle_doc =
+    "A static body without particles: the ground, a wall, a table. Queries find it, and it is drawn and saved; but nothing\n"
+    "can be tied to it, and `bodies`, masses, energies and articulates do not count it. `World.add_static` makes one with a\n"
+    "look.\n\n"
+    "shape: any; a Mesh need not be closed, and has then two sides and no inside. position: of its origin, m.\n"
+    "orientation: quaternion x y z w. Assigning `Body.position` moves it.\n\n"
+    "    wall = system.obstacle(iota.Box((4, 2, 0.1)), position=(0, 1, -2))\n"
+    "    ground = system.obstacle(iota.HalfSpace((0, 1, 0)))";
+
 nb::object to_array(const Matrix3& rows) {
   std::vector<double> numbers;
   for (const Vec3& row : rows) numbers.insert(numbers.end(), {row.x, row.y, row.z});
@@ -38,6 +47,7 @@ nb::tuple to_tuple(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q
 std::string repr_body(const BodyHandle& self) {
   if (!self.is_alive()) return stale_repr("Body", self);
   const System& engine = self.system->engine;
+  if (engine.bodies().is_obstacle(self.id)) return "<Body " + std::to_string(self.id.slot) + ": obstacle>";
   return "<Body " + std::to_string(self.id.slot) + ": " + to_word(kind_words, engine.bodies().kind(self.id)) + ", " +
          std::to_string(engine.bodies().particles(self.id).size()) + " particles>";
 }
@@ -104,6 +114,17 @@ void bind_making(nb::class_<SystemObject>& system) {
           "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> Body"),
       make_body_doc);
+  system.def(
+      "obstacle",
+      [](nb::handle_t<SystemObject> self, nb::handle shape, VectorArgument position, nb::object orientation) {
+        System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("obstacle(...)");
+        return handle_of(self, engine.bodies().create_obstacle(to_shape(shape), to_vec3(position, "position"),
+                                                               to_quaternion(orientation, "orientation")));
+      },
+      "shape"_a, "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
+      nb::sig("def obstacle(self, shape: Shape, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+              "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0)) -> Body"),
+      make_obstacle_doc);
 }
 
 }  // namespace

@@ -28,25 +28,20 @@ class Ids {
   std::vector<BodyId> ids_;
 };
 
-/// A body, or the number of a fixed shape.
-nb::object to_object(PlacesObject& self, const Found& found) {
-  if (found.fixed != Found::none) return nb::int_(found.fixed);
-  return nb::cast(BodyHandle{self.system_object, self.system, found.body});
-}
 
 nb::object to_tuple(PlacesObject& self, const std::optional<Hit>& hit) {
   if (!hit) return nb::none();
-  return nb::make_tuple(to_object(self, hit->what), hit->point, hit->distance);
+  return nb::make_tuple(BodyHandle{self.system_object, self.system, hit->body}, hit->point, hit->distance);
 }
 
-constexpr const char* hit_type = "tuple[Body | int, Vec3, float] | None";
+constexpr const char* hit_type = "tuple[Body, Vec3, float] | None";
 
 }  // namespace
 
 void bind_places(nb::module_& module) {
   nb::class_<PlacesObject>(
       module, "Places",
-      "Questions about the places of bodies and of fixed shapes, which have numbers; a World asks them.",
+      "Questions about the places of bodies; a World asks them.",
       nb::type_slots(handle_slots<PlacesObject>))
       .def(
           "__init__", [](PlacesObject* self, nb::object system) { new (self) PlacesObject(std::move(system)); },
@@ -86,38 +81,14 @@ void bind_places(nb::module_& module) {
           [](PlacesObject& self, nb::handle shape, VectorArgument position, QuaternionArgument rotation,
              const Only& only) {
             const Ids ids(only);
-            nb::list found;
-            for (const Found& each : self.use().overlap(to_shape(shape), to_vec3(position, "position"),
-                                                        to_quaternion(rotation, "rotation"), ids.get()))
-              found.append(to_object(self, each));
-            return found;
+            const auto found = self.use().overlap(to_shape(shape), to_vec3(position, "position"),
+                                                  to_quaternion(rotation, "rotation"), ids.get());
+            return wrap_all<BodyHandle>(self.system_object, self.system, found);
           },
           "shape"_a, "position"_a, "rotation"_a, "bodies"_a.none(),
           nb::sig("def overlap(self, shape: Shape, position: Vec3, rotation: collections.abc.Sequence[float], bodies: "
-                  "list[Body] | None) -> list[Body | int]"),
-          "What a convex shape at a place would overlap.")
-      .def(
-          "add_fixed",
-          [](PlacesObject& self, nb::handle shape, VectorArgument position, QuaternionArgument rotation) {
-            return self.use().add_fixed(to_shape(shape), to_vec3(position, "position"),
-                                        to_quaternion(rotation, "rotation"));
-          },
-          "shape"_a, "position"_a, "rotation"_a,
-          nb::sig(
-              "def add_fixed(self, shape: Shape, position: Vec3, rotation: collections.abc.Sequence[float]) -> int"),
-          "Adds a shape without physics; returns its number.")
-      .def(
-          "add_fixed_surface",
-          [](PlacesObject& self, nb::handle vertices, nb::handle triangles, VectorArgument position) {
-            return self.use().add_fixed_surface(make_mesh(vertices, triangles), to_vec3(position, "position"), {});
-          },
-          "vertices"_a, "triangles"_a, "position"_a,
-          nb::sig("def add_fixed_surface(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, "
-                  "position: Vec3) -> int"),
-          "Adds triangles without an inside; returns their number.")
-      .def(
-          "remove_fixed", [](PlacesObject& self, std::uint32_t number) { self.use().remove_fixed(number); }, "number"_a,
-          "Removes it; its number is used again.");
+                  "list[Body] | None) -> list[Body]"),
+          "The bodies that a convex shape at a place would overlap.");
 }
 
 }  // namespace iota::bindings

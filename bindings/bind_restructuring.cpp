@@ -106,7 +106,9 @@ void bind_restructuring(nb::module_& module) {
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
   type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies().ids(); }),
-                   "In order of slots.")
+                   "In order of slots, without obstacles.")
+      .def_prop_ro("obstacles", all_of<BodyHandle>([](System& engine) { return engine.bodies().obstacles(); }),
+                   "In order of slots: see `obstacle`.")
       .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles().ids(); }),
                    "In order of slots: the order of the rows of `positions`.")
       .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds().ids(); }),

@@ -321,10 +321,6 @@ void bind_room(nb::module_& module) {
             self.presenter.assign({slot, generation}, name, odd);
           },
           "slot"_a, "generation"_a, "name"_a, "odd"_a, "The same for a body of a simulator.")
-      .def(
-          "set_statics",
-          [](RoomObject& self, std::vector<protocol::Part> parts) { self.presenter.set_statics(std::move(parts)); },
-          "parts"_a, "Shapes without physics.")
       .def("set_entity", &set_entity, "kind"_a, "slot"_a, "generation"_a, "fields"_a,
            "An entity of the script, as described for its kind in protocol/entities; sent with the next poses. Raises\n"
            "ValueError for bytes that are not such a record.")

@@ -2,6 +2,7 @@
 // Shapes: one class each, made from the list (src/shape/shape_list.h). Only a mesh, which has tables instead of sizes, is
 // bound by hand.
 #include "binders.h"
+#include "shape/mesh.h"
 #include "shape/shape.h"
 #include "shape/shape_list.h"
 #include "shape_argument.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr const char* mesh_doc =
     "The volume within a closed surface of triangles. vertices: (n, 3), m. triangles: (k, 3) indices, from outside\n"
     "counter-clockwise. Raises ValueError if the surface is open, inside out, flat, inconsistently wound or has\n"
-    "invalid indices; the text names the triangle or edge.\n\n"
+    "invalid indices; the text names the triangle or edge. closed=False takes any triangles, for obstacles.\n\n"
     "    iota.Mesh.load('part.stl')         # any format that trimesh reads, if it is installed\n"
     "    iota.Mesh.convex_hull(points) # the convex hull";
 
@@ -171,13 +172,20 @@ void def_common(nb::class_<S>& type) {
 void def_mesh(nb::class_<Mesh>& type) {
   type.def(
           "__init__",
-          [](Mesh* self, nb::object vertices, nb::object triangles) {
+          [](Mesh* self, nb::object vertices, nb::object triangles, bool closed) {
             Mesh made = make_mesh(vertices, triangles);
-            (void)mass_properties(made);  // throws unless the surface is closed
+            if (closed)
+              (void)mass_properties(made);  // throws unless it is
+            else
+              shape::Traits<Mesh>::check_triangles(made);
             new (self) Mesh(std::move(made));
           },
-          "vertices"_a, "triangles"_a,
-          nb::sig("def __init__(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike) -> None"))
+          "vertices"_a, "triangles"_a, nb::kw_only(), "closed"_a = true,
+          nb::sig("def __init__(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, closed: bool = "
+                  "True) -> None"))
+      .def_prop_ro(
+          "closed", [](const Mesh& mesh) { return shape::Traits<Mesh>::has_volume(mesh); },
+          "Whether it encloses a volume. If not, only static bodies can have it, see `System.obstacle`.")
       .def_static(
           "load",
           [](nb::object path) {

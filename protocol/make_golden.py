@@ -426,7 +426,6 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
     ),
     ("nail", anchor(A), {"at": A}),
     ("particle_set", b"\x01" + pack("<I", 1000), {"active": True, "capacity": 1000}),
-    ("static_shape", part(PART), {"part": PART}),
     (
         "label",
         anchor(A) + anchor(B) + vec3([0.0, 0.5, 0.0]) + text("K\u00e4tte") + pack("<fI", 0.125, 0xFF8000),

@@ -60,6 +60,10 @@ class Bodies : public View {
   /// A body of four equal point masses that have exactly the mass, center and inertia of a solid, and one particle for
   /// each attachment. particles(): the four, then the attachments.
   BodyId create(const Shape& shape, const SolidOptions& options = {});
+  /// A static body without particles: the ground, a wall, a table. Queries find it, and it is drawn and saved; but nothing
+  /// can be tied to it, and masses, energies and articulates do not count it. The shape may be a mesh that is not closed,
+  /// which then has two sides and no inside. position: of the shape's origin, m. `set_pose` moves it.
+  BodyId create_obstacle(const Shape& shape, const Vec3& position = {}, const Quaternion& orientation = {});
   /// A further particle of a body made of solids, at any place (world, m); the body's mass, center, inertia and motion
   /// do not change. Throws std::invalid_argument for bodies without a solid, and if something is hinged to the solid's
   /// own four points, whose positions change.
@@ -73,7 +77,9 @@ class Bodies : public View {
   bool contains(BodyId) const;
   /// The id that a retired one became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<BodyId> survivor_of(BodyId) const;
-  std::vector<BodyId> ids() const;  ///< in order of slots
+  std::vector<BodyId> ids() const;        ///< in order of slots, without obstacles
+  std::vector<BodyId> obstacles() const;  ///< in order of slots
+  bool is_obstacle(BodyId) const;
   std::string name(BodyId) const;   ///< empty unless it was given one
   /// At most 63 bytes; need not be unique. A survivor keeps its own name.
   void set_name(BodyId, std::string_view);

@@ -15,7 +15,8 @@ KINDS: dict[str, type[Any]] = {shape.kind: shape for shape in get_args(Shape)}
 def to_json(shape: Shape) -> dict[str, Any]:
     """A dictionary that JSON can hold: {"kind": "box", "size": [1, 2, 3], "rounding": 0}."""
     if isinstance(shape, Mesh):
-        return {"kind": "mesh", "vertices": shape.vertices.tolist(), "triangles": shape.triangles.tolist()}
+        mesh = {"kind": "mesh", "vertices": shape.vertices.tolist(), "triangles": shape.triangles.tolist()}
+        return mesh if shape.closed else mesh | {"closed": False}
     sizes = {name: getattr(shape, name) for name in shape.sizes}
     return {"kind": shape.kind} | {name: v if isinstance(v, float) else list(v) for name, v in sizes.items()}
 
@@ -34,8 +35,13 @@ def from_json(data: dict[str, Any]) -> Shape:
 
 
 def _pickled(shape: Shape) -> tuple[type[Any], tuple[Any, ...]]:
-    names = ("vertices", "triangles") if isinstance(shape, Mesh) else shape.sizes
-    return type(shape), tuple(getattr(shape, name) for name in names)
+    if isinstance(shape, Mesh):
+        return _mesh, (shape.vertices, shape.triangles, shape.closed)
+    return type(shape), tuple(getattr(shape, name) for name in shape.sizes)
+
+
+def _mesh(vertices: Any, triangles: Any, closed: bool) -> Mesh:
+    return Mesh(vertices, triangles, closed=closed)
 
 
 for _kind in KINDS.values():

@@ -64,8 +64,7 @@ void Outlines::describe_changed() {
 }
 
 void Outlines::describe(std::uint32_t body) {
-  const bool is_there = structure_.bodies.is_alive(body) && structure_.bodies[body].count > 0;
-  if (!is_there || structure_.is_spark(structure_.bodies[body].first)) return tree_.remove(body);
+  if (!structure_.bodies.is_alive(body) || !structure_.is_visible(body)) return tree_.remove(body);
   Outline& outline = tree_.make(body);
   if (kinds_.size() <= body) kinds_.resize(body + std::size_t{1}, BodyKind::dynamic);
   kinds_[body] = BodyKind::dynamic;  // not still: it will be placed
@@ -110,7 +109,8 @@ std::shared_ptr<const Form> Outlines::form_of(const shape::Data& data) {
   std::shared_ptr<const Form> form = known.lock();
   if (form) return form;
   if (mesh) shape = *mesh;
-  known = form = make_form(std::move(shape));
+  known = form = structure_.meshes.is_open(data.key) ? make_open_form(std::get<Mesh>(std::move(shape)))
+                                                     : make_form(std::move(shape));
   std::erase_if(forms_, [](const auto& each) { return each.second.expired(); });
   return form;
 }

@@ -7,8 +7,10 @@
 #include "edit/settle.h"
 #include "ingredient/followers.h"
 #include "math/mat3.h"
+#include "model/obstacle.h"
 #include "model/outline.h"
 #include "model/solid.h"
+#include "shape/mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +45,8 @@ BodyId apply(Editor& e, const CreateSolid& c) {
   model::Model& model = e.model;
   const SolidOptions& o = c.options;
   shape::check(c.shape);
+  const Mesh* const mesh = std::get_if<Mesh>(&c.shape);
+  if (mesh) shape::Traits<Mesh>::check_triangles(*mesh);
   const bool can_move = o.kind != BodyKind::static_ && o.kind != BodyKind::scripted;
   const MassProperties properties = can_move || shape::is_solid(c.shape) ? mass_properties(c.shape) : frame_only;
   if (std::isnan(o.mass)) require_positive("density", o.density);
@@ -58,7 +62,7 @@ BodyId apply(Editor& e, const CreateSolid& c) {
   const std::uint32_t body = model.make_body(o.kind, o.damping);
   model::Solid solid;
   solid.shape = shape::to_data(c.shape);
-  if (const auto* mesh = std::get_if<Mesh>(&c.shape)) model.meshes.add_use(solid.shape.key, *mesh);
+  if (mesh) model.meshes.add_use(solid.shape.key, *mesh);
   add_solid(model, body, solid, mass, properties.center, to_mat3(properties.mean_squares), pose);
   const Vec3 center = model.center_of_mass(body);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -71,9 +75,31 @@ BodyId apply(Editor& e, const CreateSolid& c) {
   return id;
 }
 
+BodyId apply(Editor& e, const CreateObstacle& c) {
+  model::Model& model = e.model;
+  shape::check(c.shape);
+  const Mesh* const mesh = std::get_if<Mesh>(&c.shape);
+  if (mesh) shape::Traits<Mesh>::check_triangles(*mesh);
+  require_finite("position", c.position);
+  const model::SolidPose pose{c.position, require_quaternion("orientation", c.orientation)};
+  const std::uint32_t body = model.make_body(BodyKind::static_, 0);
+  const shape::Data shape = shape::to_data(c.shape);
+  if (mesh) model.meshes.add_use(shape.key, *mesh);
+  make_obstacle(model, body, shape, pose);
+  e.structure_changed();
+  return model.bodies.id(body);
+}
+
+void refuse_obstacle(const model::Model& model, std::uint32_t body, const char* what) {
+  if (model.obstacles.has(body))
+    throw std::invalid_argument(text("body ", body, " is an obstacle, which cannot ", what,
+                                     ": make it a static body given by shape instead"));
+}
+
 ParticleId apply(Editor& e, const CreateAttachment& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
+  refuse_obstacle(model, body, "have particles");
   require_finite("position", c.position);
   if (model.bodies[body].first_solid == none)
     throw std::invalid_argument(text("create_attachment is for bodies given by shape, but body ", body,
@@ -149,14 +175,15 @@ void apply(Editor& e, const SetKind& c) {
   const std::uint32_t slot = e.require(c.body);
   const BodyKind before = model.bodies[slot].kind;
   if (before == c.kind) return;
+  if (c.kind != BodyKind::static_ && c.kind != BodyKind::inactive) refuse_obstacle(model, slot, "move");
   if (c.kind == BodyKind::resting) {
     if (before != BodyKind::dynamic)
       throw std::invalid_argument(text("only dynamic bodies can rest; body ", slot, " is not: make it dynamic first"));
     return put_to_rest(e, slot);
   }
-  if (model::is_free(c.kind) && is_endless(model, slot))
+  if (model::is_free(c.kind) && lacks_volume(model, slot))
     throw std::invalid_argument(
-        text("body ", slot, " is a half-space, which has no mass: it can only be static or scripted"));
+        text("body ", slot, " is a half-space or an open mesh, which has no mass: it can only be static or scripted"));
   if (before == BodyKind::resting) {
     for (const std::uint32_t b : model.tied_bodies(std::array{slot})) {
       if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
@@ -256,6 +283,10 @@ void apply(Editor& e, const SetPose& c) {
   const std::uint32_t body = e.require(c.body);
   require_finite("position", c.position);
   const Quaternion wanted = require_quaternion("orientation", c.orientation);
+  if (model.obstacles.has(body)) {
+    move_obstacle(model, body, {c.position, wanted});
+    return e.orientations.forget();
+  }
   require_particles(model, body);
   e.orientations.refresh(e.model);
   const Quaternion& q = model.bodies[body].orientation;

@@ -15,6 +15,11 @@ struct CreateSolid {
   Shape shape;
   SolidOptions options;
 };
+struct CreateObstacle {
+  Shape shape;
+  Vec3 position;
+  Quaternion orientation;
+};
 struct CreateAttachment {
   BodyId body;
   Vec3 position;
@@ -54,6 +59,7 @@ struct SetAngularVelocity {
 
 BodyId apply(Editor&, const CreateBody&);
 BodyId apply(Editor&, const CreateSolid&);
+BodyId apply(Editor&, const CreateObstacle&);
 ParticleId apply(Editor&, const CreateAttachment&);
 void apply(Editor&, const SetRod&);
 void apply(Editor&, const SetKind&);
@@ -64,6 +70,8 @@ void apply(Editor&, const SetBodyVelocity&);
 void apply(Editor&, const SetAngularVelocity&);
 void apply(Editor&, const Destroy<BodyId>&);
 
+/// Throws std::invalid_argument for an obstacle. what: that cannot be done with it, as "have particles".
+void refuse_obstacle(const model::Model&, std::uint32_t body, const char* what);
 /// Throws if a body's points could not keep an angular velocity.
 void require_can_spin(const model::Model&, std::uint32_t body, const Vec3& spin);
 /// The spin of a rod in an angular velocity, which its points do not have; nothing for other bodies.

@@ -135,7 +135,8 @@ using Command = std::variant<
     SetAngleSpring,
     Destroy<AngleSpringId>,
     SetRadius,
-    SetUsualRadius>;
+    SetUsualRadius,
+    CreateObstacle>;
 // clang-format on
 
 /// The place of a command in that list.

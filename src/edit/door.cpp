@@ -47,7 +47,7 @@ void Door::refuse_in_step() {
 void Door::apply_queue(StepReport& report) {
   if (queue_.empty()) return;
   report.edits.emplace();
-  report.edits->articulates_before = editor_.model.articulates.size();
+  report.edits->articulates_before = editor_.model.articulate_count();
   ++editor_.model.edits;
   ingredient::begin_edits(editor_.model);
   const double before = editor_.held.book().edits;
@@ -69,7 +69,7 @@ void Door::apply_queue(StepReport& report) {
     }
   });
   report.edits->changed = report.edits->changed || editor_.model.structure_version != version;
-  report.edits->articulates_after = editor_.model.articulates.size();
+  report.edits->articulates_after = editor_.model.articulate_count();
   report.edits->structure_version = editor_.model.structure_version;
   editor_.held.note_change();
   report.edits->energy_change = editor_.held.book().edits - before;

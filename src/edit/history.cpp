@@ -50,7 +50,7 @@ Batch::Batch(const model::Model& model, Snapshot start)
       particles_(model.particles.ids()),
       version_(model.structure_version),
       edit_energy_(ingredient::energy_of_edits(model)) {
-  report_.articulates_before = model.articulates.size();
+  report_.articulates_before = model.articulate_count();
 }
 
 void Batch::add(const RestructureReport& report) {
@@ -65,7 +65,7 @@ RestructureReport Batch::finish(const model::Model& model) {
   note_changes(particles_, model.particles.ids(), report_.created_particles, report_.destroyed_particles);
   forget_absorbed(report_.destroyed_bodies, report_.absorbed_bodies);
   forget_absorbed(report_.destroyed_particles, report_.absorbed_particles);
-  report_.articulates_after = model.articulates.size();
+  report_.articulates_after = model.articulate_count();
   report_.structure_version = model.structure_version;
   report_.energy_change = ingredient::energy_of_edits(model) - edit_energy_;
   return std::move(report_);

@@ -192,7 +192,7 @@ RestructureReport apply(Editor& e, const CombineMany& c) {
   require_same("q", c.q.size(), c.p.size());
   check_rows(c.p.size(), [&](std::size_t i) { (void)e.require(c.p[i]), (void)e.require(c.q[i]); });
   RestructureReport sum;
-  sum.articulates_before = e.model.articulates.size();
+  sum.articulates_before = e.model.articulate_count();
   const auto combine = [&] {
     check_rows(c.p.size(), [&](std::size_t i) { add_report(sum, apply(e, CombineParticles{c.p[i], c.q[i], 0})); });
   };
@@ -200,7 +200,7 @@ RestructureReport apply(Editor& e, const CombineMany& c) {
     combine();
   else
     Undone(e).attempt(combine);
-  sum.articulates_after = e.model.articulates.size();
+  sum.articulates_after = e.model.articulate_count();
   sum.structure_version = e.model.structure_version;
   return sum;
 }

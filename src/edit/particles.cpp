@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/particles.h"
 
+#include "edit/bodies.h"
 #include "edit/checks.h"
 #include "edit/constraints.h"
 #include "edit/nails.h"
@@ -39,6 +40,7 @@ void end_solids_of(model::Model& model, std::uint32_t body, std::uint32_t point)
 ParticleId apply(Editor& e, const CreateParticle& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
+  refuse_obstacle(model, body, "have particles");
   require_finite("position", c.position);
   require_finite("velocity", c.velocity);
   if (c.mass == 0) return make_marker(e, body, c.position);

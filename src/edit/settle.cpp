@@ -228,7 +228,7 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
       body_count_(bodies.size()),
       kind_(kind),
       followers_(editor.model, bodies) {
-  report.articulates_before = editor.model.articulates.size();
+  report.articulates_before = editor.model.articulate_count();
   if (kind != Kind::moving) return;
   around_ = bodies_around(editor.model, bodies);
   before_ = conserved(editor.model, around_);
@@ -253,7 +253,7 @@ void Restructuring::finish(const model::Edit& owed) {
     followers_.follow(model);
     if (kind_ != Kind::transient) editor_.structure_changed();
   }
-  report_.articulates_after = model.articulates.size();
+  report_.articulates_after = model.articulate_count();
   report_.structure_version = model.structure_version;
   if (kind_ == Kind::moving && report_.changed) settle_and_measure(owed);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/audit.h"
 
+#include "model/solid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -51,6 +53,16 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a damping");
     require(std::isfinite(damping) && damping >= 0, "body ", slot, " has damping ", damping);
   });
+  model_.obstacles.for_each([&](std::uint32_t slot, const Obstacle& o) {
+    require(model_.bodies.is_alive(slot), "dead body ", slot, " is an obstacle");
+    const Body& b = model_.bodies[slot];
+    const BodyKind kind = b.kind == BodyKind::inactive ? b.kind_before : b.kind;
+    require(kind == BodyKind::static_ && b.count == 0 && b.first_solid != none, "obstacle ", slot,
+            " can move, has particles or no shape");
+    const Quaternion& q = o.orientation;
+    require(is_finite(o.position) && std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1) < 1e-6, "obstacle ",
+            slot, " is at no place");
+  });
   model_.radii.for_each([&](std::uint32_t slot, double radius) {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a radius");
     require(std::isfinite(radius) && radius > 0, "body ", slot, " has radius ", radius);
@@ -65,8 +77,12 @@ void Audit::check_links() {
   });
   model_.solids.for_each([&](std::uint32_t slot, const Solid& s) {
     require(model_.bodies.is_alive(s.body), "solid ", slot, " is not of body ", s.body);
-    for (const std::uint32_t p : s.points) require(is_point(p), "solid ", slot, " stands on stranger ", p);
+    for (const std::uint32_t p : s.points)
+      require(model_.obstacles.has(s.body) ? p == none : is_point(p), "solid ", slot, " stands on stranger ", p);
     require_shape("solid", slot, s.shape);
+    if (model_.bodies.is_alive(s.body))
+      require(!is_free(model_.bodies[s.body].kind) || !lacks_volume(model_, s.body), "solid ", slot,
+              " has no volume, but its body can move");
   });
   check_meshes();
   check_structure_lists();
@@ -80,8 +96,8 @@ void Audit::check_meshes() {
     ++found[s.shape.key];
     require(model_.meshes.find(s.shape.key) != nullptr, "solid ", slot, " has a mesh that is not there");
   });
-  model_.meshes.for_each([&](std::uint64_t key, const Mesh& mesh, std::uint32_t uses) {
-    const std::string complaint = complaint_about(key, mesh);
+  model_.meshes.for_each([&](std::uint64_t key, const Mesh& mesh, bool is_open, std::uint32_t uses) {
+    const std::string complaint = complaint_about(key, mesh, is_open);
     require(complaint.empty(), "mesh ", key, ": ", complaint);
     require(found[key] == uses, "mesh ", key, " is of ", found[key], " solids, not of ", uses);
   });
@@ -200,6 +216,7 @@ void Audit::check_bodies() {
               "body ", slot, " has a wrong basis point ", i);
     model_.for_each_solid_of(slot, [&](std::uint32_t s) {
       require(model_.solids.is_alive(s) && model_.solids[s].body == slot, "solid ", s, " is not of body ", slot);
+      if (model_.obstacles.has(slot)) return;
       for (const std::uint32_t p : model_.solids[s].points)
         require(model_.particles.is_alive(p) && model_.particles[p].body == slot, "solid ", s, " stands on stranger ",
                 p);

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "shape/mesh.h"
+#include "shape/shape.h"
 
 #include <stdexcept>
 #include <utility>
@@ -11,7 +12,7 @@ namespace iota::model {
 
 void Meshes::add_use(std::uint64_t key, const Mesh& mesh) {
   Used& used = by_key_[key];
-  if (!used.mesh) used.mesh = std::make_shared<const Mesh>(mesh);
+  if (!used.mesh) used.mesh = std::make_shared<const Mesh>(mesh), used.is_open = !shape::is_solid(mesh);
   ++used.uses;
 }
 
@@ -25,10 +26,15 @@ std::shared_ptr<const Mesh> Meshes::find(std::uint64_t key) const {
   return found == by_key_.end() ? nullptr : found->second.mesh;
 }
 
+bool Meshes::is_open(std::uint64_t key) const {
+  const auto found = by_key_.find(key);
+  return found != by_key_.end() && found->second.is_open;
+}
+
 void Meshes::archive(Writer& writer) {
   writer.value(static_cast<std::uint64_t>(by_key_.size()));
   for (const auto& [key, used] : by_key_) {
-    writer.value(key), writer.value(used.uses);
+    writer.value(key), writer.value(used.uses), writer.value(used.is_open);
     writer.vector(used.mesh->vertices), writer.vector(used.mesh->triangles);
   }
 }
@@ -40,20 +46,23 @@ void Meshes::archive(Reader& reader) {
     std::uint64_t key = 0;
     Used used;
     Mesh mesh;
-    reader.value(key), reader.value(used.uses);
+    reader.value(key), reader.value(used.uses), reader.value(used.is_open);
     reader.vector(mesh.vertices), reader.vector(mesh.triangles);
     used.mesh = std::make_shared<const Mesh>(std::move(mesh));
     if (!by_key_.emplace(key, std::move(used)).second) reader.fail();
   }
 }
 
-std::string complaint_about(std::uint64_t key, const Mesh& mesh) {
+std::string complaint_about(std::uint64_t key, const Mesh& mesh, bool is_open) {
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle)
       if (vertex >= mesh.vertices.size()) return text("a triangle has vertex ", vertex, " of ", mesh.vertices.size());
   if (shape::Traits<Mesh>::key(mesh) != key) return "its key is not that of its content";
   try {
-    (void)mass_properties(mesh);
+    if (is_open)
+      shape::Traits<Mesh>::check_triangles(mesh);
+    else
+      (void)mass_properties(mesh);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

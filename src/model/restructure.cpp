@@ -129,9 +129,9 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
   const BodyKind kind_a = model.bodies[a].kind, kind_b = model.bodies[b].kind;
   const BodyKind kind = kind_of_union(kind_a, kind_b);
   for (const std::uint32_t body : {a, b})
-    if (is_endless(model, body) && kind != BodyKind::static_ && kind != BodyKind::scripted)
+    if (lacks_volume(model, body) && kind != BodyKind::static_ && kind != BodyKind::scripted)
       throw std::invalid_argument("combine: body " + std::to_string(body) +
-                                  " is a half-space, which has no mass, so that what is combined with it cannot move; "
+                                  " is a half-space or an open mesh, which has no mass, so that what is combined with it cannot move; "
                                   "make it static or scripted first");
   const double damping = damping_of_union(model, a, b);
   const BodyKind kind_before = kind_of_union(model.bodies[a].kind_before, model.bodies[b].kind_before);

@@ -31,6 +31,8 @@ void place_points(Structure& model, Solid& solid, const Vec3& center, const Symm
 
 SolidPose solid_pose(const Structure& model, std::uint32_t slot) {
   const Solid& solid = model.solids[slot];
+  if (const Obstacle* const obstacle = model.obstacles.find(solid.body))
+    return {obstacle->position, obstacle->orientation};
   Vec3 center, axes[3];
   for (int k = 0; k < 4; ++k) {
     const Vec3 x = model.position(solid.points[k]);
@@ -43,6 +45,13 @@ SolidPose solid_pose(const Structure& model, std::uint32_t slot) {
   return {center - rotate(q, solid.center), q};
 }
 
+std::uint32_t append_solid(Structure& model, const Solid& solid) {
+  const std::uint32_t slot = model.solids.create(solid).slot;
+  std::uint32_t* last = &model.bodies[solid.body].first_solid;
+  while (*last != none) last = &model.solids[*last].next;
+  return *last = slot;
+}
+
 std::uint32_t add_solid(Structure& model, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose) {
   solid.body = body;
@@ -51,21 +60,19 @@ std::uint32_t add_solid(Structure& model, std::uint32_t body, Solid solid, doubl
   SymmetricEigen principal = symmetric_eigen(mean_squares);
   for (Vec3& axis : principal.axes) axis = rotate(pose.orientation, axis);
   place_points(model, solid, world_center, principal, pose);
-  const std::uint32_t slot = model.solids.create(solid).slot;
-  std::uint32_t* last = &model.bodies[body].first_solid;
-  while (*last != none) last = &model.solids[*last].next;
-  *last = slot;
+  const std::uint32_t slot = append_solid(model, solid);
   model.rebuild_basis(body);
   model.touch_body(body);
   return slot;
 }
 
-bool is_endless(const Structure& model, std::uint32_t body) {
-  bool endless = false;
+bool lacks_volume(const Structure& model, std::uint32_t body) {
+  bool lacks = false;
   model.for_each_solid_of(body, [&](std::uint32_t solid) {
-    endless = endless || !shape::is_solid(shape::from_data(model.solids[solid].shape));
+    const shape::Data& data = model.solids[solid].shape;
+    lacks = lacks || (data.key != 0 ? model.meshes.is_open(data.key) : !shape::is_solid(shape::from_data(data)));
   });
-  return endless;
+  return lacks;
 }
 
 bool is_untouched(const Structure& model, std::uint32_t slot) {

@@ -13,13 +13,16 @@ struct SolidPose {
 };
 SolidPose solid_pose(const Structure&, std::uint32_t solid);
 
+/// As the last one of its body; returns its slot.
+std::uint32_t append_solid(Structure&, const Solid&);
+
 /// Gives an empty body the four point masses of a solid, at rest. `solid` has kind, sizes and mesh; the rest is filled
 /// in. mean_squares and center as in MassProperties.
 std::uint32_t add_solid(Structure&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose);
 
-/// Whether one of a body's shapes has no volume (a half-space). Such a body is static or scripted.
-bool is_endless(const Structure&, std::uint32_t body);
+/// Whether one of a body's shapes has no volume (a half-space, an open mesh). Such a body is static or scripted.
+bool lacks_volume(const Structure&, std::uint32_t body);
 
 /// Whether the four points of a solid may still be moved: they have no hinge, nail or bond, and equal masses.
 bool is_untouched(const Structure&, std::uint32_t solid);

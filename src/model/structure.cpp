@@ -146,7 +146,7 @@ void Structure::remove_body(std::uint32_t body) {
   remove_solids_of(body, none);
   take_from_articulate(body);
   forget_body(body);
-  more_rows.erase(body), body_damping.erase(body), radii.erase(body);
+  more_rows.erase(body), body_damping.erase(body), radii.erase(body), obstacles.erase(body);
   bodies.destroy(body);
 }
 
@@ -202,6 +202,7 @@ double Structure::ring_mass(std::uint32_t ring) const {
 }
 
 Vec3 Structure::center_of_mass(std::uint32_t body) const {
+  if (const Obstacle* const obstacle = obstacles.find(body)) return obstacle->position;
   double mass = 0;
   Vec3 sum;
   for_each_particle_of(body, [&](std::uint32_t p) {

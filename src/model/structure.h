@@ -125,6 +125,13 @@ struct Solid {
   Quaternion principal;  ///< turns vectors of the frame of `half` into the shape's frame
 };
 
+/// The place of an obstacle: a static body given by shape that has no particles, so that nothing can be tied to it. Its
+/// solid has no points. Energies, extents and all that particles have know nothing of it.
+struct Obstacle {
+  Vec3 position;  ///< of its shape's origin, world, m
+  Quaternion orientation;
+};
+
 /// A particle that was absorbed when a hinge became rigid: restored, hinged, when its part leaves the body again.
 struct Twin {
   std::uint32_t particle = none;  ///< that absorbed it
@@ -166,6 +173,7 @@ class Structure {
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;   ///< of bodies
   SideTable<double> body_damping;  ///< of bodies, 1/s
+  SideTable<Obstacle> obstacles;   ///< of bodies
   SideTable<double> radii;         ///< of bodies that have one of their own, m; see outline.h
   double usual_radius = 0;         ///< of all other bodies, m; 0: not chosen yet
   Corrections corrections;         ///< of rings
@@ -208,6 +216,9 @@ class Structure {
   void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs with the particle (none: all)
   void remove_solids_of(std::uint32_t body, std::uint32_t particle);   ///< solids with the particle (none: all)
   ///@}
+
+  /// Without obstacles, each of which is in one of its own.
+  std::uint32_t articulate_count() const { return articulates.size() - obstacles.size(); }
 
   /// @name Articulates (Algorithms 1 and 2 of the thesis, without the recursion)
   ///@{
@@ -302,6 +313,11 @@ class Structure {
     return r.count > 1 || r.nailed || p.uses > 0;
   }
 
+  /// Whether it has an outline: an obstacle or a body with particles, but no spark.
+  bool is_visible(std::uint32_t body) const {
+    return obstacles.has(body) || (bodies[body].count > 0 && !is_spark(bodies[body].first));
+  }
+
   /// Whether a particle is active: neither it nor its body was switched off.
   bool acts(std::uint32_t particle) const {
     const Particle& p = particles[particle];
@@ -319,9 +335,9 @@ class Structure {
 
   Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
   Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }
-  double body_mass(std::uint32_t body) const;
+  double body_mass(std::uint32_t body) const;  ///< kg; 0 of an obstacle
   double ring_mass(std::uint32_t ring) const;
-  Vec3 center_of_mass(std::uint32_t body) const;
+  Vec3 center_of_mass(std::uint32_t body) const;  ///< of an obstacle: its shape's origin
 
   template <class Visit>
   void for_each_particle_of(std::uint32_t body, Visit visit) const {
@@ -474,6 +490,7 @@ void Structure::archive(Archive& ar) {
   ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
   first_twin.archive(ar, particles.slot_count());
   more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
+  obstacles.archive(ar, bodies.slot_count());
   radii.archive(ar, bodies.slot_count()), ar.value(usual_radius);
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);

@@ -165,11 +165,6 @@ void Presenter::assign(BodyId body, const std::string& name, bool odd) {
   assigned_.push_back(body);
 }
 
-void Presenter::set_statics(std::vector<protocol::Part> parts) {
-  statics_ = std::move(parts);
-  statics_changed_ = true;
-}
-
 // ------------------------------------------------------------------------------------------------------------ telling
 
 template <class Entity>
@@ -219,7 +214,6 @@ EntityChanges Presenter::present(const SceneChanges& changes, const NameOf& name
   for_each_simple_kind(changes, [&](const auto& items, auto entity_of) {
     for (const auto& item : items.set) tell(item.slot, entity_of(item));
   });
-  if (statics_changed_) present_statics();
 
   for (const std::uint32_t slot : changes.bodies.gone) forget_body(slot);
   if (changes.is_whole)
@@ -277,15 +271,6 @@ void Presenter::forget_body(std::uint32_t slot) {
   if (slot >= bodies_.size() || bodies_[slot].visual == protocol::no_visual) return;
   release_visual(bodies_[slot].visual);
   bodies_[slot] = {};
-}
-
-void Presenter::present_statics() {
-  statics_changed_ = false;
-  for (std::uint32_t slot = 0; slot < statics_.size(); ++slot)
-    tell(slot, protocol::StaticShapeEntity{{}, statics_[slot]});
-  for (auto slot = static_cast<std::uint32_t>(statics_.size()); slot < told<protocol::StaticShapeEntity>().size();
-       ++slot)
-    forget<protocol::StaticShapeEntity>(slot);
 }
 
 std::optional<BodyId> Presenter::body(protocol::Id id) const {

@@ -27,8 +27,6 @@ class Presenter {
   void set_visual(const std::string& name, std::vector<protocol::Part> parts);
   /// Draws a body with a visual; the body must be in the engine's next changes.
   void assign(BodyId body, const std::string& name, bool odd);
-  /// Shapes without physics.
-  void set_statics(std::vector<protocol::Part> parts);
 
   /// Whether the next changes must be complete.
   bool needs_all() const { return needs_all_; }
@@ -86,7 +84,6 @@ class Presenter {
   void for_each_simple_kind(const SceneChanges& changes, Visit visit) const;
   void present_body(const DrawnBody& body, const NameOf& name_of);
   void forget_body(std::uint32_t slot);
-  void present_statics();
 
   std::uint32_t visual_of(const DrawnBody& body, const Assignment* assignment);
   std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Given* like);
@@ -101,8 +98,7 @@ class Presenter {
   std::map<std::string, Given, std::less<>> given_;
   std::map<BodyId, Assignment> assignments_;
   std::vector<BodyId> assigned_;
-  std::vector<protocol::Part> statics_;
-  bool needs_all_ = true, statics_changed_ = false;
+  bool needs_all_ = true;
   double quantum_ = 1e-6;    ///< finer than visible, m
   double usual_radius_ = 0;  ///< with which the ties are drawn, m; 0: not known yet
 

@@ -22,8 +22,8 @@ PoseSnapshot poses(model::Model& m, held::HeldForces& held, Orientations& orient
   };
   snapshot.bodies.reserve(m.bodies.size());
   m.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
-    if (b.kind == BodyKind::inactive || b.count == 0) return;
-    if (m.is_spark(b.first)) {
+    if (b.kind == BodyKind::inactive || (b.count == 0 && !m.obstacles.has(slot))) return;
+    if (b.count > 0 && m.is_spark(b.first)) {
       const model::Attributes& spark_attributes = m.attributes[m.particles[b.first].attributes];
       const ParticleAttributes look = attributes(m, spark_attributes);
       SparkPose& spark = snapshot.sparks.emplace_back();

@@ -2,6 +2,7 @@
 #include "shape/mesh.h"
 
 #include "base/archive.h"
+#include "base/text.h"
 #include "geometry/triangle_tree.h"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ namespace iota::shape {
 
 namespace {
 
-/// Every edge must occur once in each direction.
-void require_closed(const Mesh& mesh) {
+/// Why it is not closed, empty if it is: every edge must occur once in each direction.
+std::string gap_of(const Mesh& mesh) {
   struct Edge {
     std::uint32_t from, to;
     std::size_t triangle;
@@ -28,14 +29,49 @@ void require_closed(const Mesh& mesh) {
   std::sort(edges.begin(), edges.end());
   for (std::size_t i = 1; i < edges.size(); ++i)
     if (edges[i - 1].from == edges[i].from && edges[i - 1].to == edges[i].to)
-      refuse("the mesh is wound inconsistently: triangles ", edges[i - 1].triangle, " and ", edges[i].triangle,
-             " both run along the edge ", edges[i].from, " -> ", edges[i].to, "; turn one of them round");
+      return text("the mesh is wound inconsistently: triangles ", edges[i - 1].triangle, " and ", edges[i].triangle,
+                  " both run along the edge ", edges[i].from, " -> ", edges[i].to, "; turn one of them round");
   for (const Edge& e : edges) {
     const auto opposite = std::lower_bound(edges.begin(), edges.end(), Edge{e.to, e.from, 0});
     if (opposite == edges.end() || opposite->from != e.to || opposite->to != e.from)
-      refuse("the mesh is not closed: triangle ", e.triangle, " has no neighbor at the edge ", e.from, " - ", e.to,
-             "; close the hole, or join vertices that are at one place");
+      return text("the mesh is not closed: triangle ", e.triangle, " has no neighbor at the edge ", e.from, " - ", e.to,
+                  "; close the hole, or join vertices that are at one place");
   }
+  return {};
+}
+
+/// Why the triangles enclose no volume, empty if they do: `out` is then what they enclose.
+std::string measure(const Mesh& mesh, MassProperties& out) {
+  if (mesh.triangles.size() < 4)
+    return text("a closed mesh has at least 4 triangles, this one has ", mesh.triangles.size());
+  if (std::string gap = gap_of(mesh); !gap.empty()) return gap;
+  Vec3 mean;
+  for (const Vec3& vertex : mesh.vertices) mean += (1.0 / static_cast<double>(mesh.vertices.size())) * vertex;
+  double extent = 0;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) extent = std::max(extent, norm(mesh.vertices[v] - mean));
+
+  // Tetrahedra from the vertices' mean to each triangle; a tetrahedron that faces inward has negative volume.
+  double volume = 0;
+  Vec3 first;
+  Mat3 second;
+  for (const auto& [ia, ib, ic] : mesh.triangles) {
+    const Vec3 a = mesh.vertices[ia] - mean, b = mesh.vertices[ib] - mean, c = mesh.vertices[ic] - mean;
+    const Vec3 sum = a + b + c;
+    const double v = dot(a, cross(b, c)) / 6;
+    volume += v;
+    first += (v / 4) * sum;
+    second += (v / 20) * (Mat3::outer(sum, sum) + Mat3::outer(a, a) + Mat3::outer(b, b) + Mat3::outer(c, c));
+  }
+  if (volume < -1e-9 * extent * extent * extent)
+    return text("the mesh is inside out (its volume is ", volume, " m^3): turn all triangles round");
+  if (!(volume > 1e-9 * extent * extent * extent))
+    return text("the mesh encloses no volume (", volume, " m^3 at ", extent, " m): it is flat, or folds back on itself");
+  const Vec3 center = (1 / volume) * first;
+  const Mat3 about_center = (1 / volume) * second + -1.0 * Mat3::outer(center, center);
+  out = {volume, mean + center, {}};
+  for (int i = 0; i < 3; ++i) out.mean_squares[i] = {about_center.m[i][0], about_center.m[i][1], about_center.m[i][2]};
+  return {};
 }
 
 }  // namespace
@@ -75,49 +111,33 @@ double Traits<Mesh>::scale(const Mesh& mesh) {
   return extent;
 }
 
-MassProperties Traits<Mesh>::mass(const Mesh& mesh) {
-  if (mesh.triangles.size() < 4) refuse("a closed mesh has at least 4 triangles, this one has ", mesh.triangles.size());
-  double extent = 0;
-  Vec3 mean;
+void Traits<Mesh>::check_triangles(const Mesh& mesh) {
+  if (mesh.triangles.empty()) refuse("the mesh has no triangle");
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& at = mesh.vertices[v];
     if (!is_finite(at)) refuse("vertex ", v, " of the mesh is not finite");
     if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 1e9)
       refuse("vertex ", v, " of the mesh is more than 1e9 m from its origin");
-    mean += (1.0 / static_cast<double>(mesh.vertices.size())) * mesh.vertices[v];
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    for (const std::uint32_t v : {a, b, c}) {
+    for (const std::uint32_t v : {a, b, c})
       if (v >= mesh.vertices.size())
         refuse("triangle ", t, " of the mesh names vertex ", v, ", but there are only ", mesh.vertices.size());
-      extent = std::max(extent, norm(mesh.vertices[v] - mean));
-    }
     if (a == b || b == c || c == a) refuse("triangle ", t, " of the mesh names a vertex twice");
   }
-  require_closed(mesh);
+}
 
-  // Tetrahedra from the vertices' mean to each triangle; a tetrahedron that faces inward has negative volume.
-  double volume = 0;
-  Vec3 first;
-  Mat3 second;
-  for (const auto& [ia, ib, ic] : mesh.triangles) {
-    const Vec3 a = mesh.vertices[ia] - mean, b = mesh.vertices[ib] - mean, c = mesh.vertices[ic] - mean;
-    const Vec3 sum = a + b + c;
-    const double v = dot(a, cross(b, c)) / 6;
-    volume += v;
-    first += (v / 4) * sum;
-    second += (v / 20) * (Mat3::outer(sum, sum) + Mat3::outer(a, a) + Mat3::outer(b, b) + Mat3::outer(c, c));
-  }
-  if (volume < -1e-9 * extent * extent * extent)
-    refuse("the mesh is inside out (its volume is ", volume, " m^3): turn all triangles round");
-  if (!(volume > 1e-9 * extent * extent * extent))
-    refuse("the mesh encloses no volume (", volume, " m^3 at ", extent, " m): it is flat, or folds back on itself");
-  const Vec3 center = (1 / volume) * first;
-  const Mat3 about_center = (1 / volume) * second + -1.0 * Mat3::outer(center, center);
-  MassProperties p{volume, mean + center, {}};
-  for (int i = 0; i < 3; ++i) p.mean_squares[i] = {about_center.m[i][0], about_center.m[i][1], about_center.m[i][2]};
-  return p;
+bool Traits<Mesh>::has_volume(const Mesh& mesh) {
+  MassProperties unused;
+  return measure(mesh, unused).empty();
+}
+
+MassProperties Traits<Mesh>::mass(const Mesh& mesh) {
+  check_triangles(mesh);
+  MassProperties properties;
+  if (const std::string why_not = measure(mesh, properties); !why_not.empty()) refuse(why_not);
+  return properties;
 }
 
 }  // namespace iota::shape

@@ -106,6 +106,7 @@ void check(const Shape& shape) {
 }
 
 bool is_solid(const Shape& shape) {
+  if (const Mesh* const mesh = std::get_if<Mesh>(&shape)) return Traits<Mesh>::has_volume(*mesh);
   return std::visit([]<class S>(const S&) { return Massive<S>; }, shape);
 }
 

@@ -29,9 +29,9 @@ std::string_view name(const Shape&);
 /// The names of all sizes, one for each number of Data: "size_x", "rounding".
 std::vector<std::string> size_names(const Shape&);
 /// Throws std::invalid_argument for sizes that are out of range or inconsistent. (A mesh's triangles are checked
-/// where its mass is calculated.)
+/// where a body gets it.)
 void check(const Shape&);
-/// Whether it has a volume, and so mass properties.
+/// Whether it has a volume, and so mass properties: neither a half-space nor a mesh that is not closed.
 bool is_solid(const Shape&);
 
 /// Whether a point is inside, or on the surface.

@@ -185,7 +185,7 @@ void Stepper::fill(StepReport& report) {
                    .made = model.made,
                    .external_work = model.external_work,
                    .edits = model.edit_energy};
-  report.articulates = model.articulates.size();
+  report.articulates = model.articulate_count();
   report.structure_version = model.structure_version;
 }
 

@@ -24,6 +24,10 @@ BodyId Bodies::create(const Shape& shape, const SolidOptions& options) {
   return core_.execute(edit::CreateSolid{shape, options});
 }
 
+BodyId Bodies::create_obstacle(const Shape& shape, const Vec3& position, const Quaternion& orientation) {
+  return core_.execute(edit::CreateObstacle{shape, position, orientation});
+}
+
 ParticleId Bodies::create_attachment(BodyId body, const Vec3& position) {
   return core_.execute(edit::CreateAttachment{body, position});
 }
@@ -153,18 +157,34 @@ void Bodies::set_kind(BodyId body, BodyKind kind) { core_.execute(edit::SetKind{
 
 void Bodies::set_damping(BodyId body, double per_second) { core_.execute(edit::SetBodyDamping{body, per_second}); }
 
-std::uint32_t Bodies::articulate_count() const { return core_.model.articulates.size(); }
+std::uint32_t Bodies::articulate_count() const { return core_.model.articulate_count(); }
 
 bool Bodies::contains(BodyId id) const { return core_.model.bodies.contains(id); }
 
 std::optional<BodyId> Bodies::survivor_of(BodyId id) const { return core_.model.survivor_of(id); }
 
-std::vector<BodyId> Bodies::ids() const { return core_.model.bodies.ids(); }
+bool Bodies::is_obstacle(BodyId id) const { return core_.model.obstacles.has(core_.slot(id)); }
+
+std::vector<BodyId> Bodies::ids() const {
+  std::vector<BodyId> ids = core_.model.bodies.ids();
+  if (!core_.model.obstacles.is_empty())
+    std::erase_if(ids, [&](BodyId id) { return core_.model.obstacles.has(id.slot); });
+  return ids;
+}
+
+std::vector<BodyId> Bodies::obstacles() const {
+  std::vector<BodyId> ids;
+  core_.model.obstacles.for_each(
+      [&](std::uint32_t body, const model::Obstacle&) { ids.push_back(core_.model.bodies.id(body)); });
+  std::ranges::sort(ids, {}, &BodyId::slot);
+  return ids;
+}
 
 std::vector<std::vector<BodyId>> Bodies::articulates() const {
   const model::Model& m = core_.model;
   std::vector<std::vector<BodyId>> all;
-  m.articulates.for_each([&](std::uint32_t slot, const model::Articulate&) {
+  m.articulates.for_each([&](std::uint32_t slot, const model::Articulate& articulate) {
+    if (m.obstacles.has(articulate.first)) return;
     m.for_each_body_of(slot, [&, &bodies = all.emplace_back()](std::uint32_t b) { bodies.push_back(m.bodies.id(b)); });
   });
   return all;

@@ -18,33 +18,13 @@ void require_place(const Vec3& place) {
   if (!is_finite(place)) throw std::invalid_argument("the place must be finite");
 }
 
-/// Bodies in order of slots, then fixed shapes in order of numbers.
-std::pair<std::uint32_t, std::uint32_t> order(const Found& what) {
-  return what.fixed == Found::none ? std::pair{0u, what.body.slot} : std::pair{1u, what.fixed};
-}
-
-std::uint32_t add(contact::OutlineTree& fixed, std::shared_ptr<const contact::Form> form, const Vec3& position,
-                  const Quaternion& orientation) {
-  require_place(position);
-  std::uint32_t number = 0;
-  while (fixed.has(number)) ++number;
-  fixed.make(number).solids.push_back({std::move(form), 0, position, orientation});
-  fixed.show(number);
-  fixed.update();
-  return number;
-}
-
 }  // namespace
-
-Places::Places(Core& core) : View(core), fixed_(std::make_unique<contact::OutlineTree>()) {}
-
-Places::~Places() = default;
 
 template <class Search, class Visit>
 void Places::for_each(const Only& only, Search search, Visit visit) {
   const contact::OutlineTree& bodies = core_.outlines.refresh(core_.model.step);
   const auto visit_body = [&](std::uint32_t slot, const contact::Outline& outline) {
-    return visit(Found{core_.model.bodies.id(slot)}, outline);
+    return visit(core_.model.bodies.id(slot), outline);
   };
   if (only) {
     for (const BodyId id : *only)
@@ -52,8 +32,6 @@ void Places::for_each(const Only& only, Search search, Visit visit) {
     return;
   }
   search(bodies, visit_body);
-  search(*fixed_,
-         [&](std::uint32_t number, const contact::Outline& outline) { return visit(Found{{}, number}, outline); });
 }
 
 std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double farthest, Only only) {
@@ -64,11 +42,11 @@ std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double f
   std::optional<Hit> first;
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, farthest, visit); },
-      [&](const Found& what, const contact::Outline& outline) {
+      [&](BodyId body, const contact::Outline& outline) {
         const std::optional<double> met = meet(outline, from, unit, farthest);
-        if (met && (!first || *met < farthest || order(what) < order(first->what))) {
+        if (met && (!first || *met < farthest || body.slot < first->body.slot)) {
           farthest = *met;
-          first = Hit{what, from + *met * unit, *met};
+          first = Hit{body, from + *met * unit, *met};
         }
         return farthest;
       });
@@ -82,11 +60,11 @@ std::optional<Hit> Places::nearest(const Vec3& place, Only only) {
   const auto limit = [&] { return best ? std::max(best->distance, 0.0) : infinity; };
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.near(place, limit(), visit); },
-      [&](const Found& what, const contact::Outline& outline) {
+      [&](BodyId body, const contact::Outline& outline) {
         const auto [distance, point] = near(outline, place);
         const double least = best ? best->distance : infinity;
-        if (distance < least || (best && distance == least && order(what) < order(best->what)))
-          best = Hit{what, point, distance};
+        if (distance < least || (best && distance == least && body.slot < best->body.slot))
+          best = Hit{body, point, distance};
         return limit();
       });
   return best;
@@ -98,15 +76,15 @@ std::vector<BodyId> Places::within(const Vec3& place, double radius, Only only) 
   std::vector<BodyId> found;
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.near(place, radius, visit); },
-      [&](const Found& what, const contact::Outline& outline) {
-        if (what.body && near(outline, place).distance <= radius) found.push_back(what.body);
+      [&](BodyId body, const contact::Outline& outline) {
+        if (near(outline, place).distance <= radius) found.push_back(body);
         return radius;
       });
   std::ranges::sort(found, {}, &BodyId::slot);
   return found;
 }
 
-std::vector<Found> Places::overlap(const Shape& shape, const Vec3& position, const Quaternion& orientation, Only only) {
+std::vector<BodyId> Places::overlap(const Shape& shape, const Vec3& position, const Quaternion& orientation, Only only) {
   require_place(position);
   shape::check(shape);
   if (!contact::is_convex(shape) || !shape::is_solid(shape))
@@ -116,35 +94,15 @@ std::vector<Found> Places::overlap(const Shape& shape, const Vec3& position, con
   const geometry::Bounds box = contact::bounds({{probe}, {}});
   const Vec3 middle = 0.5 * (box.low + box.high);
   const double reach = 0.5 * norm(box.high - box.low);
-  std::vector<Found> found;
+  std::vector<BodyId> found;
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.near(middle, reach, visit); },
-      [&](const Found& what, const contact::Outline& outline) {
-        if (is_overlapped(outline, probe)) found.push_back(what);
+      [&](BodyId body, const contact::Outline& outline) {
+        if (is_overlapped(outline, probe)) found.push_back(body);
         return reach;
       });
-  std::ranges::sort(found, {}, order);
+  std::ranges::sort(found, {}, &BodyId::slot);
   return found;
-}
-
-std::uint32_t Places::add_fixed(const Shape& shape, const Vec3& position, const Quaternion& orientation) {
-  shape::check(shape);
-  return add(*fixed_, contact::make_form(shape), position, orientation);
-}
-
-std::uint32_t Places::add_fixed_surface(Mesh mesh, const Vec3& position, const Quaternion& orientation) {
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle)
-      if (vertex >= mesh.vertices.size())
-        throw std::invalid_argument("a triangle names vertex " + std::to_string(vertex) + " of " +
-                                    std::to_string(mesh.vertices.size()));
-  return add(*fixed_, contact::make_open_form(std::move(mesh)), position, orientation);
-}
-
-void Places::remove_fixed(std::uint32_t number) {
-  if (!fixed_->has(number)) throw std::out_of_range("there is no fixed shape " + std::to_string(number));
-  fixed_->remove(number);
-  fixed_->update();
 }
 
 }  // namespace iota

@@ -13,9 +13,7 @@ namespace iota {
 namespace {
 
 bool is_drawn(const model::Structure& model, std::uint32_t body) {
-  if (!model.bodies.is_alive(body)) return false;
-  const model::Body& b = model.bodies[body];
-  return b.count > 0 && !model.is_spark(b.first);
+  return model.bodies.is_alive(body) && model.is_visible(body);
 }
 
 void add_balls(Core& core, const ingredient::SceneView& view, std::uint32_t slot, DrawnBody& drawn) {
@@ -65,7 +63,8 @@ SceneChanges describe(Core& core, bool whole) {
   };
   for (const std::uint32_t body : bodies(model.scene.bodies)) describe_body(core, view, body, changes);
   for (const std::uint32_t body : bodies(model.scene.memberships))
-    if (is_drawn(model, body)) changes.memberships.push_back({body, model.bodies[body].articulate});
+    if (is_drawn(model, body) && !model.obstacles.has(body))
+      changes.memberships.push_back({body, model.bodies[body].articulate});
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { I::describe(view, changes); });
   return changes;
 }

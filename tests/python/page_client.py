@@ -173,6 +173,11 @@ class PageClient:
         """How many articulates the page knows of."""
         return len(set(self.articulates.values()))
 
+    @property
+    def bodies(self) -> dict[int, dict[str, Any]]:
+        """Without obstacles, which are of no articulate."""
+        return {slot: entity for slot, entity in self.entities["body"].items() if slot in self.articulates}
+
     def body(self, slot: int) -> tuple[int, int]:
         """Id of the body in a slot."""
         identity: tuple[int, int] = self.wait_for(lambda: self.entities["body"].get(slot))["id"]

@@ -12,7 +12,6 @@ import numpy as np
 import iota
 from iota import looks
 from iota.world.frames import axes_of, turn_from_x
-from iota.world.scene import Static
 from iota.world.visuals import listed
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -26,7 +25,7 @@ SURFACES = ("on_surface", "inside", "outside")  # kinds of constraints by which 
 
 @dataclass
 class Piece:
-    """A drawn shape. owner: body, bond or fixed thing; place: of its origin, m; turn: (3, 3), from its frame to the world."""
+    """A drawn shape. owner: body or bond; place: of its origin, m; turn: (3, 3), from its frame to the world."""
 
     owner: Any
     shape: iota.types.Shape
@@ -76,8 +75,9 @@ class Drawn:
         self.world, self.style = world, style
         self._known: dict[Any, Array] = {}
         self._fixed = [
-            Piece(fixed, fixed.look.shape, np.array(tuple(fixed.position)), axes_of(fixed.rotation))
-            for fixed in world.scene.statics if fixed.look.shape is not None
+            piece
+            for body in world.system.obstacles if body != world.scene.ground_body
+            for piece in self._of(body)
         ]  # fmt: skip
 
     def overlaps(self, least: float) -> list[Overlap]:
@@ -105,7 +105,7 @@ class Drawn:
                     meeting.get(b.owner, {b.owner})
                 ):
                     continue
-                if isinstance(b.owner, Static):
+                if n >= moving:
                     mine = [place for body, place in held if body in (a.owner, *meeting.get(a.owner, ()))]
                     if mine and b.depth(np.array(mine)).max() > -NEAR:
                         continue
@@ -139,25 +139,27 @@ class Drawn:
 
     def _of_bodies(self) -> Iterator[Piece]:
         for body in self.world.system.bodies:
-            if body.is_spark:
-                continue
-            solids = [
-                Piece(body, solid.shape, np.array(tuple(solid.position)), axes_of(solid.orientation))
-                for solid in body.solids
-            ]
-            known = self._styled(self.world.scene.look_of(body))
-            if not known:
+            if not body.is_spark:
+                yield from self._of(body)
+
+    def _of(self, body: iota.Body) -> Iterator[Piece]:
+        solids = [
+            Piece(body, solid.shape, np.array(tuple(solid.position)), axes_of(solid.orientation))
+            for solid in body.solids
+        ]
+        known = self._styled(self.world.scene.look_of(body))
+        if not known:
+            yield from solids
+        place, turn = np.array(tuple(body.position)), axes_of(body.orientation)
+        for look in known:
+            if look.shape is None:
                 yield from solids
-            place, turn = np.array(tuple(body.position)), axes_of(body.orientation)
-            for look in known:
-                if look.shape is None:
-                    yield from solids
-                else:
-                    at = place + turn @ np.array(look.offset)
-                    yield Piece(body, self._fitted(look, body).shape, at, turn @ axes_of(look.rotation))
-            for particle in body.particles:
-                if 2 * particle.radius > SMALL:
-                    yield Piece(body, iota.Sphere(particle.radius), np.array(tuple(particle.position)), np.eye(3))
+            else:
+                at = place + turn @ np.array(look.offset)
+                yield Piece(body, self._fitted(look, body).shape, at, turn @ axes_of(look.rotation))
+        for particle in body.particles:
+            if 2 * particle.radius > SMALL:
+                yield Piece(body, iota.Sphere(particle.radius), np.array(tuple(particle.position)), np.eye(3))
 
     def _fitted(self, look: looks.Look, body: iota.Body) -> looks.Look:
         return look.of_length(abs(body.particles[-1].position - body.particles[0].position)) if look.fits else look

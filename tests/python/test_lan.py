@@ -71,7 +71,7 @@ def test_poses_come_by_wss_too(world: iota.World, trust: ssl.SSLContext) -> None
         frames = client.pose_frames
         for _ in range(30):
             world.step()
-        client.wait_for(lambda: client.pose_frames > frames + 3 and len(client.places) == 3)
+        client.wait_for(lambda: client.pose_frames > frames + 3 and len(client.places) == 3 + 1)  # and the ground
 
 
 def test_this_machine_needs_no_https(world: iota.World) -> None:

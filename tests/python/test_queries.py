@@ -7,12 +7,16 @@ import math
 import time
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from slow_queries import SlowQueries
 
 import iota
+from iota._core import Places
+from iota.shapelib import read_model
 
 
 def make_world() -> tuple[iota.World, iota.Body, iota.Body, iota.Body]:
@@ -164,35 +168,132 @@ def test_ten_thousand_bodies_take_less_than_a_tenth_of_asking_a_thousand_one_by_
         assert quick < 0.1 * least(partial(getattr(slow, name), *arguments), 3), name
 
 
-def test_the_ground_a_wall_and_a_room_from_a_file_are_met_too() -> None:
+def test_the_ground_a_wall_and_a_room_from_a_file_are_static_bodies(tmp_path: Path) -> None:
     world = iota.World(iota.System(gravity=(0, 0, 0)), ground=-1)
     wall = world.add_static(iota.looks.box((0.2, 4, 4)), (2, 0, 0))
     beam = world.add_strut((0, 3, -2), (0, 3, 2), iota.looks.cylinder(0.1))
     corners, faces = [(-3, 0, -3), (-3, 0, 3), (-3, 4, 3), (-3, 4, -3)], [(0, 1, 2), (0, 2, 3)]
-    side = world.surface(np.array(corners), faces)
+    trimesh.Scene(trimesh.Trimesh(corners, faces)).export(tmp_path / "side.glb")
+    (surface,) = world.drawings.model(read_model(tmp_path / "side.glb"), at=(0, 0, 0), solid=True)
+    side = surface.at
     ball = world.system.body(shape=iota.Sphere(0.2), position=(0, 1, 0))
-    for along, fixed, distance in (((1, 0, 0), wall, 1.9), ((0, 0, 1), None, None), ((-1, 0, 0), side, 3)):
+    ground = world.scene.ground_body
+    assert world.system.obstacles == [ground, wall, beam, side] and world.system.bodies == [ball]
+    assert {body.kind for body in world.system.obstacles} == {"static"}
+    for along, body, distance in (((1, 0, 0), wall, 1.9), ((0, 0, 1), None, None), ((-1, 0, 0), side, 3)):
         hit = world.queries.ray((0, 0.5, 0), along)
-        assert hit is None if fixed is None else (hit.body, hit.fixed) == (None, fixed)
+        assert hit is None if body is None else hit.body == body
         assert hit is None or hit.distance == pytest.approx(distance, abs=1e-6)
     down = world.queries.ray((0.5, 0, 0), (0, -1, 0))
-    assert down.distance == pytest.approx(1) and isinstance(down.fixed.look.shape, iota.HalfSpace)
-    assert world.queries.nearest((0, 2.8, 1)).fixed is beam
-    assert world.queries.nearest((0, 2.8, 1), bodies=world.system.bodies).body == ball
-    assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0)) == [ball, wall, side]
+    assert down.distance == pytest.approx(1) and down.body == ground and ground.name == "ground"
+    assert world.queries.nearest((0, 2.8, 1)).body == beam
+    assert world.queries.nearest((0, 2.8, 1), bodies=[ball]).body == ball
+    assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0)) == [wall, side, ball]
     assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1, 0), bodies=[ball]) == [ball]
     half = math.sqrt(0.5)
     assert world.queries.overlap(iota.Box((8, 0.1, 0.1)), (0, 1.3, 0), (0, half, 0, half)) == []
 
-    side.at = (-1, 0, 0)
+    other = iota.System()
+    other.restore(world.system.snapshot())
+    met = iota.World(other).queries.ray((0, 0.5, 0), (-1, 0, 0))
+    assert met.distance == pytest.approx(3), "a saved room is a room elsewhere"
+    side.position = (-1, 0, 0)
     assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)).distance == pytest.approx(4)
-    side.at = ball
-    assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)) is None, "what is on a body is no wall"
-    side.at = None
     side.destroy()
     assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)) is None
     with pytest.raises(ValueError, match="convex"):
         world.queries.overlap(iota.Torus(1, 0.1), (0, 0, 0))
+    with pytest.raises(ValueError, match="place of the world"):
+        world.drawings.model(read_model(tmp_path / "side.glb"), at=ball, solid=True)
+
+
+def test_a_closed_model_is_drawn_where_it_acts(tmp_path: Path) -> None:
+    """Its body's frame has its origin at the center of mass, the file another one."""
+    box = trimesh.creation.box((1, 1, 1))
+    box.apply_translation((5, 0.5, 0))
+    trimesh.Scene(box).export(tmp_path / "box.glb")
+    world = iota.World(iota.System(), ground=None)
+    (surface,) = world.drawings.model(read_model(tmp_path / "box.glb"), at=(0, 2, 0), solid=True)
+    drawn = surface.points + list(surface.at.position)
+    assert drawn.min(axis=0) == pytest.approx((4.5, 2, -0.5)) and drawn.max(axis=0) == pytest.approx((5.5, 3, 0.5))
+    assert world.queries.ray((5, 9, 0), (0, -1, 0)).distance == pytest.approx(6, abs=1e-6)
+
+
+def test_only_a_body_that_cannot_move_has_a_mesh_with_holes() -> None:
+    corners, faces = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]
+    with pytest.raises(ValueError, match="closed"):
+        iota.Mesh(corners, faces)
+    with pytest.raises(ValueError, match="names vertex 3"):
+        iota.Mesh(corners, [(0, 1, 3)], closed=False)
+    system, flat = iota.System(), iota.Mesh(corners, faces, closed=False)
+    assert not flat.closed and iota.Mesh.convex_hull([*corners, (0, 0, 1)]).closed
+    assert iota.shapes.from_json(iota.shapes.to_json(flat)) == flat
+    with pytest.raises(ValueError, match="closed"):
+        system.body(shape=flat)
+    wall = system.body("static", shape=flat)
+    with pytest.raises(ValueError, match="no mass"):
+        wall.kind = "dynamic"
+    assert system.obstacle(flat).solids[0].shape == flat
+
+
+def test_an_obstacle_is_a_static_body_that_nothing_is_tied_to_and_that_no_sum_counts() -> None:
+    system = iota.System()
+    ball = system.body(shape=iota.Sphere(0.1), position=(0, 1, 0), mass=2)
+    energy, rows = system.energy.total, len(system.positions)
+    wall = system.obstacle(iota.Box((1, 2, 0.2)), position=(0, 1, -1), orientation=(0, 0.6, 0, 0.8))
+    wall.name = "wall"
+    assert (wall.kind, wall.particles, wall.mass, wall.position) == ("static", [], 0, iota.Vec3(0, 1, -1))
+    assert wall.orientation == pytest.approx((0, 0.6, 0, 0.8)) and "obstacle" in repr(wall)
+    assert system.energy.total == energy and len(system.positions) == rows and system.articulate_count == 1
+    refused: list[Callable[[], object]] = [
+        lambda: setattr(wall, "kind", "dynamic"),
+        lambda: setattr(wall, "kind", "scripted"),
+        lambda: wall.particle((0, 1, -1)),
+        lambda: wall.particle((0, 1, -1), mass=0),
+        lambda: wall.attachment((0, 1, -1)),
+        lambda: wall.combine(ball),
+        lambda: ball.combine(wall),
+        lambda: setattr(wall, "velocity", (1, 0, 0)),
+        lambda: setattr(wall, "mass", 2),
+        lambda: setattr(wall, "radius", 0.1),
+        lambda: wall.apply_force((0, 1, 0)),
+        lambda: system.weld(ball, wall, at=(0, 1, 0)),
+        lambda: system.grip(wall, (0, 0, 0), (0, 1, 0)),
+    ]
+    state = system.snapshot()
+    for edit in refused:
+        with pytest.raises(ValueError, match=r"obstacle|no particles|shape"):
+            edit()
+    assert system.snapshot() == state, "what is refused changes nothing"
+    with system.edit():
+        wall.position = (0, 3, 0)
+    assert Places(system).ray((0, 9, 0), (0, -1, 0), 99, None)[1].y == pytest.approx(4)
+    system.undo()
+    assert wall.position == iota.Vec3(0, 1, -1)
+    wall.active = False
+    assert Places(system).ray((0, 1, -9), (0, 0, 1), 8.5, None) is None
+    wall.active = True
+    for _ in range(10):
+        system.step(0.01)
+    assert wall.position == iota.Vec3(0, 1, -1)
+    wall.destroy()
+    assert system.obstacles == [] and not wall.alive
+
+
+def test_the_ground_comes_back_when_a_script_restores_a_state_of_before_it() -> None:
+    system = iota.System()
+    ball = system.body(shape=iota.Sphere(0.1), position=(0, 0.5, 0), mass=1)
+    start = system.snapshot()
+    world = iota.World(system, ground=0)
+    for _ in range(2):
+        system.restore(start)
+        world.draw(system.bodies, iota.looks.sphere(0.1))
+        for _ in range(200):
+            world.step()
+        assert ball.position.y == pytest.approx(0.1, abs=1e-3)
+        assert [body.name for body in system.obstacles].count("ground") == 1
+    again = iota.World(system, ground=3)
+    assert again.scene.ground == 0, "a system has one ground"
 
 
 def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:

@@ -17,9 +17,8 @@ def test_the_room_is_rich_and_light_enough_for_a_headset() -> None:
     world = iota.World(iota.System())
     room = _laboratory.furnish(world)
     assert 50_000 < room.triangles < 75_000
-    assert len(world.scene.statics) < 40
-    drawn = sum(len(static.look.shape.triangles) for static in world.scene.statics)
-    assert drawn == room.triangles
+    assert len(world.system.obstacles) < 40
+    assert sum(len(body.solids[0].shape.triangles) for body in world.system.obstacles) == room.triangles
 
 
 def test_surfaces_are_closed_and_turned_outwards() -> None:
@@ -79,7 +78,7 @@ def test_the_ladder_goes_on_by_itself_only_while_nobody_plays_with_the_cradle() 
 def test_a_hand_on_a_page_drags_a_ball_and_turns_the_cradle_on_its_desk(run_world: Runner) -> None:
     world = lab.build()
     balls = [body for body in world.system.bodies if isinstance(getattr(body.solids[0], "shape", None), iota.Sphere)]
-    (frame,) = (body for body in world.system.bodies if body.kind == "static" and body not in balls)
+    (frame,) = (body for body in world.system.bodies if body.name == "frame")
     start, out = balls[-1].center_of_mass, list[float]()
     world.on_step(lambda: out.append(balls[-1].center_of_mass.x - start.x))
     with PageClient(run_world(world)) as page:

@@ -77,7 +77,7 @@ def test_drawings_on_a_particle_stay_on_it_when_bodies_are_cut(run_world: Runner
         assert before["body"] == other.slot
         assert entity(page, "label", 1)["a"] != entity(page, "label", 1)["b"], "between the ends of the bond"
         world.call(lambda: body.combine(other))
-        page.wait_for(lambda: len(page.entities["body"]) == 1)
+        page.wait_for(lambda: len(page.bodies) == 1)
         page.wait_for(lambda: page.entities["label"][0]["a"]["body"] == body.slot)
         assert page.entities["label"][0]["a"]["point"] == pytest.approx((1, 0, 0), abs=0.6)
         world.call(body.destroy)

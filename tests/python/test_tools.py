@@ -77,7 +77,7 @@ def test_an_action_on_several_bodies_is_one_edit(chain: list[iota.Body], run_wor
         looks.append(event.body.slot)
 
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 6 and page.parts() == 1)
+        page.wait_for(lambda: len(page.bodies) == 6 and page.parts() == 1)
 
         def act_on(name: str, *links: int) -> None:
             first, *others = (page.body(chain[link].slot) for link in links)
@@ -86,30 +86,30 @@ def test_an_action_on_several_bodies_is_one_edit(chain: list[iota.Body], run_wor
         before = world.call(lambda: system.undo_count)
         for name, done in (
             ("break", lambda: page.parts() == 4),
-            ("copy", lambda: len(page.entities["body"]) == 9),
-            ("destroy", lambda: len(page.entities["body"]) == 3),
+            ("copy", lambda: len(page.bodies) == 9),
+            ("destroy", lambda: len(page.bodies) == 3),
         ):
             act_on(name, 1, 3, 5)
             page.wait_for(done)
             assert world.call(lambda: system.undo_count) == before + 1
             act(page, "undo")
-            page.wait_for(lambda: page.parts() == 1 and len(page.entities["body"]) == 6)
+            page.wait_for(lambda: page.parts() == 1 and len(page.bodies) == 6)
             assert world.call(lambda: system.undo_count) == before
         act_on("look", 1, 3, 5)
         page.wait_for(lambda: len(looks) == 3)
         act(page, "redo")
-        page.wait_for(lambda: len(page.entities["body"]) == 3)
+        page.wait_for(lambda: len(page.bodies) == 3)
         act(page, "undo")
-        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        page.wait_for(lambda: len(page.bodies) == 6)
         assert world.call(lambda: system.undo_count) == before, "an action without an edit is not undone"
         assert seen == [chain[link].slot for link in (1, 3, 5)]
         # One that is gone, and one twice: the others are meant.
         gone = page.body(chain[5].slot)
         world.call(chain[5].destroy)
-        page.wait_for(lambda: len(page.entities["body"]) == 5)
+        page.wait_for(lambda: len(page.bodies) == 5)
         seen.clear()
         page.send("action", name="destroy", body=gone, others=[page.body(chain[0].slot)] * 2)
-        page.wait_for(lambda: len(page.entities["body"]) == 4)
+        page.wait_for(lambda: len(page.bodies) == 4)
         assert seen == [chain[0].slot]
 
 
@@ -138,7 +138,7 @@ def test_users_break_join_and_take_it_back(chain: list[iota.Body], run_world: Ru
     world.offer()
     slot = chain[3].slot
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 6 and page.parts() == 1)
+        page.wait_for(lambda: len(page.bodies) == 6 and page.parts() == 1)
         act(page, "break", page.body(slot))
         page.wait_for(lambda: page.parts() == 2)
         act(page, "undo")
@@ -162,7 +162,7 @@ def test_a_break_during_a_join_calls_it_off(chain: list[iota.Body], run_world: R
     world = iota.World(system, ground=None)
     world.offer("break", "join")
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        page.wait_for(lambda: len(page.bodies) == 6)
         lower = page.body(chain[3].slot)
         act(page, "join", lower)
         page.wait_for(lambda: world.call(lambda: system.closing_count) == 1)
@@ -215,10 +215,10 @@ def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run
     world.offer("copy")
     world.clock.paused = True
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 2)
+        page.wait_for(lambda: len(page.bodies) == 2)
         for slot in slots:
             act(page, "copy", page.body(slot))
-        page.wait_for(lambda: len(page.entities["body"]) == 4)
+        page.wait_for(lambda: len(page.bodies) == 4)
 
         def figures() -> list[tuple[object, ...]]:
             found = []
@@ -231,7 +231,7 @@ def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run
 
         first, second, third, fourth = world.call(figures)
         assert first == third and second == fourth
-        visuals = [page.visual_of(slot)["name"] for slot in page.entities["body"]]
+        visuals = [page.visual_of(slot)["name"] for slot in page.bodies]
         assert visuals[1] == visuals[3]
         apart = world.call(lambda: abs(system.bodies[2].center_of_mass - system.bodies[0].center_of_mass))
         assert 0.2 < apart < 1
@@ -242,7 +242,7 @@ def test_two_bodies_are_measured(chain: list[iota.Body], run_world: Runner) -> N
     world.offer("measure")
     slots = chain[1].slot, chain[4].slot
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        page.wait_for(lambda: len(page.bodies) == 6)
         for slot in slots:
             act(page, "measure", page.body(slot))
         label = page.wait_for(lambda: page.entities["label"].get(0))
@@ -266,7 +266,7 @@ def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, ru
     joined: list[iota.Particle] = []
     world.tools.socket(place, [plug], within=0.2, on_snap=joined.append)
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.entities["body"]) == 2)
+        page.wait_for(lambda: len(page.bodies) == 2)
         assert not page.entities["marker"], "nobody holds a plug"
 
         def carry(x: float) -> None:

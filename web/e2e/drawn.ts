@@ -17,7 +17,7 @@ export interface Drawn {
   readonly covered: number;
 }
 
-const everything = ["body", "staticShape", "tie", "particleSet"] as const;
+const everything = ["body", "tie", "particleSet"] as const;
 
 /** The pixels of these kinds of things, or of shadows: those that change when they are hidden. */
 export async function drawn(tab: Tab, what: readonly (typeof everything)[number][] | "shadows" = everything): Promise<Drawn> {

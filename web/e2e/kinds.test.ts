@@ -39,7 +39,7 @@ it("all kinds look as they did", async () => {
   expect(tab.complaints).toEqual([]);
 });
 
-const kinds = ["marker", "staticShape", "line", "tube", "arrow", "axes", "label", "pointCloud", "shapeSet", "strut", "surface", "custom", "light", "body", "tie", "nail", "particleSet", "trace", "paint"];
+const kinds = ["marker", "line", "tube", "arrow", "axes", "label", "pointCloud", "shapeSet", "strut", "surface", "custom", "light", "body", "tie", "nail", "particleSet", "trace", "paint"];
 
 /** What is wrong with one kind is seen in one of its cells. This tells of the comparison, not of the page: some of them usually. */
 it.each(runsAll ? kinds : ["line", "light", "paint"])("a missing and a displaced %s is noticed", async (kind) => {

@@ -64,7 +64,7 @@ async function rows(of: Tab): Promise<{ rows: number[]; horizon: number }> {
   return of.page.evaluate(() => {
     const { viewer, world: { entities } } = iota.page;
     const { renderer, camera } = viewer;
-    const kinds = [entities.body, entities.staticShape, entities.tie, entities.nail];
+    const kinds = [entities.body, entities.tie, entities.nail];
     for (const { root } of kinds) root.visible = false;
     viewer.drawFilmFrame();
     for (const { root } of kinds) root.visible = true;

@@ -24,5 +24,5 @@ def build() -> iota.World:
     file = Path(mkdtemp()) / "wall.glb"
     wall = trimesh.Trimesh([(-4.5, 0, 3.5), (4.5, 0, 3.5), (4.5, 3, 3.5), (-4.5, 3, 3.5)], [(0, 1, 2), (0, 2, 3)])
     trimesh.Scene(wall).export(file)
-    world.drawings.model(read_model(file))
+    world.drawings.model(read_model(file), solid=True)
     return world

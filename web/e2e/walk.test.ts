@@ -25,7 +25,7 @@ afterAll(async () => {
 const outside = () => tab.page.evaluate(() => {
   const { viewer: { camera }, world: { entities } } = iota.page;
   let [left, right, near, far] = [Infinity, -Infinity, Infinity, -Infinity];
-  for (const mesh of entities.staticShape.meshes()) {
+  for (const mesh of entities.body.fixedMeshes()) {
     mesh.geometry.computeBoundingBox();
     const { min, max } = mesh.geometry.boundingBox!;
     left = Math.min(left, mesh.position.x + min.x);
@@ -67,7 +67,7 @@ it("ends at the walls, whichever way one goes", async () => {
   expect(await tab.page.evaluate(() => iota.page.viewer.camera.position.z), "it went on to it").toBeGreaterThan(3.3);
   expect(await tab.page.evaluate(() => {
     let triangles = 0;
-    for (const { geometry } of iota.page.world.entities.staticShape.meshes()) triangles += (geometry.index ?? geometry.getAttribute("position")).count / 3;
+    for (const { geometry } of iota.page.world.entities.body.fixedMeshes()) triangles += (geometry.index ?? geometry.getAttribute("position")).count / 3;
     return triangles;
   })).toBeGreaterThan(100_000);
   await tab.picture("walk");

@@ -172,6 +172,21 @@ describe("static bodies", () => {
     expect(met.share).toBe(1);
   });
 
+  it("of triangles are felt by these, not by the box around them", () => {
+    const tested = new TestWorld();
+    // Two walls at x = 3.5 and 4.5: the box around both would stop a walk between them.
+    const at = [-0.5, 0.5].flatMap((x) => [x, -3, -9, x, -3, 9, x, 3, 9, x, 3, -9]);
+    const mesh = { ...part("mesh", []), shape: { kind: "mesh", sizes: new Float32Array(0), vertices: Float32Array.from(at), triangles: Uint32Array.of(0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7) } };
+    tested.set("visual", visual(0, "walls", mesh));
+    tested.set("body", bodyEntity(0, { kind: BodyKind.static }));
+    tested.poses([body(0, 4)]);
+    const place = new Vector3(4, 0, 0);
+    walk(wallsOf(tested.world), place, 0.05, 60);
+    expect(place.x).toBeCloseTo(4.5 - 0.12, 2);
+    walk(wallsOf(tested.world), place, -0.05, 60);
+    expect(place.x).toBeCloseTo(3.5 + 0.12, 2);
+  });
+
   it("are floors", () => {
     const walls = made();
     expect(walls.floorBelow(new Vector3(4, 5, 0))).toBeCloseTo(1, 2);
@@ -181,15 +196,15 @@ describe("static bodies", () => {
 
 describe("surfaces, as those of a room from a file,", () => {
   const wall: SurfaceEntity = {
-    id: id(0), at: { body: NO_BODY, point: [4, 0, 0] }, bodies: new Uint32Array(0), points: Float32Array.of(0, -3, -9, 0, -3, 9, 0, 3, 9, 0, 3, -9),
+    id: id(0), at: { body: 1, point: [0, 0, 0] }, bodies: new Uint32Array(0), points: Float32Array.of(0, -3, -9, 0, -3, 9, 0, 3, 9, 0, 3, -9),
     triangles: Uint32Array.of(0, 1, 2, 0, 2, 3), coordinates: new Float32Array(0), material: "paint", color: NO_COLOR,
   };
   /** How far along x a walk from x = 2 gets before it. */
   function reached(surface: SurfaceEntity): number {
     const tested = new TestWorld();
     tested.set("visual", visual(0, "ball", part("sphere", [0.1])));
-    tested.set("body", bodyEntity(0));
-    tested.poses([body(0, 4)]);
+    tested.set("body", bodyEntity(0), bodyEntity(1, { kind: BodyKind.static, visual: NO_BODY }));
+    tested.poses([body(0, 4), body(1, 4)]);
     tested.world.entities.surface.create(surface);
     tested.world.entities.surface.draw();
     const at = new Vector3(2, 0, 0);
@@ -197,10 +212,11 @@ describe("surfaces, as those of a room from a file,", () => {
     return at.x;
   }
 
-  it("stop a walk from either side; those on bodies, and those that bend, do not", () => {
+  it("stop a walk from either side on a static body; those elsewhere, and those that bend, do not", () => {
     expect(reached(wall)).toBeCloseTo(4 - 0.12, 2);
     expect(reached({ ...wall, triangles: Uint32Array.of(0, 2, 1, 0, 3, 2) })).toBeCloseTo(4 - 0.12, 2);
     expect(reached({ ...wall, at: { body: 0, point: [0, 0, 0] } })).toBeCloseTo(6, 5);
+    expect(reached({ ...wall, at: { body: NO_BODY, point: [4, 0, 0] } })).toBeCloseTo(6, 5);
     expect(reached({ ...wall, bodies: new Uint32Array(4).fill(NO_BODY) })).toBeCloseTo(6, 5);
   });
 });

@@ -78,6 +78,7 @@ class Cradle:
         self.at, self.turn, self.toward = at, 0.0, 0.0  # toward: where the hand on the frame is, rad
         self.hands: dict[int, tuple[int, iota.Vec3]] = {}  # what each holds, and where it is
         self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
+        self.frame.name = "frame"
         self.balls = [self._hang(world.system, number, balls) for number in range(balls)]
         self.mass = self.balls[0].mass
         self.groups = [Group(range(balls), 0, 0.0, 0.0)]

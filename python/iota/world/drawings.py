@@ -8,7 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
-from iota._core import Vec3
+import numpy as np
+
+from iota._core import Mesh, Vec3
 from iota.arguments import SHORT, is_number
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
@@ -18,6 +20,7 @@ from iota.world.custom import Custom, Sound, checked_volume
 from iota.world.many import Arrows, Segments
 from iota.world.notices import Notices
 from iota.world.parts import Part
+from iota.world.scene import Scene
 from iota.world.shown import (
     Arrow,
     Axes,
@@ -36,7 +39,7 @@ from iota.world.shown import (
     Viewpoint,
 )
 from iota.world.skins import Skin
-from iota.world.things import Attachable, Frame, Place, Thing, Things, vector
+from iota.world.things import Attachable, Frame, Place, Thing, Things, place, vector
 
 EFFECTS = ("break", "join", "grab", "impact")
 
@@ -61,6 +64,21 @@ def _triangles_of(surface: Any) -> tuple[Any, Any]:
     return surface.vertices, [(face[0], b, c) for face in surface.faces for b, c in pairwise(face[1:])]
 
 
+def _joined(parts: Sequence[tuple[Any, Any]]) -> Mesh:
+    """One mesh of surfaces, without triangles that are only a line."""
+    starts = np.cumsum([0, *(len(points) for points, _ in parts)])
+    rows = np.concatenate([np.reshape(own, (-1, 3)) + start for (_, own), start in zip(parts, starts, strict=False)])
+    a, b, c = rows.T
+    return Mesh(np.concatenate([points for points, _ in parts]), rows[(a != b) & (b != c) & (c != a)], closed=False)
+
+
+def _in_world(at: Place) -> Vec3:
+    found = place(at)
+    if not isinstance(found, Vec3):
+        raise ValueError(f"a solid model stands at a place of the world, not on {SHORT.repr(at)}")
+    return found
+
+
 class Drawings(Part):
     """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames,
     objects of own classes, sounds.
@@ -73,8 +91,8 @@ class Drawings(Part):
         label.text = "still the top"
     """
 
-    def __init__(self, things: Things, notices: Notices) -> None:
-        self._things, self._notices = things, notices
+    def __init__(self, things: Things, notices: Notices, scene: Scene) -> None:
+        self._things, self._notices, self._scene = things, notices, scene
 
     @property
     def things(self) -> list[Thing]:
@@ -234,21 +252,28 @@ class Drawings(Part):
             coordinates=coordinates,
         )
 
-    def model(self, surfaces: Iterable[Any], at: Place = None) -> list[Surface]:
+    def model(self, surfaces: Iterable[Any], at: Place = None, solid: bool = False) -> list[Surface]:
         """Draws the result of `iota.shapelib.read_model`: each surface in the color of its material, as metal if it is, with its
-        image if it has one. at: origin and frame of all. Warns of what was left out when the file was read.
+        image if it has one. at: origin and frame of all. solid: it stands at a place of the world as a static body, at which
+        walks end and that `Queries` find; its surfaces are on this body. Warns of what was left out when the file was read.
 
         world.drawings.model(iota.shapelib.read_model("chair.glb"), at=body)
+        world.drawings.model(iota.shapelib.read_model("room.glb"), at=(0, 0, 0), solid=True)
         """
-        shown = []
+        surfaces = list(surfaces)
         for surface in surfaces:
             if not hasattr(surface, "notes"):
                 raise TypeError(f"a model is a result of iota.shapelib.read_model, not of {SHORT.repr(surface)}")
             for note in surface.notes:
                 warnings.warn(note, stacklevel=2)
                 self._notices.warn_once(note)
+        parts = [(np.asarray(points), triangles) for points, triangles in map(_triangles_of, surfaces)]
+        if solid:
+            at = self._scene._fix("model", _joined(parts), [], _in_world(at))
+        shown = []
+        for surface, (points, triangles) in zip(surfaces, parts, strict=True):
             image = {"texture": surface.texture, "coordinates": surface.coordinates}
-            shown.append(self.surface(surface, at=at, color=surface.color, material=surface.material, **image))
+            shown.append(self.surface(points, triangles, at, surface.color, surface.material, **image))
         return shown
 
     def skin(

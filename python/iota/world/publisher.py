@@ -17,7 +17,6 @@ from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
-from iota.world.visuals import part_of
 
 
 class Publisher:
@@ -115,9 +114,6 @@ class Publisher:
         self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, moves=moves, keys=list(listeners.keys))
         self._tell_if_new("set_actions", actions=[action.describe() for action in state.actions])
         state.visuals.tell(self.room)
-        self.room.set_statics(
-            [part_of(s.look.describe(), offset=tuple(s.position), rotation=s.rotation) for s in scene.statics]
-        )
         for texture in state.visuals.textures():
             state.things.images.use(texture.name, texture)
 

@@ -5,18 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from iota._core import Body, System, Vec3
+from iota._core import Body, HalfSpace, Shape, System, Vec3
 from iota.arguments import SHORT
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody
 from iota.world.frames import turn_from_x
-from iota.world.images import Images
 from iota.world.parts import Part
 from iota.world.things import unit_quaternion, vector
 from iota.world.visuals import TIES, Visuals, radius_of
+
+GROUND = "ground"  # the name of its body
+UP = HalfSpace((0, 1, 0))
 
 
 @dataclass(frozen=True)
@@ -43,18 +45,8 @@ def camera_or_none(given: Any) -> Camera | None:
     return given
 
 
-@dataclass(frozen=True, eq=False)
-class Static:
-    """A fixed shape without physics, see `Scene.add_static`; the ground is one too, of a HalfSpace. position: m. rotation:
-    quaternion x y z w."""
-
-    look: Look
-    position: Vec3
-    rotation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)
-
-
 class Scene(Part):
-    """How bodies are drawn, shapes without physics that stand beside them, and the first view.
+    """How bodies are drawn, what stands fixed beside them, and the first view.
 
     world.scene.draw(wheel, looks.solid("brass"))
     """
@@ -63,17 +55,16 @@ class Scene(Part):
         self,
         system: System,
         visuals: Visuals | None = None,
-        images: Images | None = None,
         style: str | None = None,
         ground: float | None = None,
     ) -> None:
         self._system = system
         self._visuals = Visuals() if visuals is None else visuals
-        self._images = Images() if images is None else images
-        self._style, self._ground = style, ground
+        self._style, self._height = style, ground
+        self._ground: Body | None = None
         self._camera: Camera | None = None
-        self._statics: list[Static] = []
         self._shows_edits = True
+        self.keep_ground()
 
     @property
     def camera(self) -> Camera | None:
@@ -108,12 +99,30 @@ class Scene(Part):
     @property
     def ground(self) -> float | None:
         """Height of the ground, m; None without one, and before the world begins if it was to be found."""
-        return self._ground
+        body = self.ground_body
+        return self._height if body is None else body.solids[0].position.y
 
     @property
-    def statics(self) -> Sequence[Static]:
-        """The results of `add_static` and `add_strut`, in the order of creation."""
-        return self._statics
+    def ground_body(self) -> Body | None:
+        """The obstacle that is the ground, a HalfSpace named "ground"; None without one, and for another Simulator. One that the
+        system has already is taken as it is."""
+        if not isinstance(self._system, System):
+            return None
+        if self._ground is None or not _is_ground(self._ground):
+            self._ground = next(filter(_is_ground, self._system.obstacles), None)
+        return self._ground
+
+    def keep_ground(self, height: float | None = None) -> None:
+        """Makes the ground, if there is none: the script may have restored a state of before it. height: m; None: the former."""
+        if height is not None:
+            self._height = height
+        if self._height is None or not isinstance(self._system, System):
+            return
+        if self._ground is not None and self._ground.alive and self._ground.name == GROUND:  # in each step
+            return
+        if self.ground_body is None:
+            self._ground = self._fix("ground", UP, [], (0, self._height, 0))
+            self._ground.name = GROUND
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between
@@ -146,20 +155,17 @@ class Scene(Part):
             raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
         self._visuals.assign_ties(kind, by_style(look))
 
-    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Static:
-        """Adds a shape without physics: a beam, a stand. Walks end at it, and `Queries.ray` meets it. position: m. rotation:
-        quaternion x y z w."""
+    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Body:
+        """Adds a static body with the shape of a look: a beam, a stand. Walks end at it, and `Queries` find it; nothing can be
+        tied to it, see `System.obstacle`. position: of the shape's origin, m. rotation: quaternion x y z w. For a room from a
+        file see `Drawings.model`. Raises TypeError for a World of another Simulator, which has static bodies of its own."""
         if not isinstance(look, Look) or look.shape is None:
             raise TypeError(f"add_static: look must be a Look with a shape, not {SHORT.repr(look)}")
-        added = Static(look, vector(position), unit_quaternion(rotation))
-        self._statics.append(added)
-        if look.texture is not None:
-            self._images.use(look.texture.name, look.texture)
-        self._visuals.version += 1
-        return added
+        own = replace(look, shape=None, offset=(0, 0, 0), rotation=(0, 0, 0, 1))
+        return self._fix("add_static", look.shape, own, position, rotation)
 
-    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> Static:
-        """Adds a look without physics from `start` to `end` (m): its local x runs along the line, and a cylinder or
+    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> Body:
+        """Adds a static body with the shape of a look from `start` to `end` (m): its local x runs along the line, and a cylinder or
         capsule without a length gets that of the line."""
         a, b = Vec3(*start), Vec3(*end)
         length = abs(b - a)
@@ -167,6 +173,25 @@ class Scene(Part):
             raise ValueError(f"a strut needs two different ends, not {a} twice")
         direction = (b - a) * (1 / length)
         return self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
+
+    def _fix(
+        self,
+        caller: str,
+        shape: Shape,
+        look: Drawn,
+        position: Sequence[float] | Vec3,
+        rotation: Sequence[float] = (0, 0, 0, 1),
+    ) -> Body:
+        """An obstacle that is drawn with a look. caller: for the error of a World of another Simulator."""
+        if not isinstance(self._system, System):
+            raise TypeError(f"{caller} needs a System; this world has a simulator of its own: give it a body of kind static")
+        body = self._system.obstacle(shape, position, unit_quaternion(rotation))
+        self.draw(body, look)
+        return body
+
+
+def _is_ground(body: Body) -> bool:
+    return body.alive and body.name == GROUND and any(isinstance(solid.shape, HalfSpace) for solid in body.solids)
 
 
 def _give_radius(body: Body | SimulatedBody, radius: float) -> None:

@@ -363,12 +363,6 @@ class Surface(Thing):
         shown = {"at": at, "material": material_name(self.material, self.texture), "color": self.color}
         return shown | {"coordinates": self._laid(), "triangles": self._whole()} | placed
 
-    @property
-    def is_in_world(self) -> bool:
-        """Whether it is rigid and at a place of the world: then it is an obstacle for walks and rays."""
-        is_whole: bool = self.triangles.max(initial=-1) < len(self.points)
-        return is_whole and isinstance(self.points, np.ndarray) and isinstance(self.at, Vec3)
-
     def _laid(self) -> Any:
         """The place of the image at each point."""
         if self.texture is None:

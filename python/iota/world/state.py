@@ -48,7 +48,7 @@ class State:
     def of(cls, system: System, title: str, dt: float, style: str | None, ground: float | None) -> State:
         visuals, things, schedule, costs = Visuals(), Things(), Schedule(), Costs()
         clock = Clock(dt, system, schedule, costs)
-        scene = Scene(system, visuals, things.images, style, ground)
+        scene = Scene(system, visuals, style, ground)
         return cls(system, title, clock, scene, schedule, visuals, things, costs)
 
     @property

@@ -82,6 +82,7 @@ class Stepper:
         for hook in state.listeners.on_step:
             if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
                 self._off.add(hook)
+        state.scene.keep_ground()
         dt, began = state.clock.dt, time.perf_counter()
         with self._guard.watching("A step of the world", SLOW_STEP, SMALLER):
             report = self._step_on_floor(dt)

@@ -77,8 +77,8 @@ class World:
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any other Simulator. title: on the page. dt: length of a step, s. style: the style of
-    drawing that pages start with, one of those in `draw`; checked when the world begins. ground: height of the ground, m, which supports falling bodies (not of
-    another Simulator); "auto": 0, or below bodies that start or hang lower; None for none. camera: the first view,
+    drawing that pages start with, one of those in `draw`; checked when the world begins. ground: height of the ground, m, a static body that supports falling
+    ones (not those of another Simulator); "auto": 0, or below bodies that start or hang lower; None for none. camera: the first view,
     None: everything is visible.
 
         world = iota.World(system, title="pendulum")
@@ -119,7 +119,7 @@ class World:
         self._inputs = inputs = Inputs(state, self._guard, self._stepper.step, self._stepper.reset)
         state.clients.take_picture = self._take_picture
         self._real_time = RealTime(state.clock)
-        self._drawings = Drawings(state.things, state.notices)
+        self._drawings = Drawings(state.things, state.notices, state.scene)
         self._controls = Controls(state.things, state.actions, lambda action, bodies: inputs.act(action, 0, bodies))
         self._events = Events(state.listeners)
         self._tools = Tools(
@@ -132,7 +132,7 @@ class World:
             state.history,
             state.clients,
         )
-        self._queries = Queries(state.system, state.scene, state.things)
+        self._queries = Queries(state.system)
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
         self.camera = camera
@@ -473,7 +473,8 @@ class World:
         self._runner = threading.get_ident()
         if self._finds_ground:
             self._finds_ground = False
-            self.scene._ground = level_below(self.system)
+            if self.scene.ground_body is None:
+                self.scene.keep_ground(level_below(self.system))
         self._stepper.begin(run_options.current().kept)
         self._real_time.restart()
 

@@ -58,14 +58,15 @@ TEST(Meshes, saved_ones_are_read_again_and_cut_ones_refused) {
 
 TEST(Meshes, a_mesh_that_no_solid_can_have_is_told) {
   const Mesh good = box(1);
-  EXPECT_EQ(complaint_about(key_of(good), good), "");
-  EXPECT_NE(complaint_about(key_of(good) + 1, good), "");
+  EXPECT_EQ(complaint_about(key_of(good), good, false), "");
+  EXPECT_NE(complaint_about(key_of(good) + 1, good, false), "");
   Mesh open = good;
   open.triangles.pop_back();
-  EXPECT_NE(complaint_about(key_of(open), open).find("not closed"), std::string::npos);
+  EXPECT_NE(complaint_about(key_of(open), open, false).find("not closed"), std::string::npos);
+  EXPECT_EQ(complaint_about(key_of(open), open, true), "");
   Mesh torn = good;
   torn.triangles[0][0] = 99;
-  EXPECT_NE(complaint_about(key_of(torn), torn).find("99"), std::string::npos);
+  EXPECT_NE(complaint_about(key_of(torn), torn, false).find("99"), std::string::npos);
 }
 
 TEST(Meshes, a_snapshot_takes_them_to_another_system_and_undo_brings_them_back) {

@@ -47,7 +47,7 @@ struct Crowd {
       const auto near = places.within(at, 0.7);
       EXPECT_EQ(near, places.within(at, 0.7, all));
       std::vector<BodyId> overlapped;
-      for (const Found& each : places.overlap(Sphere{0.7}, at, {})) overlapped.push_back(each.body);
+      overlapped = places.overlap(Sphere{0.7}, at, {});
       EXPECT_EQ(overlapped, near);
       const Quaternion turn{0.5, -0.5, 0.1, 0.7};
       EXPECT_EQ(places.overlap(Box{{2, 0.3, 1}, 0}, at, turn), places.overlap(Box{{2, 0.3, 1}, 0}, at, turn, all));
@@ -93,14 +93,14 @@ TEST(Places, of_bodies_that_rest_are_found_after_they_are_moved_woken_or_have_ot
   EXPECT_NEAR(above(0.9).point.y, 0.5, 1e-6);
   system.bodies().set_velocity(ball, {1, 0, 0});
   (void)system.step(0.01, 300);
-  EXPECT_EQ(above(3).what.body, ball);
-  EXPECT_EQ(above(0).what.body, rod);
+  EXPECT_EQ(above(3).body, ball);
+  EXPECT_EQ(above(0).body, rod);
   system.edits().begin();
   system.bodies().destroy(ball);
   (void)system.edits().end();
-  EXPECT_FALSE(above(3).what.body);
+  EXPECT_FALSE(above(3).body);
   system.edits().undo();
-  EXPECT_EQ(above(3).what.body, ball);
+  EXPECT_EQ(above(3).body, ball);
 }
 
 TEST(Places, of_equally_near_ones_the_first_slot_is_found) {
@@ -108,11 +108,10 @@ TEST(Places, of_equally_near_ones_the_first_slot_is_found) {
   Places places = system.places();
   std::vector<BodyId> balls;
   for (int i = 0; i < 40; ++i) balls.push_back(system.bodies().create(Sphere{0.5}, {.position = {0, 0, 5}}));
-  (void)places.add_fixed(Sphere{0.5}, {0, 0, 5}, {});
-  EXPECT_EQ(places.nearest({})->what.body, balls.front());
-  EXPECT_EQ(places.ray({}, {0, 0, 1})->what.body, balls.front());
+  EXPECT_EQ(places.nearest({})->body, balls.front());
+  EXPECT_EQ(places.ray({}, {0, 0, 1})->body, balls.front());
   system.bodies().destroy(balls.front());
-  EXPECT_EQ(places.nearest({})->what.body, balls[1]);
+  EXPECT_EQ(places.nearest({})->body, balls[1]);
 }
 
 TEST(Places, follow_an_edit_between_two_questions) {
@@ -135,15 +134,15 @@ TEST(Places, know_a_half_space_from_everywhere_and_a_mesh_by_its_triangles) {
   Places places = system.places();
   const auto under = places.ray({1e6, 50, 0}, {0, -1, 0});
   ASSERT_TRUE(under);
-  EXPECT_EQ(under->what.body, ground);
+  EXPECT_EQ(under->body, ground);
   EXPECT_NEAR(under->distance, 50, 1e-3);
   const auto on = places.ray({0.5, 50, 0.2}, {0, -1, 0});
   ASSERT_TRUE(on);
-  EXPECT_EQ(on->what.body, block);
+  EXPECT_EQ(on->body, block);
   EXPECT_NEAR(on->distance, 46, 1e-9);
   const auto inside = places.nearest({0, 3.9, 0});
   ASSERT_TRUE(inside);
-  EXPECT_EQ(inside->what.body, block);
+  EXPECT_EQ(inside->body, block);
   EXPECT_NEAR(inside->distance, -0.1, 1e-9);
   EXPECT_NEAR(inside->point.y, 4, 1e-9);
   EXPECT_EQ(places.within({0, 1, 0}, 1.001).size(), 2u);
@@ -159,40 +158,32 @@ TEST(Places, have_the_holes_of_concave_shapes_and_both_sides_of_the_ground) {
   EXPECT_EQ(count(Sphere{0.81}, {0, 5, 0}), 1u);
   EXPECT_EQ(count(Box{{0.1, 0.1, 0.1}, 0}, {1, 5, 0}), 1u) << "it is in the wire";
   EXPECT_EQ(count(Box{{0.1, 0.1, 3}, 0}, {0, 5, 0}), 0u) << "it goes through the hole";
-  EXPECT_EQ(places.overlap(Box{{3, 0.1, 0.1}, 0}, {0, 5, 0}, {}), std::vector{Found{ring}});
+  EXPECT_EQ(places.overlap(Box{{3, 0.1, 0.1}, 0}, {0, 5, 0}, {}), std::vector{ring});
   EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, 0.51, 0}), 0u);
   EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, 0.49, 0}), 1u);
   EXPECT_EQ(count(Box{{1, 1, 1}, 0}, {7, -3, 0}), 1u) << "it is below the ground";
 }
 
-TEST(Places, of_fixed_shapes_and_open_surfaces_are_found_by_their_numbers_until_they_are_removed) {
+TEST(Places, of_a_wall_that_is_an_open_mesh_are_on_both_of_its_sides_and_never_inside) {
   System system;
   Places places = system.places();
-  const std::uint32_t ground = places.add_fixed(HalfSpace{{0, 1, 0}}, {0, -1, 0}, {});
-  const double half = std::sqrt(0.5);
-  const std::uint32_t bar = places.add_fixed(Box{{4, 0.2, 0.2}, 0}, {0, 1, 0}, {0, half, 0, half});  // along z
   const Mesh wall{{{0, 0, -1}, {0, 0, 1}, {0, 2, 1}, {0, 2, -1}}, {{0, 1, 2}, {0, 2, 3}}};
-  const std::uint32_t at = places.add_fixed_surface(wall, {3, 0, 0}, {});
-  const Found wall_found{{}, at}, bar_found{{}, bar};
-  const auto met = [&](const Vec3& from, const Vec3& along) { return places.ray(from, along).value_or(Hit{}); };
-  EXPECT_EQ(met({0.5, 5, 0}, {0, -1, 0}).what.fixed, ground);
-  EXPECT_NEAR(met({0.5, 5, 0}, {0, -1, 0}).distance, 6, 1e-9);
-  EXPECT_EQ(met({0, 5, 1.9}, {0, -1, 0}).what.fixed, bar);
+  const BodyId at = system.bodies().create_obstacle(wall, {3, 0, 0});
   for (const double side : {-1.0, 1.0}) {
-    EXPECT_EQ(met({3 + side, 0.7, 0.2}, {-side, 0, 0}).what.fixed, at) << "a surface has two sides";
-    EXPECT_NEAR(places.nearest({3 + 0.1 * side, 1, 0})->distance, 0.1, 1e-9) << "and no inside";
+    const auto met = places.ray({3 + side, 0.7, 0.2}, {-side, 0, 0});
+    ASSERT_TRUE(met);
+    EXPECT_EQ(met->body, at);
+    EXPECT_NEAR(met->distance, 1, 1e-9);
+    EXPECT_NEAR(places.nearest({3 + 0.1 * side, 1, 0})->distance, 0.1, 1e-9);
   }
-  EXPECT_EQ(places.overlap(Box{{0.1, 0.1, 0.1}, 0}, {3.04, 1, 0}, {}), std::vector{wall_found});
+  EXPECT_EQ(places.overlap(Box{{0.1, 0.1, 0.1}, 0}, {3.04, 1, 0}, {}), std::vector{at});
   EXPECT_TRUE(places.overlap(Box{{0.1, 0.1, 0.1}, 0}, {3.06, 1, 0}, {}).empty());
-  EXPECT_TRUE(places.within({0, 1, 0}, 1).empty()) << "bodies only";
-  const BodyId ball = system.bodies().create(Sphere{0.2}, {.position = {0, 1.1, 0}});
-  EXPECT_EQ(places.overlap(Sphere{0.5}, {0, 1.5, 0}, {}), (std::vector{Found{ball}, bar_found}));
-  EXPECT_EQ(places.overlap(Sphere{0.5}, {0, 1.5, 0}, {}, std::span(&ball, 1)), std::vector{Found{ball}});
-  places.remove_fixed(bar);
-  EXPECT_EQ(met({0, 5, 1.9}, {0, -1, 0}).what.fixed, ground);
-  EXPECT_EQ(places.add_fixed(Sphere{1}, {0, 9, 0}, {}), bar) << "its number is free";
-  EXPECT_EQ(met({0, 20, 0}, {0, -1, 0}).what.fixed, bar);
-  EXPECT_THROW((void)places.add_fixed_surface({{{0, 0, 0}}, {{0, 1, 0}}}, {}, {}), std::invalid_argument);
+
+  System restored;
+  restored.restore(system.snapshot());
+  EXPECT_NEAR(restored.places().nearest({3.1, 1, 0})->distance, 0.1, 1e-9);
+  system.bodies().destroy(at);
+  EXPECT_FALSE(places.nearest({3.1, 1, 0}));
 }
 
 TEST(Places, refuse_places_directions_and_radii_that_are_none) {

@@ -39,7 +39,7 @@ export interface IotaDebug {
   holds(): { client: number; hold: number; body: number; force: number; target: number[] }[];
   clients(): { client: number; name: string; selected: number }[];
   articulates(): Map<number, number>;
-  /** Slots that are drawn. */
+  /** Slots that are drawn, without obstacles. */
   bodies(): number[];
   /** World, m, as drawn. */
   bodyPosition(body: number): [number, number, number];
@@ -74,6 +74,8 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
   const point = new Vector3();
   let film: Film | null = null;
   const { body: bodies, membership } = page.world.entities;
+  /** Obstacles are of no articulate. */
+  const isTied = (body: number) => membership.articulateOf(body) >= 0;
   const positionOf = (body: number): [number, number, number] => {
     if (!bodies.has(body)) throw new Error(`body ${body} is not drawn`);
     const { position } = page.world.poses;
@@ -100,8 +102,8 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
       client: hold.client, hold: hold.hold, body: hold.body, force: hold.force, target: [...hold.target],
     })),
     clients: () => page.world.clients.map(({ client, name, selected }) => ({ client, name, selected: bodies.slotOf(selected) })),
-    articulates: () => new Map([...bodies.slots()].map((body) => [body, membership.articulateOf(body)])),
-    bodies: () => [...bodies.slots()].filter((body) => bodies.has(body)),
+    articulates: () => new Map([...bodies.slots()].filter(isTied).map((body) => [body, membership.articulateOf(body)])),
+    bodies: () => [...bodies.slots()].filter((body) => bodies.has(body) && isTied(body)),
     bodyPosition: positionOf,
     bodyRotation: (body) => {
       positionOf(body);

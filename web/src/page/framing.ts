@@ -249,9 +249,6 @@ export class Framing implements FramePart, PageListener {
       if (apart + its.radius < most) points.addAll(corners);
     };
     setting.clear();
-    entities.body.addPoints(setting, false, every);
-    take(setting);
-    setting.clear();
     this.addDrawn_(setting);
     // One by one: a single thing far away leaves the others counted.
     const [middleX, middleY, middleZ] = moving.center;
@@ -261,7 +258,7 @@ export class Framing implements FramePart, PageListener {
       const z = setting.xyz[at + 2];
       if (Math.hypot(x - middleX, y - middleY, z - middleZ) < most) points.add(x, y, z);
     }
-    entities.staticShape.forEachCorners(setting, take);
+    entities.body.forEachHeld(setting, take, every);
     bounds = points.bounds()!;
     // The place of the shadow below.
     if (ground !== null && ground < bounds.lowest && bounds.lowest - ground < 1.5 * bounds.radius) {
@@ -274,7 +271,7 @@ export class Framing implements FramePart, PageListener {
   /** From a place to the farthest corner of what is fixed, m. */
   private calcReach_([x, y, z]: readonly [number, number, number]): number {
     let reach = 0;
-    this.world_.entities.staticShape.forEachCorners(this.setting_, ({ xyz, count }) => {
+    this.world_.entities.body.forEachHeld(this.setting_, ({ xyz, count }) => {
       for (let at = 0; at < 3 * count; at += 3) reach = Math.max(reach, Math.hypot(xyz[at] - x, xyz[at + 1] - y, xyz[at + 2] - z));
     });
     return reach;

@@ -5,6 +5,9 @@
 import { DoubleSide, Ray, Vector3, type BufferGeometry, type Mesh } from "three";
 import { MeshBVH, type HitPointInfo } from "three-mesh-bvh";
 
+/** Triangles that stay where they are. */
+export type Wall = Pick<Mesh, "geometry" | "position" | "quaternion">;
+
 /** A body that stays where it is. */
 export interface Solid {
   /** The middle of a ball around it, world, m, and its radius. */
@@ -35,7 +38,7 @@ const deepestFloor = 50;
 const mostTraces = 200;
 
 export class Walls {
-  private readonly meshes_: () => Iterable<Mesh>;
+  private readonly meshes_: () => Iterable<Wall>;
   private readonly solids_: () => Iterable<Solid>;
   private readonly ground_: () => number | null;
   /** Built for a geometry when somebody comes near it first. */
@@ -50,7 +53,7 @@ export class Walls {
   private readonly floor_: Obstacle = { share: 1, normal: new Vector3() };
 
   /** `ground`: its height, m; null: none. */
-  constructor(meshes: () => Iterable<Mesh>, solids: () => Iterable<Solid> = () => [], ground: () => number | null = () => null) {
+  constructor(meshes: () => Iterable<Wall>, solids: () => Iterable<Solid> = () => [], ground: () => number | null = () => null) {
     this.meshes_ = meshes;
     this.solids_ = solids;
     this.ground_ = ground;
@@ -94,7 +97,7 @@ export class Walls {
     return out;
   }
 
-  private meetMesh_({ geometry, position, quaternion }: Mesh, from: Vector3, to: Vector3, length: number, out: Obstacle): void {
+  private meetMesh_({ geometry, position, quaternion }: Wall, from: Vector3, to: Vector3, length: number, out: Obstacle): void {
     const { ray_: { origin, direction }, ray_: ray } = this;
     const back = quaternion.clone().conjugate();
     origin.subVectors(from, position).applyQuaternion(back);
@@ -143,7 +146,7 @@ export class Walls {
     return this.pushOut_(this.below_.copy(at), radius) && this.below_.distanceTo(at) < 0.01 * radius;
   }
 
-  private pushOutOf_({ geometry, position, quaternion }: Mesh, at: Vector3, radius: number): boolean {
+  private pushOutOf_({ geometry, position, quaternion }: Wall, at: Vector3, radius: number): boolean {
     const { local_: local, nearest_: nearest } = this;
     local.subVectors(at, position).applyQuaternion(quaternion.clone().conjugate());
     if (geometry.boundingBox === null) geometry.computeBoundingBox();

@@ -2,7 +2,7 @@
 // Draws all bodies: one instanced mesh for each part of each visual, tints that ease, outlines. It also has the packed
 // data for picking, so that a pick agrees with the picture. An edit touches only the instances of its bodies.
 
-import { Group, Matrix4, Vector3, type Color } from "three";
+import { Group, Matrix4, Quaternion, Vector3, type Color } from "three";
 import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
@@ -12,6 +12,7 @@ import { addCorners, type Points } from "../points.ts";
 import { grown, mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
 import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
+import type { Wall } from "../walls.ts";
 import type { EntityView } from "./entity.ts";
 import type { Visuals, VisualUser } from "./visual.ts";
 
@@ -197,7 +198,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     if (slot >= mostSlots) throw new Error(`body ${slot} is not drawn: a page draws bodies with slots below ${mostSlots}`);
     this.poses.reserve(slot + 1);
     this.reserve_();
-    this.grown_[slot] = 0;
+    this.grown_[slot] = entity.kind === BodyKind.static ? 1 : 0;
     this.tintNow_[4 * slot + 3] = 0;
     this.tintGoal_[4 * slot + 3] = 0;
     const body: Body = { entity, shapes: noShapes, instances: noInstances };
@@ -294,7 +295,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     for (const batches of this.batches_.values()) for (const batch of batches) batch.pool.dispose();
     this.batches_.clear();
     for (const body of this.bodies_.values()) {
-      this.grown_[body.entity.id.slot] = regrownSize;
+      if (!this.isFixed(body.entity.id.slot)) this.grown_[body.entity.id.slot] = regrownSize;
       this.addInstances_(body);
     }
   }
@@ -317,6 +318,32 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
           writeMatrix(this.position, this.rotation, slot, placements, placementSize * index, 1, this.matrix_.elements, 0);
           addCorners(points, pool.mesh.geometry, this.matrix_);
         }
+      }
+    }
+  }
+
+  /** Calls `take` with the corners of each drawn body that cannot be held, or of every n-th; the points are only valid during the
+   * call. */
+  forEachHeld(points: Points, take: (points: Points) => void, every = 1): void {
+    let number = 0;
+    for (const { entity: { id: { slot }, kind }, instances } of this.bodies_.values()) {
+      if (kind === BodyKind.dynamic || instances.length === 0 || number++ % every !== 0) continue;
+      if (this.poses.known[slot] !== 1 || !Number.isFinite(this.reach[slot])) continue;
+      points.clear();
+      for (const instance of instances) addCorners(points, instance.mesh.geometry, this.placed_(slot, instance));
+      take(points);
+    }
+  }
+
+  /** The meshes of triangles of bodies that stay where they are. The result is reused. */
+  *fixedMeshes(): Iterable<Wall> {
+    const wall = { position: new Vector3(), quaternion: new Quaternion(), size: new Vector3() };
+    for (const { entity: { id: { slot } }, shapes, instances } of this.bodies_.values()) {
+      if (!this.isFixed(slot) || this.poses.known[slot] !== 1) continue;
+      for (const [index, instance] of instances.entries()) {
+        if (shapes[index].shape.mesh === null) continue;
+        this.placed_(slot, instance).decompose(wall.position, wall.quaternion, wall.size);
+        yield { ...wall, geometry: instance.mesh.geometry };
       }
     }
   }
@@ -389,6 +416,11 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   }
 
   // --- inside
+
+  private placed_(slot: number, { batch: { placements }, index }: Instance): Matrix4 {
+    writeMatrix(this.position, this.rotation, slot, placements, placementSize * index, 1, this.matrix_.elements, 0);
+    return this.matrix_;
+  }
 
   /** Adds a body's parts to the batches of its visual. */
   private addInstances_(body: Body): void {

@@ -19,7 +19,6 @@ import { Memberships } from "./membership.ts";
 import { NailView } from "./nail.ts";
 import { ParticleSetView } from "./particle_set.ts";
 import { PointCloudView } from "./point_cloud.ts";
-import { StaticShapeView } from "./static_shape.ts";
 import { PaintView } from "./paint.ts";
 import { ShapeSetView } from "./shape_set.ts";
 import { StrutView } from "./strut.ts";
@@ -52,7 +51,7 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
   const visual = new Visuals(warn);
   const body = new BodyView(poses, visual, bodyGone);
   const canHold = (slot: number) => body.canHold(slot);
-  const surface = new SurfaceView(poses, canHold);
+  const surface = new SurfaceView(poses, canHold, (slot) => body.isFixed(slot));
   const tube = new TubeView(poses, canHold);
   body.covers.push(surface, tube);
   return {
@@ -63,7 +62,6 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
     tie: new TieView(poses, visual),
     nail: new NailView(poses),
     particleSet: new ParticleSetView(),
-    staticShape: new StaticShapeView(warn),
     label: new LabelView(poses, eye),
     line: new LineView(poses),
     arrow: new ArrowView(poses),

@@ -11,7 +11,7 @@ import { casterLayer } from "../contact_shadow.ts";
 import { materialOf } from "../materials.ts";
 import { opacityOf, textOf } from "../parts.ts";
 import type { Cover, CoverHit } from "../pickable.ts";
-import type { Points } from "../points.ts";
+import { addCorners, type Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { drawTriangles } from "../shapes/mesh.ts";
 import type { EntityView } from "./entity.ts";
@@ -31,14 +31,16 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
   private readonly poses_: PoseBuffer;
   private readonly surfaces_ = new Map<number, Surface>();
   private readonly canHold_: (body: number) => boolean;
+  private readonly isFixed_: (body: number) => boolean;
   private readonly point_ = new Vector3();
   private readonly turn_ = new Quaternion();
   private readonly ray_ = new Ray();
   private readonly triangle_ = new Triangle();
 
-  constructor(poses: PoseBuffer, canHold: (body: number) => boolean) {
+  constructor(poses: PoseBuffer, canHold: (body: number) => boolean, isFixed: (body: number) => boolean) {
     this.poses_ = poses;
     this.canHold_ = canHold;
+    this.isFixed_ = isFixed;
   }
 
   create(entity: SurfaceEntity): void {
@@ -84,15 +86,20 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
 
   /** Points of those in the world: at one place, or each by itself, as those of a skin. */
   addPlaces(points: Points): void {
-    for (const { entity: { at, bodies, points: own }, bends } of this.surfaces_.values()) {
+    for (const { entity: { at, bodies, points: own }, bends, mesh } of this.surfaces_.values()) {
+      if (!bends && moves(at) && this.isFixed_(at.body)) {
+        mesh.updateMatrixWorld();
+        addCorners(points, mesh.geometry, mesh.matrixWorld);
+        continue;
+      }
       if (bends ? bodies.some((body) => body !== NO_BODY) : moves(at)) continue;
       points.addSample(own, this.point_.fromArray(at.point));
     }
   }
 
-  /** The rigid ones at places of the world, as those of a room: obstacles for walks. */
+  /** The rigid ones on static bodies, as those of a room: obstacles for walks. */
   *fixed(): Iterable<Mesh> {
-    for (const { mesh, bends, entity } of this.surfaces_.values()) if (!bends && entity.at.body === NO_BODY) yield mesh;
+    for (const { mesh, bends, entity: { at: { body } } } of this.surfaces_.values()) if (!bends && body !== NO_BODY && this.isFixed_(body)) yield mesh;
   }
 
   // --- Cover
