@@ -8,6 +8,7 @@ import gc
 import math
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, precondition, rule
@@ -65,6 +66,28 @@ class Restructuring(RuleBasedStateMachine):
     @rule(place=PLACE)
     def make_a_solid(self, place: tuple[float, float, float]) -> None:
         self.system.body(shape=iota.Box((0.3, 0.2, 0.4)), position=place, attachments=[(0.15, 0, 0)])
+
+    @rule(place=PLACE)
+    def make_an_obstacle(self, place: tuple[float, float, float]) -> None:
+        self.system.obstacle(iota.Box((0.3, 0.2, 0.4)), place)
+
+    @precondition(lambda self: self.system.obstacles)
+    @rule(number=NUMBER, place=PLACE, how=st.sampled_from(["moved", "off", "on", "gone", "free", "tied"]))
+    def use_an_obstacle(self, number: int, place: tuple[float, float, float], how: str) -> None:
+        wall = self.system.obstacles[number % len(self.system.obstacles)]
+        if how == "moved":
+            wall.position = place
+            assert wall.solids[0].position == place
+        elif how in ("off", "on"):
+            wall.active = how == "on"
+        elif how == "gone":
+            wall.destroy()
+        else:
+            with pytest.raises(ValueError, match="obstacle"):
+                if how == "free":
+                    wall.kind = "dynamic"
+                else:
+                    wall.particle(place)
 
     @precondition(has_particles)
     @rule(number=NUMBER)
