@@ -72,6 +72,15 @@ describe("the world", () => {
     expect(test.world.entities.body.has(0)).toBe(true);
   });
 
+  it("removes a body whose slot was used again and emptied between two messages, and keeps one that came later", () => {
+    const test = told();
+    expect(test.world.entities.body.has(0)).toBe(true);
+    test.world.take({ type: "entitiesDestroyed", kind: "body", ids: [{ slot: 0, generation: 0 }] });
+    expect(test.world.entities.body.has(0)).toBe(true);
+    test.world.take({ type: "entitiesDestroyed", kind: "body", ids: [{ slot: 0, generation: 9 }] });
+    expect(test.world.entities.body.has(0)).toBe(false);
+  });
+
   it("leaves out a part that it cannot draw, and says why", () => {
     const test = told();
     test.set("visual", { ...weight, parts: [part("blob", [1]), part("sphere", [0.2])] });

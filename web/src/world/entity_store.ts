@@ -51,8 +51,9 @@ export class EntityStore {
     const kind = this.kindOf_(message.kind);
     if (kind === undefined) return;
     for (const { slot, generation } of message.ids) {
-      // The slot has another generation now: this one was destroyed before.
-      if (this.stored_.get(kind)?.get(slot)?.generation === generation) this.destroy_(kind, slot);
+      // A later generation stays. An earlier one has gone too: its slot was used again and emptied between two messages.
+      const known = this.stored_.get(kind)?.get(slot);
+      if (known !== undefined && known.generation <= generation) this.destroy_(kind, slot);
     }
   }
 
