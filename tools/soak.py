@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes their programs.
 
-    tools/soak.py [NAME ...]      scenes promises edits verify ladder studies page; all without a name
+    tools/soak.py [NAME ...]      scenes promises edits verify ladder studies messages page; all without a name
 
 Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
@@ -35,6 +35,10 @@ RUNS = {
     "studies": [
         *("env", "IOTA_STUDY_SECONDS=600", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
         str(ROOT / "tests" / "python" / "test_studies.py"),
+    ],
+    "messages": [
+        *("env", "IOTA_MESSAGE_SECONDS=60", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
+        str(ROOT / "tests" / "python" / "test_random_messages.py"),
     ],
     "page": [str(ROOT / ".venv" / "bin" / "node"), str(ROOT / "web" / "e2e" / "page_soak.ts")],
 }

@@ -60,6 +60,67 @@ def test_a_message_arrives_as_the_record_of_its_fields(run_world: Runner, monkey
         pointer.name = "right"
 
 
+def cards(world: iota.World) -> list[tuple[int, str, str]]:
+    """Client, title and text of cards, from now on."""
+    shown: list[tuple[int, str, str]] = []
+    world._state.notices.show = lambda client, level, title, text, *more, **rest: shown.append((client, title, text))
+    return shown
+
+
+def test_an_error_of_our_own_is_one_card_for_the_sender(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = iota.World(iota.System())
+    inputs, shown = world._inputs, cards(world)
+
+    def fail(*_: Any) -> None:
+        raise OverflowError("too large")
+
+    monkeypatch.setitem(HANDLERS, protocol.Key, fail)
+    inputs.take([(5, protocol.Join("", protocol.Role.ACTOR)), (6, protocol.Join("", protocol.Role.ACTOR))], lambda ids: [])
+    inputs.take([(5, protocol.Key("k", True)), (6, protocol.Profile(True))], lambda ids: [])
+    ((client, title, text),) = shown
+    assert (client, title) == (5, "That failed") and text.startswith("OverflowError: too large")
+    assert world._state.clients.is_profiled, "what came after it is handled"
+
+
+def test_a_number_that_no_step_divides_goes_to_the_end_of_the_slider() -> None:
+    world = iota.World(iota.System())
+    for least, most, step in ((0.0, 10.0, 0.5), (-1e308, 1e308, 0.1), (0.0, 1.0, 5e-324)):
+        slider = world.controls.slider("size", least, most, value=least, step=step)
+        for value, end in ((1e308, most), (-1e308, least)):
+            slider.take(value, "", iota.Event(world.system, "size"), world._guard)
+            assert slider.value == end
+
+
+def test_an_action_on_the_world_is_called_once_however_many_bodies_are_selected() -> None:
+    world = iota.World(iota.System())
+    world.offer("undo")
+    bodies = [world.system.body() for _ in range(2)]
+    with world.system.edit():
+        for body in bodies:
+            body.particle((0, 0, 0), mass=1)
+    shown = cards(world)
+    world._inputs.act(world._state.actions["undo"], 5, bodies)
+    assert shown == [] and not bodies[0].particles
+
+
+def test_a_step_that_raises_pauses_the_world_and_pages_stay(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    is_broken = [False]
+
+    def step() -> None:
+        if is_broken[0]:
+            raise ZeroDivisionError("a step")
+
+    world._stepper.step = step  # type: ignore[method-assign,assignment]
+    with PageClient(run_world(world)) as page:
+        is_broken[0] = True
+        page.wait_for(lambda: page.last["world_state"]["paused"])
+        assert [card["title"] for card in page.notices] == ["The step failed"]
+        is_broken[0] = False
+        page.send("control", command=1, value=0.0)
+        page.wait_for(lambda: not page.last["world_state"]["paused"])
+
+
 def test_the_input_of_a_client_that_is_gone_is_left_out() -> None:
     world = iota.World(iota.System())
     inputs = world._inputs

@@ -102,6 +102,18 @@ def test_nails_ties_and_combining_act_and_are_undone(world: iota.World) -> None:
     assert not any(particle.is_nailed for particle in ball.particles)
 
 
+def test_a_tie_at_the_axle_of_a_rod_is_saved(world: iota.World) -> None:
+    rod = playground.PLACE["rod"](world, iota.Vec3(2, 1.5, 0))
+    world.system.revolute(rod, None, at=(2.1, 1.5, 0), axis=(0, 0, 1))
+    (listener,) = world._state.listeners.of("press", rod)
+    listener.hook.function(iota.Event(world.system, "press", target=rod, point=iota.Vec3(2.1, 1.5, 0)))
+    act(world, "tie", rod)
+    act(world, "tie", world.system.bodies[0])
+    texts = told(world)
+    push(world, "save")
+    assert [text.split(":")[0] for text in texts] == ["Saved"]
+
+
 def test_a_saved_world_is_loaded_and_goes_on_as_before(world: iota.World, tmp_path: Path) -> None:
     ball = playground.PLACE["ball"](world, iota.Vec3(2, 1.5, 0))
     ball.combine(playground.PLACE["box"](world, iota.Vec3(2.2, 1.5, 0)))

@@ -136,9 +136,7 @@ def connecting(world: iota.World) -> None:
     def point_of(body: iota.Body) -> iota.Particle:
         """Its particle nearest to where it was pressed; on a solid a new one there, if none is near."""
         place = body.center_of_mass + pressed.get(body, iota.Vec3(0, 0, 0))
-        near = min(
-            body.attachments if body.solids else body.particles, key=lambda p: abs(p.position - place), default=None
-        )
+        near = min(body.attachments, key=lambda p: abs(p.position - place), default=None)  # no mark of an axle
         if near is None or (body.solids and abs(near.position - place) > 0.05):
             return body.attachment(place)
         return near

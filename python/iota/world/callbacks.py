@@ -22,6 +22,7 @@ SLOW = 0.5  # s, of a function
 SLOW_STEP = 2.0  # s; before that, pages see slow motion
 ELSEWHERE = "Do long work elsewhere, or in small pieces once a step."
 GO_ON = "The world continues. Correct the script and run it again."
+MOST_ERRORS = 100  # of iota itself, that are printed
 _PACKAGE = str(Path(__file__).parent.parent)  # as in frames, without resolving symbolic links
 _STUDIES = str(Path(_PACKAGE, "studies"))
 
@@ -102,9 +103,9 @@ def told(error: BaseException) -> str:
     return text
 
 
-def print_error(error: BaseException) -> None:
-    """The traceback on stderr, without iota's own frames."""
-    frames = script_frames(error.__traceback__)
+def print_error(error: BaseException, is_own: bool = False) -> None:
+    """The traceback on stderr, without iota's own frames. is_own: with them, for an error of iota itself."""
+    frames = list(traceback.extract_tb(error.__traceback__)) if is_own else script_frames(error.__traceback__)
     lines = ["Traceback (most recent call last):\n", *traceback.format_list(frames)] if frames else []
     cause = error.__cause__
     if cause is not None:
@@ -144,6 +145,7 @@ class Guard:
         self._told: Running | None = None
         self._stop = threading.Event()
         self._watcher: threading.Thread | None = None
+        self._printed: set[str] = set()
 
     def call(self, what: str, function: Callable[..., Any], *arguments: Any, hint: str = GO_ON) -> bool:
         """Calls it; False if it raised, which is reported. KeyboardInterrupt and SystemExit propagate."""
@@ -152,6 +154,24 @@ class Guard:
                 function(*arguments)
         except Exception as error:
             self.failed(what, error, hint)
+            return False
+        return True
+
+    def outlive(
+        self, what: str, work: Callable[[], object], tell: Tell | None = None, hint: str = "The world continues."
+    ) -> bool:
+        """Does work of iota itself for a world that is served. False if it raised: this is told by `tell` (None: to all
+        pages, once) and does not end the world."""
+        try:
+            work()
+        except Exception as error:
+            text = one_line(error)
+            is_new = text not in self._printed and len(self._printed) < MOST_ERRORS
+            if is_new:
+                self._printed.add(text)
+                print_error(error, is_own=True)
+            if tell or is_new:
+                (tell or self._tell_error)(f"{what} failed", text, hint)
             return False
         return True
 

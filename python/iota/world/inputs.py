@@ -6,6 +6,7 @@ from __future__ import annotations
 import queue
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -68,9 +69,17 @@ class Inputs:
             if client is None:
                 continue
             if self._pace.allows(number, SHARES[type(message)]):
-                HANDLERS[type(message)](self, client, message)
+                self._handle(client, message)
             elif self._pace.is_first_refusal(number):
                 self._notice(client, "Too fast", "A page can run 30 actions a second. The others were left out.")
+
+    def _handle(self, client: Client, message: protocol.Input) -> None:
+        """An error here is one card for the sender."""
+
+        def tell(title: str, text: str, hint: str) -> None:
+            self._state.notices.send(title, text, hint, "error", client.id)
+
+        self._guard.outlive("That", partial(HANDLERS[type(message)], self, client, message), tell)
 
     def take_pictures(self, inputs: Iterable[tuple[int, protocol.Input]]) -> None:
         """Handles only parts of pictures; all other inputs wait for `take`."""
@@ -97,11 +106,13 @@ class Inputs:
             title = f"Nothing to {action.label}"
             state.notices.send(title, "Nothing is held or selected.", hint, client=client)
             return
-        if len(bodies) > 1 and isinstance(state.system, System):
+        if action.on == "world":
+            self._act_on_all(action, client, bodies[:1] or [None])
+        elif len(bodies) > 1 and isinstance(state.system, System):
             with state.system.edit():
                 self._act_on_all(action, client, bodies)
         else:
-            self._act_on_all(action, client, bodies or [None])
+            self._act_on_all(action, client, bodies)
 
     def _act_on_all(self, action: Action, client: int, bodies: Iterable[Any]) -> None:
         """On one after the other, until the script's function raises."""

@@ -243,7 +243,7 @@ class Things:
         for thing in dirty:
             try:
                 self._tell(room, thing)
-            except ValueError as error:
+            except Exception as error:  # also of a value that the protocol's types cannot hold
                 warn(f"{type(thing).__name__}: {error}")
         self.images.tell(room)
 

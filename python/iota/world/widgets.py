@@ -78,8 +78,10 @@ class Slider(Widget):
         super().__init__(things, label, minimum=minimum, maximum=maximum, value=value, **values)
 
     def _set(self, value: float, typed: str) -> None:
-        if self.step > 0:
-            value = self.minimum + self.step * round((value - self.minimum) / self.step)
+        value = min(max(value, self.minimum), self.maximum)  # first: a client may send 1e308, which no step divides
+        steps = (value - self.minimum) / self.step if self.step > 0 else math.inf
+        if math.isfinite(steps):
+            value = self.minimum + self.step * round(steps)
         self.value = min(max(value, self.minimum), self.maximum)
 
 

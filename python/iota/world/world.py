@@ -70,6 +70,7 @@ ELSEWHERE = (
         "mesh": "world.surface(points, triangles)",
     }
 )
+PAUSED = "The world is paused. A reset begins it anew."
 ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 
 
@@ -492,9 +493,11 @@ class World:
             while not self._stopping and time.monotonic() < end:
                 self._take_inputs()
                 for _ in range(clock.due()):
-                    self._stepper.step()
+                    if not self._guard.outlive("The step", self._stepper.step, self._state.notices.error, PAUSED):
+                        self.clock.paused = True
+                        break
                 if clock.frame_due():
-                    self._send_frame()
+                    self._guard.outlive("A frame", self._send_frame)
                 clock.sleep()
         except KeyboardInterrupt:
             pass

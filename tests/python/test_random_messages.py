@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""No message ends a world: random and extreme ones to every study. IOTA_MESSAGE_SECONDS asks for as long of them, within
+the limits of a page; without it some hundred come as fast as the world takes them, without these limits."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from amount import sampled
+from page_client import PageClient
+from random_messages import Sender
+
+import iota
+from iota import studies
+from iota.world.pace import Pace
+
+Runner = Callable[[iota.World], str]
+SECONDS = float(os.environ.get("IOTA_MESSAGE_SECONDS", "0"))
+SEED = int(os.environ.get("IOTA_MESSAGE_SEED", "1"))
+COUNT = sampled(4000)
+AT_ONCE = 20  # messages, between two looks at the world
+
+
+def send_at_random(page: PageClient, seed: int) -> int:
+    """How many were sent."""
+    sender, sent, end = Sender(page, seed), 0, time.monotonic() + SECONDS
+    while sent < COUNT if not SECONDS else time.monotonic() < end:
+        sender.send(AT_ONCE)
+        sent += AT_ONCE
+        echoed = page.messages["pong"]
+        page.send("ping", client_time=0.0)
+        page.wait_for(lambda echoed=echoed: page.messages["pong"] > echoed or page.closed.is_set())
+        assert not page.closed.is_set(), f"after {sent} messages of seed {seed}"
+        time.sleep(0.2 if SECONDS else 0.0)
+    return sent
+
+
+@pytest.mark.parametrize("name", studies.names())
+def test_no_message_ends_a_study_and_none_is_an_error(
+    name: str, run_world: Runner, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where the playground saves
+    if not SECONDS:
+        monkeypatch.setattr(Pace, "allows", lambda *_: True)
+    world = studies.module(name).build()
+    url = run_world(world)
+    with PageClient(url) as page, PageClient(url) as other:
+        send_at_random(page, SEED)
+        other.send("control", command=0, value=0.0)
+        other.wait_for(lambda: other.last["world_state"]["paused"])
+        other.single_step()
+        failed = [card for card in [*page.notices, *other.notices] if card["title"].endswith("failed")]
+        # What a study asks of bodies that are 1e9 m away, the engine may refuse in words.
+        assert [card for card in failed if not card["text"].startswith("ValueError: ")] == []
+        assert world.call(world.system.validate) == []
+        assert not other.closed.is_set()
