@@ -217,9 +217,8 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
 using Ids = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Client and record of each input.
-nb::list take_input(RoomObject& self) {
+nb::list records_of(const std::vector<net::ClientInput>& inputs) {
   nb::list taken;
-  const std::vector<net::ClientInput> inputs = self.use().take_input();
   if (inputs.empty()) return taken;
   const RecordMaker maker;
   for (const auto& [client, what] : inputs) {
@@ -388,8 +387,14 @@ void bind_room(nb::module_& module) {
             return new RoomRecordingObject{self.use().record(finite_positive(pose_time, "pose_time", "s"))};
           },
           "pose_time"_a, "Records what viewers are sent. pose_time: between two recorded poses, s.")
-      .def("take_input", &take_input, nb::sig("def take_input(self) -> list[tuple[int, typing.Any]]"),
-           "Client and record (iota._protocol.Input) of each input since the last call, in order of arrival.");
+      .def(
+          "take_input", [](RoomObject& self) { return records_of(self.use().take_input()); },
+          nb::sig("def take_input(self) -> list[tuple[int, typing.Any]]"),
+          "Client and record (iota._protocol.Input) of each input since the last call, in order of arrival.")
+      .def(
+          "take_pictures", [](RoomObject& self) { return records_of(self.use().take_pictures()); },
+          nb::sig("def take_pictures(self) -> list[tuple[int, typing.Any]]"),
+          "Only parts of pictures; everything else waits for `take_input`.");
 }
 
 }  // namespace iota::bindings

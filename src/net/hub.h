@@ -71,6 +71,8 @@ class Hub {
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position, float volume = 1);
   [[nodiscard]] bool pulse(std::uint32_t client, const protocol::Pulse& pulse);
   std::vector<ClientInput> take_input();
+  /// Only parts of pictures; everything else waits for take_input.
+  std::vector<ClientInput> take_pictures();
 
   // --- on the server's thread
   /// Passes everything published to the clients: edits in order, then the newest poses.
@@ -101,13 +103,16 @@ class Hub {
     protocol::Role role = protocol::Role::actor;
     protocol::Id selected;
     std::set<std::uint32_t> holds;
-    Clock::time_point reset_at = Clock::time_point::min();  ///< time of its last reset
-    bool is_told_to_wait = false;                           ///< of too frequent resets
-    std::uint32_t picture = 0;                              ///< number of the requested one; 0: none
-    std::size_t picture_bytes = 0;                          ///< received bytes
-    std::optional<protocol::Stance> stance;                 ///< where its user is
+    bool is_told_to_wait = false;            ///< of too frequent resets
+    std::uint32_t picture = 0;               ///< number of the requested one; 0: none
+    std::size_t picture_bytes = 0;           ///< received bytes
+    std::optional<protocol::Stance> stance;  ///< where its user is
   };
   using Edit = std::function<void()>;
+  /// Queued input of one client.
+  struct Waiting {
+    std::size_t count = 0, bytes = 0;
+  };
 
   bool post(Edit edit);
   void broadcast(const Frame& frame, std::string_view key = {});
@@ -121,10 +126,15 @@ class Hub {
   protocol::People all_people() const;
   [[nodiscard]] bool set_latest(std::string key, Frame frame, std::uint32_t client);
   void push_input(ClientInput input);
+  /// Queues an input, or puts it in the place of an older one; false if too much waits.
+  bool try_push(ClientInput input);
+  void replace(ClientInput& older, ClientInput input);
+  /// If the script has not even read that the client joined and much waits, it need not know of it.
+  bool try_forget(std::uint32_t client);
   void tell(std::uint32_t client, const protocol::Notice& notice);
   /// Whether a client may send a message, by its role. A viewer is told that it can only watch, if the message says so.
   bool may_send(std::uint32_t client, protocol::Viewers viewers);
-  /// Tells a client that resets the world too often that it has to wait.
+  /// Whether the world may be reset again; a client that wants it too often is told to wait.
   bool may_reset(std::uint32_t client);
 
   /// Checks what is the same for all messages and passes on those for the script.
@@ -164,12 +174,15 @@ class Hub {
   // ... and to the stepping thread.
   std::mutex in_mutex_;
   std::vector<ClientInput> input_;
-  std::map<std::uint32_t, std::size_t> input_counts_;  ///< queued messages by client
+  std::map<std::uint32_t, Waiting> waiting_;  ///< by client
+  std::size_t waiting_bytes_ = 0;             ///< of all
 
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;
   std::vector<std::shared_ptr<ClientLink>> watchers_;
   std::uint32_t next_client_ = 1;
+  double resets_left_ = 0;  ///< see may_reset
+  Clock::time_point reset_at_ = Clock::time_point::min();
   std::vector<std::pair<std::string, Frame>> latest_;  ///< in the order in which keys were first set
   std::vector<std::pair<std::string, Frame>> kept_notices_;
   bool are_clients_told_ = true;

@@ -332,6 +332,7 @@ std::unique_ptr<Recording> Room::record(double pose_time) {
 }
 
 std::vector<ClientInput> Room::take_input() { return hub_->take_input(); }
+std::vector<ClientInput> Room::take_pictures() { return hub_->take_pictures(); }
 
 Recording::Recording(std::shared_ptr<Recorder> recorder, std::function<void()> end)
     : recorder_(std::move(recorder)), end_(std::move(end)) {}

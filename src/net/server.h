@@ -121,6 +121,8 @@ class Room {
   /// Inputs since the last call, in order of arrival. Of successive moves of one grip or pointer there is only the
   /// newest. A `Leave` ends the client's holds and selection: no `GrabEnd` precedes it.
   std::vector<ClientInput> take_input();
+  /// Only parts of pictures, while the script waits for one; everything else waits for `take_input`.
+  std::vector<ClientInput> take_pictures();
 
  private:
   friend class Server;

@@ -206,9 +206,9 @@ class PageClient:
                 self.told += 1
         elif name == "entities_destroyed":
             for identity in values["ids"]:
-                # Of an earlier generation: its slot was used again and emptied between two messages.
+                # Of an earlier generation, or none: its slot was used again, or first, and emptied between two messages.
                 known = self.entities[values["kind"]].pop(identity[0], None)
-                assert known is not None and known["id"][1] <= identity[1], (values["kind"], identity, known)
+                assert known is None or known["id"][1] <= identity[1], (values["kind"], identity, known)
         elif name == "notice":
             self.notices.append(values)
         elif name == "effect":

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import queue
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -19,7 +20,7 @@ from iota.world.clients import Client, Hold, alive
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event, Hand
 from iota.world.listeners import Listener
-from iota.world.pace import Pace
+from iota.world.pace import ACTIONS, Pace
 from iota.world.state import State
 from iota.world.widgets import Widget
 
@@ -27,6 +28,7 @@ BodiesOf = Callable[[Sequence[protocol.Id]], list[Any]]
 Handler = Callable[["Inputs", Client, Any], None]
 HANDLERS: dict[type, Handler] = {}
 SHARES: dict[type, float] = {}
+TOO_FAST = "A page can run 30 actions a second, and all pages those that take half of the time. The others were left out."
 
 
 def handles(message: type, share: float = 0.0) -> Callable[[Handler], Handler]:
@@ -40,13 +42,18 @@ def handles(message: type, share: float = 0.0) -> Callable[[Handler], Handler]:
     return register
 
 
+def share_of(message: protocol.Input) -> float:
+    """Of an action that it counts as. Each further body counts as a tenth, up to all that a page can do at once."""
+    others = len(message.others) if isinstance(message, protocol.Action) else 0
+    return min(SHARES[type(message)] + 0.1 * others, ACTIONS)
+
+
 class Inputs:
     """Passes them to the world, between steps. step, reset: functions for users' requests."""
 
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
         self._bodies_of: BodiesOf = lambda ids: []
-        self._waiting: list[tuple[int, protocol.Input]] = []
         self._pace = Pace()
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
@@ -61,17 +68,18 @@ class Inputs:
     def take(self, inputs: Iterable[tuple[int, protocol.Input]], bodies_of: BodiesOf) -> None:
         """Handles all inputs, each with the number of its client. bodies_of: finds the bodies that still exist."""
         self._bodies_of = bodies_of
-        waited, self._waiting = self._waiting, []
-        for number, message in (*waited, *inputs):
+        for number, message in inputs:
             if isinstance(message, protocol.Join):
                 self._state.clients.join(number, message.name)
             client = self._state.clients.by_id.get(number)
             if client is None:
                 continue
-            if self._pace.allows(number, SHARES[type(message)]):
+            if self._pace.allows(number, share_of(message)):
+                began = time.monotonic()
                 self._handle(client, message)
+                self._pace.charge(number, time.monotonic() - began)
             elif self._pace.is_first_refusal(number):
-                self._notice(client, "Too fast", "A page can run 30 actions a second. The others were left out.")
+                self._notice(client, "Too fast", TOO_FAST)
 
     def _handle(self, client: Client, message: protocol.Input) -> None:
         """An error here is one card for the sender."""
@@ -80,14 +88,6 @@ class Inputs:
             self._state.notices.send(title, text, hint, "error", client.id)
 
         self._guard.outlive("That", partial(HANDLERS[type(message)], self, client, message), tell)
-
-    def take_pictures(self, inputs: Iterable[tuple[int, protocol.Input]]) -> None:
-        """Handles only parts of pictures; all other inputs wait for `take`."""
-        for number, message in inputs:
-            if isinstance(message, protocol.Picture):
-                self._state.pictures.take(message)
-            else:
-                self._waiting.append((number, message))
 
     def frame(self) -> None:
         """Calls the functions for each frame."""
@@ -144,11 +144,11 @@ class Inputs:
         for listener in self._state.listeners.of("leave"):
             self._tell(listener, client.id)
 
-    @handles(protocol.Select)
+    @handles(protocol.Select, share=0.1)
     def _select(self, client: Client, message: protocol.Select) -> None:
         client.selected = self._find(client, message.body)
 
-    @handles(protocol.Profile)
+    @handles(protocol.Profile, share=0.1)
     def _profile(self, client: Client, message: protocol.Profile) -> None:
         client.is_profiling = message.on
 
@@ -156,7 +156,7 @@ class Inputs:
     def _picture(self, client: Client, message: protocol.Picture) -> None:
         self._state.pictures.take(message)
 
-    @handles(protocol.GrabStart)
+    @handles(protocol.GrabStart, share=0.2)
     def _grab_start(self, client: Client, message: protocol.GrabStart) -> None:
         """The script's listeners are called; they may replace the grip of a hand."""
         body, clients = self._find(client, message.body), self._state.clients
@@ -171,7 +171,7 @@ class Inputs:
         self._tell_of_hand("press", hold, message.target)
         self._tell_drag("start", hold, message.target)
 
-    @handles(protocol.GrabMove)
+    @handles(protocol.GrabMove, share=0.02)
     def _grab_move(self, client: Client, message: protocol.GrabMove) -> None:
         self._state.clients.follow_grips()
         hold = client.holds.get(message.hold)
@@ -204,7 +204,7 @@ class Inputs:
             meant = clients.held(client.id) or clients.selected(client.id)
             self.act(action, client.id, bodies or ([] if meant is None else [meant]))
 
-    @handles(protocol.Control)
+    @handles(protocol.Control, share=0.1)
     def _control(self, client: Client, message: protocol.Control) -> None:
         clock = self._state.clock
         if message.command == protocol.ControlCommand.PAUSE:

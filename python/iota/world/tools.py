@@ -27,6 +27,7 @@ from iota.world.visuals import Visuals
 REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
 REWIND_SHARE = 0.01  # of the time: what copies of the world may take
+MOST_COPIES = 400  # that are there; some thousand bodies, doubled by "select all", stop a world
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 PARTS_COLORS = (
     "#d0402b",
@@ -161,10 +162,18 @@ def _join(tools: Tools) -> None:
 
 
 def _copy(tools: Tools) -> None:
+    copies: list[Body] = []
+
     @tools._controls.action("copy", key="n", help="copies the held or selected body")
     def copy_it(event: Event) -> None:
+        if len(copies) >= MOST_COPIES:
+            copies[:] = [copy for copy in copies if copy.alive]
+        if len(copies) >= MOST_COPIES:
+            event.notice("That is enough", f"There are {MOST_COPIES} copies. A reset removes them.")
+            return
         with tools._system.edit():
             made = copy_body(event.body)
+        copies.append(made)
         tools._visuals.dress_alike(made, event.body)
 
 

@@ -7,7 +7,6 @@ import atexit
 import concurrent.futures
 import html
 import math
-import sys
 import threading
 import time
 import webbrowser
@@ -18,7 +17,7 @@ from iota._core import StepReport, System
 from iota.arguments import SHORT, is_number, refuse_reading, refuse_unknown, suggestion
 from iota.simulator import Simulator
 from iota.world import options as run_options
-from iota.world.callbacks import Guard
+from iota.world.callbacks import SLOW_STEP, Guard, is_terminal, print_on_terminal
 from iota.world.clock import Clock
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
@@ -309,6 +308,7 @@ class World:
             elif view is not None or options.view is not None:
                 summary = self._run_viewed(options.view or cast(View, view), math.inf if seconds is None else seconds)
             else:
+                self._limit_steps()
                 self.serve(port, lan=lan)
                 self._announce(open if options.open is None else options.open)
                 summary = self._run_served(math.inf if seconds is None else seconds)
@@ -328,6 +328,7 @@ class World:
         def background() -> None:
             try:
                 self.system.adopt()
+                self._limit_steps()
                 try:
                     self.serve(8080 if port is None else port, server=server, id=id)
                 except OSError:
@@ -469,6 +470,12 @@ class World:
                 f"a world starts with one of its styles, not {style!r}{suggestion(style, known)} ({there})"
             )
 
+    def _limit_steps(self) -> None:
+        """What users build must not hold the world for them all, so a search for a solution is given up at some time."""
+        system = self.system
+        if isinstance(system, System) and not (system.budget_seconds or system.budget_iterations):
+            system.budget_seconds = SLOW_STEP
+
     def _begin(self) -> None:
         self._check_style()
         self._runner = threading.get_ident()
@@ -558,7 +565,8 @@ class World:
                     if time.monotonic() > end:
                         raise TimeoutError(f"no picture came from client {client} within {seconds:g} s")
                     time.sleep(0.005)
-                    self._inputs.take_pictures(self._pages._publisher.room.take_input())
+                    for _, part in self._pages._publisher.room.take_pictures():
+                        pictures.take(part)
             finally:
                 pictures.forget(number)
             if not picture:
@@ -583,8 +591,8 @@ class World:
     def _announce(self, show: bool) -> None:
         lines = [f"{self.title}: {self.pages.url}"]
         if self._pages._publisher is not None:
-            lines += self._pages._publisher.announce_lan(shows_code=sys.stdout.isatty())
+            lines += self._pages._publisher.announce_lan(shows_code=is_terminal())
         lines += [action.line for action in self._state.actions if action.key]
-        print("\n".join(lines), flush=True)
+        print_on_terminal("\n".join(lines) + "\n", is_error=False)
         if show and self.pages.url and not webbrowser.open(self.pages.url):
-            print("iota: no browser could be opened", file=sys.stderr)
+            print_on_terminal("iota: no browser could be opened\n")

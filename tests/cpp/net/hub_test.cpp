@@ -353,15 +353,76 @@ TEST_F(HubTest, refuses_each_place_that_is_too_far) {
   EXPECT_TRUE(take_gestures().empty());
 }
 
-TEST_F(HubTest, takes_one_single_step_a_round_and_one_reset_a_second) {
-  Link link;
-  const std::uint32_t client = join(link);
+TEST_F(HubTest, takes_one_single_step_a_round_and_one_reset_a_second_from_all_clients_together) {
+  Link link, other;
+  const std::uint32_t clients[] = {join(link), join(other)};
   for (int i = 0; i < 100; ++i) {
-    receive(client, protocol::Control{protocol::ControlCommand::single_step, 0});
-    receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
+    for (const std::uint32_t client : clients) {
+      receive(client, protocol::Control{protocol::ControlCommand::single_step, 0});
+      receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
+    }
   }
   EXPECT_EQ(take_gestures().size(), 2u);
   EXPECT_EQ(link.all<protocol::Notice>().size(), 1u) << "told once to wait";
+  EXPECT_EQ(other.all<protocol::Notice>().size(), 1u);
+}
+
+TEST_F(HubTest, limits_the_bytes_that_wait_for_the_script) {
+  Link flood;
+  const std::uint32_t client = join(flood);
+  const protocol::Action large{.name = "copy", .body = {}, .others = std::vector<protocol::Id>(4000)};
+  std::size_t taken = 0;
+  for (; taken < 1000 && flood.dropped.empty(); ++taken) receive(client, large);
+  EXPECT_LE(taken * 4000 * sizeof(protocol::Id), std::size_t{1100} << 10);
+  EXPECT_EQ(flood.dropped, "more input than the script can take");
+}
+
+TEST_F(HubTest, limits_the_bytes_of_values_that_replace_older_ones) {
+  Link flood;
+  const std::uint32_t client = join(flood);
+  for (std::uint32_t widget = 0; widget < 4000 && flood.dropped.empty(); ++widget) {
+    receive(client, protocol::Change{{widget, 1}, 0, ""});
+    receive(client, protocol::Change{{widget, 1}, 0, std::string(4000, 'a')});
+  }
+  std::size_t bytes = 0;
+  for (const ClientInput& input : hub.take_input())
+    if (const auto* change = std::get_if<protocol::Change>(&input.what)) bytes += change->text.size();
+  EXPECT_LE(bytes, std::size_t{1100} << 10);
+}
+
+TEST_F(HubTest, forgets_clients_that_come_fill_the_queue_and_go_while_the_script_hangs) {
+  const protocol::Action large{.name = "copy", .body = {}, .others = std::vector<protocol::Id>(4000)};
+  for (int time = 0; time < 200; ++time) {
+    Link link;
+    const std::uint32_t client = join(link);
+    while (link.dropped.empty()) receive(client, large);
+    hub.leave(client);
+  }
+  std::size_t bytes = 0;
+  for (const ClientInput& input : hub.take_input())
+    if (const auto* action = std::get_if<protocol::Action>(&input.what)) bytes += action->others.size() * 8;
+  EXPECT_LE(bytes, std::size_t{2} << 20) << "40 MB before";
+  Link late;
+  const std::uint32_t client = join(late);
+  hub.leave(client);
+  EXPECT_EQ(hub.take_input().size(), 2u) << "those who come and go in peace are told";
+}
+
+TEST_F(HubTest, gives_pictures_before_other_input_which_stays_in_order) {
+  Link link;
+  const std::uint32_t client = join(link);
+  (void)hub.ask_picture(client, 1);
+  hub.deliver();
+  receive(client, protocol::Key{"a", true});
+  receive(client, protocol::Picture{.request = 1, .is_last = false, .data = {1}});
+  receive(client, protocol::Key{"b", true});
+  receive(client, protocol::Picture{.request = 1, .is_last = true, .data = {2}});
+  const auto pictures = hub.take_pictures();
+  ASSERT_EQ(pictures.size(), 2u);
+  EXPECT_EQ(std::get<protocol::Picture>(pictures[1].what).data.front(), 2);
+  const auto rest = take_gestures();
+  ASSERT_EQ(rest.size(), 2u);
+  EXPECT_EQ(std::get<protocol::Key>(rest[0].what).key, "a");
 }
 
 TEST_F(HubTest, drops_a_client_that_sends_more_than_the_script_takes_and_only_it) {
