@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
 
+#include "base/replace_file.h"
+
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <system_error>
 
 namespace iota::bindings {
@@ -23,20 +23,17 @@ std::filesystem::path to_path(nb::handle path) {
   return nb::cast<std::string>(text);
 }
 
-/// Writes a new file and renames it: a reader sees the old file or the new one, never a part.
+constexpr const char* ending = ".replay";  // .iota is for what pages show
+
 void save(const Recording& recording, nb::handle target) {
   const std::filesystem::path path = to_path(target);
-  const std::filesystem::path part =
-      path.string().append(".").append(std::to_string(std::random_device{}())).append(".part");
-  const std::vector<std::byte> bytes = recording.to_bytes();
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  if (!file) raise_os_error(path);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed || std::rename(part.c_str(), path.c_str()) != 0) {
-    const int error = errno;
-    std::remove(part.c_str());
-    errno = error;
+  if (path.extension() != ending)
+    throw std::invalid_argument("a recording of a system must end in " + std::string(ending) + ", not '" +
+                                path.filename().string() + "'");
+  try {
+    replace_file(path, recording.to_bytes(), Readers::all);
+  } catch (const std::system_error& error) {
+    errno = error.code().value();
     raise_os_error(path);
   }
 }
@@ -61,8 +58,8 @@ constexpr const char* recording_doc =
     "    system.start_recording()\n"
     "    ...\n"
     "    recording = system.stop_recording()\n"
-    "    recording.save('run.iota')\n"
-    "    assert system.replay(iota.Recording.load('run.iota')) is None";
+    "    recording.save('run.replay')\n"
+    "    assert system.replay(iota.Recording.load('run.replay')) is None";
 
 }  // namespace
 
@@ -74,7 +71,8 @@ void bind_recording(nb::module_& module) {
           "steps", [](const Recording& r) { return r.hashes.size(); }, "Number of steps.")
       .def_ro("hashes", &Recording::hashes, "`System.state_hash()` after each step.")
       .def("save", &save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
-           "Writes it to a file, completely or not at all. Raises OSError.")
+           "Writes it to a file that ends in .replay, completely or not at all. Raises OSError, or ValueError for another\n"
+           "ending.")
       .def_static("load", &load, "path"_a, nb::sig("def load(path: str | os.PathLike[str]) -> Recording"),
                   "Reads a file made by `save`. Raises OSError, or ValueError for a file that is not a complete "
                   "recording.")

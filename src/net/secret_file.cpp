@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/secret_file.h"
 
-#include <cerrno>
+#include "base/replace_file.h"
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <random>
+#include <span>
 #include <stdexcept>
-#include <system_error>
-
-#ifndef _WIN32
-#include <fcntl.h>
-#include <unistd.h>
-#endif
 
 namespace iota::net {
 
@@ -38,33 +33,18 @@ std::string read_file(const fs::path& file) {
 }
 
 void write_secret(const fs::path& file, const std::string& text) {
-#ifdef _WIN32
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::system_error(errno, std::generic_category(), "cannot write " + file.string());
-#else
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot write " + file.string());
-  const bool written = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  const int reason = errno;
-  if ((::close(descriptor) != 0) || !written) {
-    throw std::system_error(written ? errno : reason, std::generic_category(), "cannot write " + file.string());
-  }
-#endif
+  write_new_file(file, std::as_bytes(std::span(text)), Readers::owner);
 }
 
 void make_secret_folder(const fs::path& folder) {
   if (fs::create_directories(folder)) fs::permissions(folder, fs::perms::owner_all);
 }
 
-fs::path temporary_beside(const fs::path& file) { return file.string() + "." + std::to_string(std::random_device()()); }
+fs::path temporary_beside(const fs::path& file) { return name_beside(file); }
 
 void replace_secret(const fs::path& file, const std::string& text) {
   make_secret_folder(file.parent_path());
-  const fs::path temporary = temporary_beside(file);
-  write_secret(temporary, text);
-  fs::rename(temporary, file);
+  replace_file(file, std::as_bytes(std::span(text)), Readers::owner);
 }
 
 }  // namespace iota::net

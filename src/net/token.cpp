@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/token.h"
 
+#include "base/replace_file.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <random>
@@ -57,9 +59,11 @@ std::string load_or_make_token(const fs::path& folder) {
       return found;
     }
     fs::rename(temporary, file);  // damaged, or a file system without links
+    sync_folder(folder);
     return token;
   }
   fs::remove(temporary);
+  sync_folder(folder);
   return token;
 }
 

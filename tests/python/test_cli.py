@@ -422,7 +422,28 @@ def test_a_script_that_ends_without_close_leaves_nothing_on_the_terminal(tmp_pat
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.skipif(sys.platform == "win32", reason="has no such signal")
+def test_a_world_that_nohup_started_outlives_its_terminal() -> None:
+    script = "import os, signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); os.execvp('{0}', ['{0}', '-c', {1!r}])"
+    hang_up = "import os, signal, sys; from iota.cli.main import main; import iota; "
+    hang_up += "iota.World.run = lambda self, *_, **__: os.kill(os.getpid(), signal.SIGHUP); "
+    hang_up += "main(['run', 'chain', '--headless'])"
+    for begin, code in ((hang_up, 130), (script.format(sys.executable, hang_up), 1)):
+        done = subprocess.run([sys.executable, "-c", begin], capture_output=True, text=True, timeout=60)
+        assert ("interrupted" in done.stderr) == (code == 130), done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
+@pytest.mark.parametrize("out", ["1>&-", ">/dev/full"])
+def test_a_world_runs_without_anything_to_print_on(tmp_path: Path, out: str) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text("import iota\nworld = iota.World(iota.System())\nworld.run()\nprint('%.1f' % world.system.time, file=open('time', 'w'))\n")
+    command = f"{sys.executable} -m iota run mine.py --no-open --port 0 --seconds 1 {out}"
+    done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, text=True, timeout=60, cwd=tmp_path)
+    assert "Traceback" not in done.stderr and (tmp_path / "time").read_text() != "0.0\n"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_it_ends_cleanly_on_request(number: signal.Signals) -> None:
     command = [sys.executable, "-m", "iota", "run", "chain", "--no-open", "--port", "0"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)

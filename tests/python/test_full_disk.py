@@ -39,11 +39,11 @@ def run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_recording_that_does_not_fit_leaves_the_older_one(tmp_path: Path) -> None:
-    old = tmp_path / "run.iota"
+    old = tmp_path / "run.replay"
     old.write_bytes(b"an older one")
-    done = run(tmp_path, SCRIPT.format(save="recording.save('run.iota')"))
+    done = run(tmp_path, SCRIPT.format(save="recording.save('run.replay')"))
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("refused:") and "run.iota" in done.stdout
+    assert done.stdout.startswith("refused:") and "run.replay" in done.stdout
     assert old.read_bytes() == b"an older one" and list(tmp_path.iterdir()) == [old]
 
 

@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
+import gzip
+import os
 import random
+import struct
 import subprocess
 import sys
 import textwrap
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pages import listen_for_complaints, needs_browser, open_page
 
-from iota.film import Film
+import iota as iota_package
+from iota._protocol import PROTOCOL_VERSION
+from iota.film import Film, stream
 from iota.film.files import Failed
-from iota.film.stream import pack, unpack, write_stream
+from iota.film.stream import check_version, pack, read_file, unpack, write_stream
 
 SPEED, BREAK = 1.5, 0.5  # m/s; s, when the ball loses its tail
 
@@ -36,6 +42,52 @@ def test_a_stream_that_is_cut_is_read_up_to_its_last_whole_message() -> None:
         messages, is_complete = unpack(packed[:end])
         assert messages == frames[: len(messages)] and not is_complete
         assert len(messages) >= 20 * end // len(packed) - 3
+
+
+def welcome(version: int) -> bytes:
+    return struct.pack("<BH", stream.WELCOME, version) + bytes(8)
+
+
+def test_a_file_that_grows_beyond_a_limit_is_refused_without_unpacking_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "MOST_UNPACKED", 1 << 20)
+    bomb = gzip.compress(stream.MAGIC + bytes(50 << 20))
+    assert len(bomb) < 1 << 17
+    tracemalloc.start()
+    with pytest.raises(Failed, match="more than 1 MiB when it is unpacked"):
+        unpack(bomb)
+    assert tracemalloc.get_traced_memory()[1] < 8 << 20
+    tracemalloc.stop()
+    monkeypatch.setattr(stream, "MOST_PACKED", 1000)
+    (tmp_path / "large.iota").write_bytes(bomb)
+    with pytest.raises(Failed, match="it has more than"):
+        read_file(tmp_path / "large.iota")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has neither")
+def test_a_pipe_or_a_device_is_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.iota")
+    for path in (tmp_path / "pipe.iota", Path("/dev/zero")):
+        with pytest.raises(Failed, match="pipe or a device"):
+            read_file(path)
+
+
+def test_messages_of_another_version_are_refused(tmp_path: Path) -> None:
+    check_version([(0.0, welcome(PROTOCOL_VERSION)), (1.0, b"more")])
+    (tmp_path / "old.iota").write_bytes(pack([(0.0, welcome(3))]))
+    done = iota("play", tmp_path / "old.iota", "--no-open")
+    assert done.returncode == 1 and f"version 3 of the protocol, and this iota plays version {PROTOCOL_VERSION}" in done.stderr
+    for first in (b"", b"@", bytes(9)):
+        with pytest.raises(Failed, match="does not begin with a welcome"):
+            check_version([(0.0, first)])
+
+
+def test_the_recording_of_a_system_is_told_from_one_of_pages() -> None:
+    system = iota_package.System()
+    system.start_recording()
+    with pytest.raises(Failed, match="Recording.load"):
+        unpack(system.stop_recording().to_bytes())
 
 
 def test_an_ending_in_capitals_is_the_same_ending(tmp_path: Path) -> None:

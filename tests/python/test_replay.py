@@ -62,10 +62,10 @@ def test_replay_names_the_first_step_that_differs(system: iota.System, chain: li
 
 def test_a_recording_survives_its_file(system: iota.System, chain: list[iota.Body], tmp_path: Path) -> None:
     recording = record(system, chain)
-    path = tmp_path / "run.iota"
+    path = tmp_path / "run.replay"
     recording.save(path)
     recording.save(str(path))
-    assert [entry.name for entry in tmp_path.iterdir() if entry.name != "state"] == ["run.iota"], "no part is left"
+    assert [entry.name for entry in tmp_path.iterdir() if entry.name != "state"] == ["run.replay"], "no part is left"
     assert iota.types.Recording.load(path) == recording
     assert iota.System().replay(iota.types.Recording.load(str(path))) is None
 
@@ -84,7 +84,7 @@ def test_a_recording_survives_its_file(system: iota.System, chain: list[iota.Bod
 def test_a_damaged_recording_is_refused(
     system: iota.System, chain: list[iota.Body], tmp_path: Path, change: object, text: str
 ) -> None:
-    path = tmp_path / "run.iota"
+    path = tmp_path / "run.replay"
     path.write_bytes(change(record(system, chain).to_bytes()))
     with pytest.raises(ValueError, match=text) as caught:
         iota.types.Recording.load(path)
@@ -96,7 +96,7 @@ def test_files_that_cannot_be_opened_are_os_errors(system: iota.System, tmp_path
         iota.types.Recording.load(tmp_path / "missing")
     system.start_recording()
     with pytest.raises(FileNotFoundError):
-        system.stop_recording().save(tmp_path / "no" / "folder")
+        system.stop_recording().save(tmp_path / "no" / "run.replay")
 
 
 def test_restore_goes_back_and_handles_are_good_again(system: iota.System, chain: list[iota.Body]) -> None:

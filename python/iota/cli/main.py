@@ -172,6 +172,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code: 0, 1 for failures, 2 for wrong arguments."""
     signal.signal(signal.SIGINT, signal.default_int_handler)  # see iota.starting
     signal.signal(signal.SIGTERM, _stop)  # `kill` ends a server as cleanly as Ctrl-C
+    hang_up = getattr(signal, "SIGHUP", None)  # a terminal that closes, too, but not under nohup
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        signal.signal(hang_up, _stop)
     parsed = make_parser().parse_args(arguments)
     try:
         parsed.function(parsed)

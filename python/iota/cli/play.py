@@ -11,7 +11,7 @@ from pathlib import Path
 
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
-from iota.film import Failed, pack, player, unpack
+from iota.film import Failed, check_version, pack, player, read_file, unpack
 from iota.saving import replacing
 
 
@@ -22,8 +22,9 @@ def play(arguments: argparse.Namespace) -> None:
     if target.suffix.lower() != ".html":
         raise Failure(f"{target} must end in .html")
     try:
-        file = source.read_bytes()
+        file = read_file(source)
         messages, is_complete = unpack(file)
+        check_version(messages)
         with replacing(target) as fresh:
             fresh.write_text(player(file if is_complete else pack(messages), source.stem), encoding="utf-8")
     except Failed as failed:

@@ -25,7 +25,7 @@ from iota.errors import PageMissingError
 from iota.film.files import Failed, check_name
 from iota.terminal import TerminalView
 from iota.world import World
-from iota.world.callbacks import print_error
+from iota.world.callbacks import is_terminal, print_error
 from iota.world.lan import Lan
 from iota.world.options import RunOptions, current, use
 
@@ -101,7 +101,7 @@ def token(arguments: argparse.Namespace) -> None:
 def can_show_a_page() -> bool:
     """Whether this machine has a display: without one, Python would look for a browser in the terminal."""
     has_display = sys.platform in ("darwin", "win32") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
-    return has_display and sys.stdout.isatty()
+    return has_display and is_terminal()
 
 
 def find(what: str) -> Callable[[int | None], None]:

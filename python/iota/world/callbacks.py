@@ -114,12 +114,18 @@ def print_error(error: BaseException, is_own: bool = False) -> None:
     print_on_terminal("".join(lines))
 
 
-def print_on_terminal(text: str) -> None:
-    """Prints on stderr. A closed terminal or a log on a full disk must not end the world: pages show the error as
-    well."""
-    with suppress(OSError, ValueError, AttributeError):  # disk full or broken pipe, closed, no stderr (pythonw)
-        sys.stderr.write(text)
-        sys.stderr.flush()
+def print_on_terminal(text: str, is_error: bool = True) -> None:
+    """Prints on stderr, or stdout. A closed terminal or a log on a full disk must not end the world: pages show the error
+    as well."""
+    with suppress(OSError, ValueError, AttributeError):  # disk full or broken pipe, closed, none (a service, pythonw)
+        out = sys.stderr if is_error else sys.stdout
+        out.write(text)
+        out.flush()
+
+
+def is_terminal() -> bool:
+    """Whether stdout is one."""
+    return sys.stdout is not None and not sys.stdout.closed and sys.stdout.isatty()
 
 
 @dataclass(frozen=True, eq=False)

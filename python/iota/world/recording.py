@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import os
 import struct
-import tempfile
 import threading
 import zlib
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from iota._core import Room, RoomRecording
+from iota.saving import file_beside, put_in_place
 
 MAGIC = b"iota stream 1\n"
 POSE_TIME = 1 / 30  # s, between two recorded poses
@@ -34,9 +34,9 @@ class StreamFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+        handle, fresh = file_beside(path)
         self._file = os.fdopen(handle, "wb", buffering=0)
-        self._fresh: Path | None = Path(name)  # until it has its final name
+        self._fresh: Path | None = fresh  # until it has its final name
         self._packer = zlib.compressobj(wbits=GZIP)
         self._begin = MAGIC
 
@@ -47,8 +47,7 @@ class StreamFile:
         self._write(self._packer.compress(self._begin + data) + self._packer.flush(zlib.Z_SYNC_FLUSH))
         self._begin = b""
         if self._fresh is not None:
-            self._fresh.chmod(0o644)
-            self._fresh.replace(self._path)
+            put_in_place(self._fresh, self._path)
             self._fresh = None
 
     def close(self) -> None:
@@ -56,6 +55,7 @@ class StreamFile:
         try:
             if self._fresh is None:
                 self._write(self._packer.flush())
+                os.fsync(self._file.fileno())
         finally:
             self._file.close()
             if self._fresh is not None:
