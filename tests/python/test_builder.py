@@ -5,6 +5,7 @@ import json
 import math
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -162,6 +163,19 @@ def test_a_structure_comes_back_from_json(system: iota.System) -> None:
     for _ in range(5):
         assert system.step().energy.total == other.step().energy.total
     assert system.state_hash() == other.state_hash()
+
+
+def test_a_structure_of_another_version_is_refused_and_one_of_before_versions_is_read() -> None:
+    """Each version has a file that it made."""
+    file = Path(__file__).parent / "golden" / "structure_1.json"
+    saved = json.loads(file.read_text())
+    assert swing().to_json() == saved
+    assert iota.builder.Structure.from_json(saved).problems() == []
+    del saved["version"]
+    assert iota.builder.Structure.from_json(saved).to_json() == swing().to_json()
+    for version in (2, 0, "1", None, [1]):
+        with pytest.raises(ValueError, match="the structure has version .* reads version 1"):
+            iota.builder.Structure.from_json({"version": version, "wheels": []})
 
 
 def test_values_that_json_cannot_hold_are_named() -> None:

@@ -90,7 +90,7 @@ def run(disk: Disk, folder: Path, *command: str) -> subprocess.CompletedProcess[
 @pytest.mark.parametrize(
     ("file", "build", "save"),
     [
-        ("run.replay", "chain.build()", "world.system.start_recording(); world.system.stop_recording().save('run.iota')"),
+        ("run.replay", "chain.build()", "world.system.start_recording(); world.system.stop_recording().save('run.replay')"),
         ("playground.json", "playground.build()", BUTTON.format(label="save")),
         ("playground.py", "playground.build()", BUTTON.format(label="export script")),
         ("now.png", "chain.build()", "Client(1, take_picture=lambda client, wait: b'a picture').screenshot('now.png')"),

@@ -13,7 +13,7 @@ import numpy as np
 
 from iota import looks, shapes
 from iota._core import Vec3
-from iota.arguments import of_type
+from iota.arguments import SHORT, of_type
 from iota.builder.checks import label
 from iota.builder.contents import Contents
 from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
@@ -30,11 +30,13 @@ FIELDS: dict[str, type] = {
     "options": dict, "terms": list, "shape": dict,
 }  # fmt: skip
 
+VERSION = 1  # rises when files of before can no longer be read, or would be read wrongly
+
 Filled = TypeVar("Filled", bound=Contents)
 
 
 def to_json(structure: Contents) -> dict[str, Any]:
-    data: dict[str, Any] = {"points": structure.points.to_json()}
+    data: dict[str, Any] = {"version": VERSION, "points": structure.points.to_json()}
     for name, kind in PARTS.items():
         data[name] = [
             _part(part, label(kind.__name__, number, part.name)) for number, part in _counted(structure, name)
@@ -47,8 +49,11 @@ def to_json(structure: Contents) -> dict[str, Any]:
 
 def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
     """Fills an empty structure."""
-    known = {"points", "looks", *PARTS, *PAIRS, *PLAIN}
-    if unknown := sorted(of_type(data, dict, "a structure").keys() - known):
+    known = {"version", "points", "looks", *PARTS, *PAIRS, *PLAIN}
+    # The version comes first, since another one has other parts; files of before it had one are of version 1.
+    if (version := of_type(data, dict, "a structure").get("version", 1)) != VERSION:
+        raise ValueError(f"the structure has version {SHORT.repr(version)}, and this iota reads version {VERSION}")
+    if unknown := sorted(data.keys() - known):
         raise ValueError(f"a structure has no {', '.join(unknown)}; it has {', '.join(sorted(known))}")
     if "points" not in data:
         raise ValueError("the structure has no points")

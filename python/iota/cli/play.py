@@ -11,7 +11,8 @@ from pathlib import Path
 
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
-from iota.film import Failed, check_version, pack, player, read_file, unpack
+from iota.film import Failed, pack, player, unpack
+from iota.film.stream import check_version, read_file
 from iota.saving import replacing
 
 

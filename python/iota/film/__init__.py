@@ -4,8 +4,8 @@
 from iota.arguments import explain_module
 from iota.film.files import Failed
 from iota.film.record import Film, record
-from iota.film.stream import check_version, pack, player, read_file, unpack
+from iota.film.stream import pack, player, unpack
 
-__all__ = ["Failed", "Film", "check_version", "pack", "player", "read_file", "record", "unpack"]
+__all__ = ["Failed", "Film", "pack", "player", "record", "unpack"]
 
 explain_module(__name__)
