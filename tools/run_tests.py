@@ -32,6 +32,7 @@ import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatch
 from pathlib import Path
 
 import build
@@ -44,6 +45,8 @@ STAMPS = ROOT / "build" / "stamps"
 CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
 SHOWN_SLOWEST = 10
+#: Patterns of tests that may be skipped here; all others run, or fail.
+EXPECTED_SKIPS: tuple[str, ...] = ()
 
 
 @dataclass
@@ -67,6 +70,13 @@ class Count:
         self.repeated += other.repeated
         self.durations += other.durations
 
+    def skip(self, name: str) -> None:
+        """Where a browser or a package is missing, tests would drop out silently: that is a failure."""
+        if any(fnmatch(name, expected) for expected in EXPECTED_SKIPS):
+            self.skipped += 1
+        else:
+            self.fail(f"skipped: {name}")
+
     def fail(self, why: str) -> None:
         self.failed += 1
         self.failures.append(why)
@@ -79,10 +89,10 @@ def read_gtest(result: Path) -> Count:
             count.durations.append((float(test.get("time", "0s").rstrip("s")), f"{suite['name']}.{test['name']}"))
             if test.get("failures"):
                 count.fail(f"{suite['name']}.{test['name']}")
+            elif test.get("result") == "SKIPPED":
+                count.skip(f"{suite['name']}.{test['name']}")
             elif test.get("result") == "COMPLETED":
                 count.passed += 1
-            else:
-                count.skipped += 1
     return count
 
 
@@ -93,7 +103,7 @@ def read_junit(result: Path) -> Count:
         if case.find("failure") is not None or case.find("error") is not None:
             count.fail(f"{case.get('classname')}.{case.get('name')}")
         elif case.find("skipped") is not None:
-            count.skipped += 1
+            count.skip(f"{case.get('classname')}.{case.get('name')}")
         else:
             count.passed += 1
     return count
@@ -113,7 +123,7 @@ def read_vitest(result: Path) -> Count:
             elif state == "passed":
                 count.passed += 1
             else:
-                count.skipped += 1
+                count.skip(f"{name}: {title}")
         # A file that cannot be loaded, or whose set-up fails, has no failed test.
         if file["status"] == "failed" and not any(state == "failed" for state, _ in states):
             count.fail(f"{name}: {file.get('message', '').strip().splitlines()[:1]}")
@@ -142,6 +152,8 @@ class Suite:
     draws: bool = False
     #: It is split into so many parts that run as suites (GoogleTest only).
     shards: int = 1
+    #: Takes long and rarely finds anything that the others do not: runs with --all, or when it is named.
+    only_with_all: bool = False
     #: All files that it depends on, if it runs only when one of them has changed.
     inputs: Callable[[], list[Path]] | None = None
     environment: dict[str, str] = field(default_factory=dict)
@@ -216,6 +228,20 @@ SUITES = [
     ),
     Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
     Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
+    Suite("lint", ["make", "lint"], 1200, about_s=120, only_with_all=True),
+    Suite(
+        "determinism",
+        ["sh", "-c", "ninja -C build iota_state_hashes && python tools/check_determinism.py --program build/iota_state_hashes"],
+        900, about_s=30, only_with_all=True,
+    ),
+    # With a tenth of the samples, damaged snapshots and recordings among them; `make hostile` tries more.
+    *(
+        Suite(
+            name, ["env", "-u", "IOTA_TEST_ALL", "make", f"check-{name}"], 5400, about_s=1500, cores=CORES,
+            only_with_all=True,
+        )
+        for name in ("asan", "ubsan")
+    ),
 ]  # fmt: skip
 
 
@@ -399,10 +425,13 @@ def chosen(names: list[str], all_of_them: bool) -> list[Suite]:
     """The named suites, or those with something new to test; the others are told."""
     if names:
         return [suite for suite in SUITES if suite.name in names]
-    unchanged = [] if all_of_them else [suite for suite in SUITES if is_unchanged(suite)]
+    if all_of_them:
+        return SUITES
+    usual = [suite for suite in SUITES if not suite.only_with_all]
+    unchanged = [suite for suite in usual if is_unchanged(suite)]
     for suite in unchanged:
         print(f"{suite.name:12} passed before, and nothing it depends on has changed", flush=True)
-    return [suite for suite in SUITES if suite not in unchanged]
+    return [suite for suite in usual if suite not in unchanged]
 
 
 def main(arguments: list[str]) -> int:

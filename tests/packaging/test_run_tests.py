@@ -24,6 +24,7 @@ def runner(load_tool: Callable[[str], ModuleType], tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(module, "LOGS", tmp_path / "logs")
     monkeypatch.setattr(module, "STAMPS", tmp_path / "stamps")
     monkeypatch.setattr(module, "CORES", 2)
+    monkeypatch.setattr(module, "EXPECTED_SKIPS", ("Chain.flies", "t.c"))
     monkeypatch.delenv("IOTA_TEST_ALL", raising=False)  # as `make test-all` sets it
     return module
 
@@ -54,6 +55,19 @@ FAILED = {"name": "breaks", "result": "COMPLETED", "failures": [{"failure": "no"
 def test_passed_and_skipped_tests_are_summed(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     made = suite(runner, writes(gtest(PASSED, PASSED, SKIPPED)), runner.read_gtest)
     assert closing_line(runner, made, capsys) == (0, "2 passed, 0 failed, 1 skipped")
+
+
+def test_a_skip_that_nobody_expects_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    made = suite(runner, writes(gtest(PASSED, {"name": "swims", "result": "SKIPPED"})), runner.read_gtest)
+    assert closing_line(runner, made, capsys) == (1, "1 passed, 1 failed")
+
+
+def test_what_takes_long_runs_with_all_or_by_name(runner: ModuleType) -> None:
+    usual, long = runner.Suite("usual", [], 1), runner.Suite("long", [], 1, only_with_all=True)
+    runner.SUITES = [usual, long]
+    assert runner.chosen([], False) == [usual]
+    assert runner.chosen([], True) == [usual, long]
+    assert runner.chosen(["long"], False) == [long]
 
 
 def test_a_failed_test_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:

@@ -97,6 +97,14 @@ def test_a_box_that_slides_is_stopped_by_friction_and_stays_where_it_is() -> Non
     assert box.center_of_mass.y == pytest.approx(0.1, abs=0.002)
 
 
+def test_a_particle_slides_as_far_as_the_friction_of_the_ground_allows() -> None:
+    system = iota.System()
+    point = system.body().particle((0, 0.05, 0), mass=1, velocity=(3, 0, 0))
+    point.radius = 0.05
+    run(iota.World(system, ground=0.0), 2)
+    assert point.position.x == pytest.approx(3**2 / (2 * 0.6 * 9.81), rel=0.05)
+
+
 def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -> None:
     system = iota.System()
     chain = iota.builder.chain(24, 2.4, top=(0, 3, 0), direction=(0.85, -0.55, 0.1)).realize(system)

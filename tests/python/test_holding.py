@@ -165,3 +165,12 @@ def test_a_hand_is_on_what_the_body_became_part_of_and_then_on_the_part_at_its_p
         page.send("grab_end", hold=1)
         page.wait_for(lambda: held() is None)
         assert told[0] == ("start", right) and told[-2:] == [("end", taken), ("release", taken)]
+
+
+@pytest.mark.parametrize("limit", [60.0, 20.0])
+def test_a_hand_far_away_pulls_with_its_largest_force_and_no_more(limit: float) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    ball = system.body(shape=iota.Sphere(0.05), mass=2.0, position=(0, 1, 0))
+    system.grip(ball, target=(1000, 1, 0), max_acceleration=limit)
+    system.step(1 / 120)
+    assert 0.8 * limit / 120 < ball.velocity.x <= limit / 120, "its damping takes some of it"

@@ -209,3 +209,21 @@ def test_parts_of_a_world_do_not_import_each_other_in_a_circle() -> None:
         assert free, f"a circle: { {name: used & left.keys() for name, used in left.items()} }"
         for name in free:
             del left[name]
+
+
+def test_a_function_that_was_switched_off_is_called_again_after_a_reset() -> None:
+    world = iota.World(iota.System())
+    calls: list[str] = []
+
+    @world.on_step
+    def fail() -> None:
+        calls.append("step")
+        raise ZeroDivisionError
+
+    for _ in range(3):
+        world.step()
+    assert calls == ["step"]
+    world.reset()
+    for _ in range(3):
+        world.step()
+    assert calls == ["step", "step"]

@@ -365,6 +365,29 @@ def test_a_world_goes_back_by_a_second_at_a_time_to_where_it_was(system: iota.Sy
         page.wait_for(lambda: [notice["title"] for notice in page.notices] == ["Nothing to go back to"])
 
 
+def test_going_back_to_a_time_at_which_a_hand_held_the_body_already_takes_it_away(
+    system: iota.System, run_world: Runner
+) -> None:
+    system.gravity = (0, 0, 0)
+    ball = system.body().particle((0, 1, 0))
+    world = iota.World(system, ground=None)
+    world.offer("rewind")
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(0.5, 1, 0))
+        page.wait_for(lambda: world.call(lambda: world.users.held() is not None))
+        taken = world.call(lambda: system.time)
+        page.wait_for(lambda: world.call(lambda: system.time) > taken + 2.5)
+        page.send("control", command=0, value=0.0)
+        act(page, "rewind")
+        page.wait_for(lambda: world.call(lambda: system.time) < taken + 2.2)
+        assert world.call(lambda: system.time) > taken, "the hand is older"
+        assert world.call(lambda: world.users.held()) is None
+        page.send("grab_move", hold=1, target=(3, 1, 0))
+        for _ in range(20):
+            page.single_step()
+        assert world.call(lambda: ball.position.x) < 1, "and does not pull any more"
+
+
 @pytest.mark.parametrize("end", ["destroy", "reset"])
 def test_a_plug_that_leaves_the_hand_without_being_let_go_leaves_no_ghost(
     system: iota.System, run_world: Runner, end: str

@@ -89,3 +89,14 @@ it("asks why where the server closes before it has begun", () => {
   expect(asked).toHaveBeenCalledOnce();
   expect(states[0]).toBe("lost");
 });
+
+it("tries again ever more rarely, but at least each five seconds", () => {
+  for (let tries = 0; tries < 20; tries++) {
+    Socket.made.at(-1)!.onclose!();
+    vi.advanceTimersByTime(5000);
+    expect(Socket.made).toHaveLength(tries + 2);
+  }
+  Socket.made.at(-1)!.onclose!();
+  vi.advanceTimersByTime(2000);
+  expect(Socket.made, "not as often as at the begin").toHaveLength(21);
+});

@@ -44,3 +44,22 @@ describe("zooming", () => {
     expect(navigation.goal.distance).toBeGreaterThan(0.01 * size);
   });
 });
+
+describe("reset", () => {
+  it.each([1, 2.4, -3.3])("after %s turns goes back the short way, not through all of them", (turns) => {
+    const { navigation, camera } = make();
+    navigation.setHome(navigation.goal);
+    const home = navigation.goal.yaw;
+    navigation.goTo({ ...navigation.goal, yaw: home + turns * 2 * Math.PI });
+    for (let frame = 0; frame < 400; frame++) navigation.update(1 / 60);
+    navigation.reset();
+    const place = new Vector3();
+    let last = camera.position.clone(), way = 0;
+    for (let frame = 0; frame < 400; frame++) {
+      navigation.update(1 / 60);
+      way += place.copy(camera.position).distanceTo(last);
+      last = camera.position.clone();
+    }
+    expect(way).toBeLessThan(1.1 * Math.PI * navigation.goal.distance);
+  });
+});
