@@ -94,6 +94,10 @@ class Assembly {
   template <class IsDue>
   void place_items(Problem&, IsDue);
   void place_nodes(const Problem&);
+  BlockPattern& own_pattern() {
+    if (!own_pattern_) own_pattern_ = std::make_shared<BlockPattern>();
+    return *own_pattern_;
+  }
   void weigh(const Problem&);
   bool has_extreme_masses() const { return row_compliance_ < 1; }
   /// With extreme masses a sub-step has its own compliance: at that of the whole step, tensions would open joints.
@@ -125,8 +129,8 @@ class Assembly {
   void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
 
   StepTimes* times_ = nullptr;
-  std::shared_ptr<const BlockPattern> pattern_;  // small problems may share one: see PatternCache
-  std::shared_ptr<BlockPattern> own_pattern_;    // the same, if only this problem has it; else null
+  std::shared_ptr<const BlockPattern> pattern_;  // its own, or one that small problems share: see PatternCache
+  std::shared_ptr<BlockPattern> own_pattern_;    // with room for the next one; null if there never was one
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;

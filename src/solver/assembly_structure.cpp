@@ -62,11 +62,10 @@ void add_to(CouplingGraph& graph, const Problem& problem, Takes takes) {
   });
 }
 
-/// An empty graph of this thread, which keeps the room of small ones: small problems are compiled often.
+/// An empty graph of this thread.
 CouplingGraph& empty_graph(const Problem& problem) {
-  constexpr std::uint32_t most_kept = 1024;  // nodes
   thread_local CouplingGraph graph;
-  if (graph.node_count > most_kept) graph = {};
+  if (graph.node_count > most_kept_nodes) graph = {};
   graph.node_count = static_cast<std::uint32_t>(problem.size());
   graph.couplings.clear(), graph.constraints.clear(), graph.nodes.clear(), graph.places.clear();
   return graph;
@@ -144,13 +143,8 @@ double set_reference_lengths(Problem& problem) {
 void Assembly::compile(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
   CouplingGraph& graph = graph_of(problem);
-  own_pattern_ = nullptr;
   pattern_ = PatternCache::of_thread().find(graph);
-  if (!pattern_) {
-    own_pattern_ = std::make_shared<BlockPattern>();
-    own_pattern_->analyze(graph);
-    pattern_ = own_pattern_;
-  }
+  if (!pattern_) own_pattern().analyze(graph), pattern_ = own_pattern_;
   factor_.reset(*pattern_);
   forget_factors();
   problem.fit_pools();
@@ -180,7 +174,7 @@ void Assembly::follow(Problem& problem) {
   const auto is_near = [&](const auto& nodes) { return near.has_any(nodes); };
   add_to(graph, problem, is_near);
   const auto complete = [&] { add_to(graph, problem, [&](const auto& nodes) { return !is_near(nodes); }); };
-  if (!own_pattern_) pattern_ = own_pattern_ = std::make_shared<BlockPattern>(*pattern_);
+  if (pattern_ != own_pattern_) own_pattern() = *pattern_, pattern_ = own_pattern_;
   const bool order_suits = PatternBuilder::follow_part(*own_pattern_, graph, problem.changes(), complete);
   problem.fit_pools();
   auto constraint = graph.constraints.begin();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/problem.h"
 
+#include "base/renumbering.h"
 #include "base/slack.h"
 #include "solver/largest.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace iota::solver {
 
@@ -70,7 +70,7 @@ void Problem::open(std::span<const std::uint32_t> nodes) {
     if (!damping.empty()) damping[node] = 0;
   }
   touch(nodes);
-  std::vector<std::size_t> leaving;
+  thread_local std::vector<std::size_t> leaving;
   const auto find_leaving = [&](const auto& items, auto nodes_of) {
     leaving.clear();
     for (std::size_t i = 0; i < items.size(); ++i)
@@ -135,18 +135,11 @@ void Problem::note_acting(const Vec3* x) {
 
 void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
   if (removed.empty()) return;
-  std::vector<std::uint32_t> highest_first(removed.begin(), removed.end());
-  std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
-  std::vector<std::uint32_t> node_at(size()), number(size());  // the old number of each node, the new one of each old
-  std::iota(node_at.begin(), node_at.end(), 0u);
-  for (const std::uint32_t node : highest_first) {
-    const auto take_last = [&](auto& list) {
-      if (!list.empty()) list[node] = list.back(), list.pop_back();
-    };
-    take_last(position), take_last(velocity), take_last(mass), take_last(damping), take_last(node_at);
-  }
-  for (std::uint32_t node = 0; node < node_at.size(); ++node) number[node_at[node]] = node;
-  const auto renumber = [&](std::uint32_t& node) { node = number[node]; };
+  thread_local Renumbering number;
+  number.set(size(), removed);
+  number.apply(position), number.apply(velocity), number.apply(mass);
+  if (!damping.empty()) number.apply(damping);
+  const auto renumber = [&](std::uint32_t& node) { node = number(node); };
   for (auto& c : mass_couplings) renumber(c.a), renumber(c.b);
   for_each_constraint_pool([&](auto& pool) {
     for (auto& c : pool.items) std::for_each_n(c.nodes.begin(), c.node_count(), renumber);

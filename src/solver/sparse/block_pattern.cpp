@@ -8,8 +8,12 @@
 
 namespace iota::solver {
 
+// It keeps the room of its lists: problems of bodies that are tied and parted are analyzed all the time.
 void BlockPattern::analyze(CouplingGraph& graph) {
-  *this = {};
+  const auto clear = [](auto&... lists) { (lists.clear(), ...); };
+  clear(vertices_, entries_, pair_targets_, node_vertex_, panels_, panel_vertices_, panel_of_, moved_);
+  clear(diagonal_storage_, lower_storage_, unknown_storage_, entry_storage_, pair_storage_);
+  widest_front_ = 0, wasted_work_ = 0;
   PatternBuilder::of_thread(*this, graph).analyze();
   find_panels();
   find_leaves();
@@ -55,13 +59,12 @@ void BlockPattern::find_panels() {
   panels_.clear(), panel_vertices_.clear(), panel_of_.clear();
   if (std::none_of(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.is_wide(); })) return;
   const auto count = static_cast<std::uint32_t>(vertices_.size());
-  constexpr std::uint32_t most_kept = 1024;  // vertices: small patterns are made often
   struct Room {
     std::vector<std::uint32_t> next, columns, below, begins, first_of_last;
   };
   thread_local Room kept;
   Room passing;
-  auto& [next, columns, below, begins, first_of_last] = count <= most_kept ? kept : passing;
+  auto& [next, columns, below, begins, first_of_last] = count <= most_kept_nodes ? kept : passing;
   next.assign(count, no_panel);  // in its panel; itself: the last
   columns.assign(count, 0), below.assign(count, 0), begins.assign(count, 1);
   for (std::uint32_t v = count; v-- > 0;) {

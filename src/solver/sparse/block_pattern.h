@@ -87,8 +87,10 @@ class BlockPattern {
   [[nodiscard]] bool follow(CouplingGraph&, const GraphChange&);
   /// Whether `follow` has moved the vertex of an unknown, or touched its node: then references to it have new slots.
   bool has_moved(std::uint32_t unknown) const { return moved_[unknown]; }
-  /// Frees the memory behind `has_moved`.
-  void forget_moves() { std::vector<std::uint8_t>().swap(moved_); }
+  /// Frees the memory behind `has_moved`, if it is much.
+  void forget_moves() {
+    if (moved_.size() > BlockPattern::max_pivot * most_kept_nodes) std::vector<std::uint8_t>().swap(moved_);
+  }
 
   std::span<const Vertex> vertices() const { return vertices_; }
   std::span<const Entry> entries() const { return entries_; }
@@ -142,8 +144,7 @@ class BlockPattern {
 
 /// Nodes in order of elimination. Minimum degree, O(n) on trees; with much fill, nested dissection by places, O(n log^2
 /// n).
-std::vector<std::uint32_t> elimination_order(std::uint32_t node_count,
-                                             std::span<const std::array<std::uint32_t, 2>> edges,
-                                             std::span<const Vec3> places);
+void find_elimination_order(std::uint32_t node_count, std::span<const std::array<std::uint32_t, 2>> edges,
+                            std::span<const Vec3> places, std::vector<std::uint32_t>& order);
 
 }  // namespace iota::solver

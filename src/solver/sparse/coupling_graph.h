@@ -10,6 +10,10 @@
 
 namespace iota::solver {
 
+/// Up to so many nodes a thread keeps the scratch of what it does to a structure: problems of this size change often, and
+/// the scratch of a larger one is a considerable part of its memory.
+inline constexpr std::uint32_t most_kept_nodes = 4096;
+
 /// Which nodes and rows are coupled, before any order is known. A node has three unknowns (its position); a
 /// constraint has 1 to 3 rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
 struct CouplingGraph {

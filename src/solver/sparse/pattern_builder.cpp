@@ -37,8 +37,7 @@ void PatternBuilder::analyze() {
 }
 
 void PatternBuilder::end() {
-  constexpr std::uint32_t most_kept = 1024;  // nodes: the room of a larger one is a considerable part of its problem
-  if (graph_->node_count > most_kept) *this = PatternBuilder();
+  if (graph_->node_count > most_kept_nodes) *this = PatternBuilder();
 }
 
 void PatternBuilder::follow(const GraphChange& change, FunctionRef<void()> complete) {
@@ -66,7 +65,7 @@ void PatternBuilder::order_all_nodes() {
   for (const auto& c : graph_->constraints)
     for (auto nodes = graph_->nodes_of(c); !nodes.empty(); nodes = nodes.subspan(1))
       for (const std::uint32_t other : nodes.subspan(1)) edges.push_back({nodes[0], other});
-  node_order_ = elimination_order(graph_->node_count, edges, graph_->places);
+  find_elimination_order(graph_->node_count, edges, graph_->places, node_order_);
   old_nodes_ = graph_->node_count;
   pattern_->node_vertex_.resize(graph_->node_count);  // until there are vertices: places in the order
   for (std::uint32_t i = 0; i < graph_->node_count; ++i) pattern_->node_vertex_[node_order_[i]] = i;
@@ -151,16 +150,17 @@ void PatternBuilder::find_homes() {
         return is_touched_[node] && rows_at_[node] + rows <= max_rows_a_node;
       });
       if (home == end) {
-        own_rows_.push_back({end[-1], homeless_[i]});
+        give_own_rows(homeless_[i], end[-1]);
         continue;
       }
       homes_[i] = {*home, static_cast<std::uint8_t>(3 + rows_at_[*home])};
       rows_at_[*home] = static_cast<std::uint8_t>(rows_at_[*home] + rows);
     }
   for (const std::uint32_t c : homeless_)
-    if (graph_->constraints[c].apart) own_rows_.push_back({find_node_for_rows_apart(graph_->constraints[c]), c});
-  std::stable_sort(own_rows_.begin(), own_rows_.end(),
-                   [&](const OwnRows& a, const OwnRows& b) { return rank_of(a.node) < rank_of(b.node); });
+    if (graph_->constraints[c].apart) give_own_rows(c, find_node_for_rows_apart(graph_->constraints[c]));
+  std::sort(own_rows_.begin(), own_rows_.end(), [&](const OwnRows& a, const OwnRows& b) {
+    return std::pair(rank_of(a.node), a.number) < std::pair(rank_of(b.node), b.number);
+  });
 }
 
 // The last node of the side that is eliminated first. A side that its own rows fix (nails) would leave no pivot.
@@ -525,14 +525,8 @@ void PatternBuilder::note_moves(const GraphChange& change) {
 }
 
 void PatternBuilder::renumber_nodes(const GraphChange& change) {
-  std::vector<std::uint32_t>& highest_first = scratch_;
-  highest_first.assign(change.removed.begin(), change.removed.end());
-  std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
-  auto& node_vertex = pattern_->node_vertex_;
-  for (const std::uint32_t node : highest_first) {
-    node_vertex[node] = node_vertex.back();
-    node_vertex.pop_back();
-  }
+  number_.set(pattern_->node_vertex_.size(), change.removed);
+  number_.apply(pattern_->node_vertex_);
 }
 
 }  // namespace iota::solver

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/function_ref.h"
+#include "base/renumbering.h"
 #include "solver/sparse/block_pattern.h"
 
 #include <compare>
@@ -40,10 +41,13 @@ class PatternBuilder {
   static constexpr std::uint32_t none = 0xffffffff;
   static constexpr int max_rows_a_node = BlockPattern::max_pivot - 3;
 
-  /// A constraint with separate rows, and the node before them.
+  /// A constraint with separate rows, the node before them, and their number among all.
   struct OwnRows {
-    std::uint32_t node, constraint;
+    std::uint32_t node, constraint, number;
   };
+  void give_own_rows(std::uint32_t constraint, std::uint32_t node) {
+    own_rows_.push_back({node, constraint, static_cast<std::uint32_t>(own_rows_.size())});
+  }
 
   void order_all_nodes();
   void find_insertions(const GraphChange&);
@@ -126,6 +130,7 @@ class PatternBuilder {
   // Scratch.
   std::vector<std::uint32_t> front_;  // later vertices, in order
   std::vector<std::uint32_t> scratch_, changing_;
+  Renumbering number_;
   std::vector<Vertex> old_vertices_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::vector<std::pair<std::uint32_t, Coupling>> found_;
