@@ -58,6 +58,7 @@ class Grips : public NoAnswers {
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   bool keeps_awake(const Problem& problem) const { return !problem.items_of<solver::GripForce>().empty(); }
   void leave(const IslandMap&) { felt_masses_.clear(); }
+  void clear() { felt_masses_.clear(); }
 
  private:
   struct FeltMass {

@@ -149,8 +149,10 @@ struct NoAnswers {
   /// island follows a change, the map has the bodies at the nodes that changed, and the problem refuses items at other
   /// nodes, which it has already. An item's key identifies it without a parallel list.
   void build(const IslandMap&, Problem&) {}
-  /// Clears the lists of `build`, except the items of the problem.
+  /// Takes the map's bodies out of the lists of `build`, except of the items of the problem ...
   void leave(const IslandMap&) {}
+  /// ... or all.
+  void clear() {}
   /// Replaces the island's transient forces, which couple only points that are coupled anyway.
   void renew_pulls(const IslandMap&, Problem&) {}
   /// Loads parameters and warm multipliers into the problem, for a step of h seconds (0: a projection), after positions
@@ -248,6 +250,7 @@ concept IslandIngredient =
              Problem& problem, const Problem& solved, solver::ItemKey key, double h, bool moved) {
       own.build(map, problem);
       own.leave(map);
+      own.clear();
       own.renew_pulls(map, problem);
       own.load(seen, nodes, h, problem);
       { own.after_step(model, h, problem) } -> std::same_as<double>;

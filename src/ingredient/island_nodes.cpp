@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/island_nodes.h"
 
+#include "base/renumbering.h"
 #include "base/text.h"
 #include "ingredient/model.h"
-
-#include <functional>
-#include <numeric>
 
 namespace iota::ingredient {
 
@@ -61,18 +59,12 @@ void IslandNodes::find_carried_again(const Model& model, std::span<const std::ui
 
 void IslandNodes::remove(std::span<const std::uint32_t> nodes) {
   if (nodes.empty()) return;
-  std::vector<std::uint32_t> node_at(size()), number(size());  // the old number of each node, the new one of each old
-  std::iota(node_at.begin(), node_at.end(), 0u);
-  std::vector<std::uint32_t> highest_first(nodes.begin(), nodes.end());
-  std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
-  for (const std::uint32_t node : highest_first) {
-    const auto take_last = [&](auto& list) { list[node] = list.back(), list.pop_back(); };
-    take_last(rings), take_last(pinned), take_last(node_at);
-  }
-  for (std::uint32_t node = 0; node < node_at.size(); ++node) number[node_at[node]] = node;
+  thread_local Renumbering number;
+  number.set(size(), nodes);
+  number.apply(rings), number.apply(pinned);
   for (WeightedNodes& list : carriers)
     for (auto& [carrier, weight] : list)
-      if (weight != 0) carrier = number[carrier];
+      if (weight != 0) carrier = number(carrier);
 }
 
 std::string name_of_ring(const Model& model, std::uint32_t ring) {

@@ -36,9 +36,10 @@ double motor_rate(const CoordinateOptions& o, double now, double h) {
   return time > 0 ? std::clamp((o.servo - now) / time, -most, most) : 0;
 }
 
-/// Each once, in the order of slots.
-std::vector<std::uint32_t> active_joints_of(const IslandMap& map) {
-  std::vector<std::uint32_t> joints;
+/// Each once, in the order of slots. The list is this thread's, until the next call.
+std::span<const std::uint32_t> active_joints_of(const IslandMap& map) {
+  thread_local std::vector<std::uint32_t> joints;
+  joints.clear();
   if (map.model.constraints.size() == 0) return joints;
   for (const std::uint32_t body : map.bodies)
     map.model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -68,7 +69,7 @@ void Joints::build(const IslandMap& map, Problem& problem) {
 
 void Joints::leave(const IslandMap& map) {
   const Model& model = map.model;
-  const std::vector<std::uint32_t> again = active_joints_of(map);
+  const std::span<const std::uint32_t> again = active_joints_of(map);
   // Some were destroyed, or belong to bodies that have left the island; a slot may have a new joint of other bodies.
   const auto is_elsewhere = [&](const Constraint& c) {
     for (const int side : {0, 1})

@@ -67,6 +67,7 @@ class Joints : public NoAnswers {
 
   void build(const IslandMap&, Problem&);
   void leave(const IslandMap&);
+  void clear() { joints_.clear(), pinned_.clear(); }
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   void refresh(Model&, const IslandNodes&, bool moved) const;

@@ -20,6 +20,7 @@ class Masses : public NoAnswers {
   double after_step(Model&, double h, Problem&);
   double virtual_energy(const Model&) const;
   void leave(const IslandMap&);
+  void clear() { virtual_.clear(); }
 
  private:
   std::vector<std::uint32_t> virtual_;  // markers with a virtual mass

@@ -14,6 +14,7 @@ class Ties : public NoAnswers {
 
   void build(const IslandMap&, Problem&);
   void leave(const IslandMap&);
+  void clear() { pinned_.clear(); }
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   bool meets_pinned(const Model&) const;

@@ -53,7 +53,7 @@ void MovedRings::exchange(Model& model) {
 // It keeps the room of its lists: bodies that are tied and parted need new islands all the time.
 void Island::clear() {
   nodes_.clear();
-  ingredients_ = {};
+  for_each_ingredient([](auto& i) { i.clear(); });
   problem_.clear();
   solver_name_ = {}, solver_.reset(), integrator_->set_external(nullptr);
   idle_ = to_wake_ = is_still_ = has_stepped_ = false;

@@ -74,6 +74,8 @@ class Island {
 
   /// Number of unknown points: a measure of the work.
   std::size_t size() const { return nodes_.size(); }
+  /// The largest number of points for which it has room.
+  std::size_t room() const { return nodes_.rings.capacity(); }
 
   /// Sets positions and velocities of carried particles from their basis. If these differed (assigned velocities,
   /// conflicts), their momentum is passed to the basis.
@@ -149,8 +151,8 @@ class Island {
   bool has_finite_motion() const;
   void add_node(const model::Model&, std::uint32_t ring, std::uint32_t beside,
                 std::vector<std::uint32_t>& node_of_ring);
-  std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const Change&,
-                                                std::vector<std::uint32_t>& node_of_ring);
+  void find_changed_nodes(const model::Model&, const Change&, std::vector<std::uint32_t>& node_of_ring,
+                          std::vector<std::uint32_t>& changed);
   bool has_no_free_body(const model::Model&) const;
 
   /// The kind of the latest try: it tells what a commit has to store.

@@ -17,8 +17,9 @@ namespace {
 struct Around {
   std::vector<std::uint32_t> bodies, empty_nodes;
 
-  Around(const Model& model, std::span<const std::uint32_t> articulates, const ingredient::IslandNodes& nodes,
-         std::span<const std::uint32_t> changed) {
+  void find(const Model& model, std::span<const std::uint32_t> articulates, const ingredient::IslandNodes& nodes,
+            std::span<const std::uint32_t> changed) {
+    bodies.clear(), empty_nodes.clear();
     for (const std::uint32_t node : changed) {
       bool is_needed = false;
       const auto take = [&](std::uint32_t p) {
@@ -35,6 +36,14 @@ struct Around {
   }
 };
 
+/// Lists of the change at hand, which keep their room: islands follow one after the other.
+struct Lists {
+  std::vector<std::uint32_t> changed, leaving;
+  Around around;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
+};
+thread_local Lists lists_at_hand;
+
 }  // namespace
 
 bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Change& change,
@@ -47,13 +56,15 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     std::erase_if(nodes_.bodies,
                   [&](std::uint32_t body) { return std::binary_search(change.left.begin(), change.left.end(), body); });
   nodes_.bodies.insert(nodes_.bodies.end(), change.joined.begin(), change.joined.end());
-  const std::vector<std::uint32_t> changed = find_changed_nodes(model, change, node_of_ring);
+  auto& [changed, leaving, around, order] = lists_at_hand;
+  changed.clear();
+  find_changed_nodes(model, change, node_of_ring, changed);
   const bool are_few = changed.size() * part <= nodes_.size();
   if (are_few) {
-    const Around around(model, articulates, nodes_, changed);
+    around.find(model, articulates, nodes_, changed);
     nodes_.find_carried_again(model, around.bodies, change.left, node_of_ring);
     problem_.open(changed);
-    std::vector<std::uint32_t> leaving(around.bodies);
+    leaving.assign(around.bodies.begin(), around.bodies.end());
     leaving.insert(leaving.end(), change.left.begin(), change.left.end());
     ingredient::sort_unique(leaving);
     const ingredient::IslandMap before(model, nodes_, leaving, node_of_ring);
@@ -74,7 +85,8 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
 }
 
 void Island::append_order(std::vector<std::uint32_t>& rings) const {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> order;  // rank and ring
+  auto& order = lists_at_hand.order;  // rank and ring
+  order.clear();
   for (std::uint32_t node = 0; node < nodes_.size(); ++node)
     order.push_back({integrator_->node_rank(node), nodes_.rings[node]});
   std::sort(order.begin(), order.end());
@@ -99,9 +111,8 @@ void Island::add_node(const Model& model, std::uint32_t ring, std::uint32_t besi
 // are no longer unknowns: without a bond, or outside of a new basis. An unknown without a node gets one: in the order of
 // the island that it comes from, beside that of the ring from which its own was split, or beside another particle of the
 // body.
-std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Change& change,
-                                                      std::vector<std::uint32_t>& node_of_ring) {
-  std::vector<std::uint32_t> changed;
+void Island::find_changed_nodes(const Model& model, const Change& change, std::vector<std::uint32_t>& node_of_ring,
+                                std::vector<std::uint32_t>& changed) {
   const auto is_needed = [&](std::uint32_t ring) {  // its bodies may have left, or it is one of other bodies meanwhile
     bool any = false;
     if (model.rings.is_alive(ring))
@@ -141,7 +152,6 @@ std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const 
     const std::uint32_t ring = nodes_.rings[node];
     nodes_.pinned[node] = is_needed(ring) && model.is_pinned(ring);
   }
-  return changed;
 }
 
 }  // namespace iota::island

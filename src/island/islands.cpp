@@ -4,6 +4,7 @@
 #include "ingredient/followers.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace iota::island {
 
@@ -11,7 +12,7 @@ using model::Model;
 using model::none;
 
 void Islands::forget() {
-  places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_.clear();
+  places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
   free_particles_.forget();
   knows_all_ = false, order_is_old_ = true;
 }
@@ -40,21 +41,37 @@ void Islands::drop(Home& home) {
   retire(home.leader);
 }
 
-Islands::Home& Islands::new_home(std::uint32_t leader) {
+Islands::Home& Islands::new_home(std::uint32_t leader, std::size_t points) {
   std::unique_ptr<Home>& home = home_of_leader_[leader];
-  if (spare_.empty())
-    home = std::make_unique<Home>();
-  else
-    home = std::move(spare_.back()), spare_.pop_back();
+  home = take_spare(points);
+  if (!home) home = std::make_unique<Home>();
   home->leader = leader;
   return *home;
 }
 
+// The smallest one that has room, or else the largest one, which gets it: taken at random, each would grow to the size
+// of the largest island.
+std::unique_ptr<Islands::Home> Islands::take_spare(std::size_t points) {
+  const auto first = std::min<std::size_t>(std::bit_width(points), spare_.size() - 1);
+  const auto take = [](auto& list) {
+    std::unique_ptr<Home> home = std::move(list.back());
+    list.pop_back();
+    return home;
+  };
+  for (std::size_t i = first; i < spare_.size(); ++i)
+    if (!spare_[i].empty()) return take(spare_[i]);
+  for (std::size_t i = first; i-- > 0;)
+    if (!spare_[i].empty()) return take(spare_[i]);
+  return nullptr;
+}
+
 void Islands::retire(std::uint32_t leader) {
-  constexpr std::size_t most_spare = 1024, most_points = 1024;
+  constexpr std::size_t most_spare = 1 << 15;  // points of one size
   std::unique_ptr<Home> home = std::move(home_of_leader_[leader]);
   home->clear();
-  if (spare_.size() < most_spare && home->island.size() <= most_points) spare_.push_back(std::move(home));
+  const auto bits = static_cast<std::size_t>(std::bit_width(home->island.room()));
+  if (bits >= spare_.size() || spare_[bits].size() << bits >= most_spare) return;
+  spare_[bits].push_back(std::move(home));
 }
 
 void Islands::set_leader(Home& home) {
@@ -128,8 +145,8 @@ void Islands::drop_touched(bool all) {
 void Islands::find_changed(const Model& model) {
   for (const std::uint32_t a : touched_.articulates)
     if (Home* const home = places_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
-  const std::vector<Home*> changed(changed_);
-  for (Home* const home : changed) find_members(model, *home);
+  homes_.assign(changed_.begin(), changed_.end());
+  for (Home* const home : homes_) find_members(model, *home);
   for (const std::uint32_t a : touched_.articulates)  // made by a cut, of a home that was dropped
     if (!places_[a].home) wait(a);
 }
@@ -178,13 +195,13 @@ void Islands::take_parts_out(const Model& model) {
     take_parts_out(model, *home, home->touched, small);
     home->touched.clear();
   }
-  const std::vector<Home*> suspected(suspected_);
-  for (Home* const home : suspected) {
+  homes_.assign(suspected_.begin(), suspected_.end());
+  for (Home* const home : homes_) {
     if (!is_due(*home, model)) continue;
-    std::vector<std::uint32_t> suspects(home->suspects);
+    members_.assign(home->suspects.begin(), home->suspects.end());
     forget_suspects(*home);
-    std::erase_if(suspects, [&](std::uint32_t a) { return places_[a].home != home; });
-    take_parts_out(model, *home, suspects, none);
+    std::erase_if(members_, [&](std::uint32_t a) { return places_[a].home != home; });
+    take_parts_out(model, *home, members_, none);
   }
 }
 
@@ -308,7 +325,10 @@ void Islands::settle_groups(Model& model, MovedRings& moved) {
   for (const std::uint32_t g : by_lowest_) {
     const Group& group = groups_[g];
     if (group.homes.empty()) {
-      Home& home = new_home(group.waiting.front());
+      std::size_t points = 0;
+      for (const std::uint32_t a : group.waiting)
+        model.for_each_body_of(a, [&](std::uint32_t body) { points += model.bodies[body].count; });
+      Home& home = new_home(group.waiting.front(), points);
       set_members(home, group.waiting);
       fresh_.push_back(&home);
     } else if (!follow(model, group, moved)) {
@@ -415,13 +435,14 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
     for (const std::uint32_t a : home->articulates)
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
   ingredient::follow_bases(model);
-  std::vector<MovedRings> moved_by(fresh_.size(), MovedRings{.is_asked_for = moved.is_asked_for});
+  if (moved_by_.size() < fresh_.size()) moved_by_.resize(fresh_.size());
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
+    moved_by_[i].before.clear(), moved_by_[i].is_asked_for = moved.is_asked_for;
     fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_);
-    fresh_[i]->island.carry_along(model, moved_by[i]);
+    fresh_[i]->island.carry_along(model, moved_by_[i]);
   });
-  for (const MovedRings& part : moved_by)
-    moved.before.insert(moved.before.end(), part.before.begin(), part.before.end());
+  for (std::size_t i = 0; i < fresh_.size(); ++i)
+    moved.before.insert(moved.before.end(), moved_by_[i].before.begin(), moved_by_[i].before.end());
 }
 
 void Islands::validate(const Model& model, model::Audit& audit) const {

@@ -6,6 +6,7 @@
 #include "island/free_particles.h"
 #include "island/island.h"
 
+#include <array>
 #include <optional>
 
 namespace iota::island {
@@ -96,7 +97,8 @@ class Islands {
     void clear() { lowest = none, homes.clear(), waiting.clear(), bodies.clear(); }
   };
 
-  Home& new_home(std::uint32_t leader);
+  Home& new_home(std::uint32_t leader, std::size_t points);
+  std::unique_ptr<Home> take_spare(std::size_t points);
   void retire(std::uint32_t leader);
   void wait(std::uint32_t articulate);
   void drop(Home&);
@@ -129,14 +131,16 @@ class Islands {
   // By articulate slot.
   std::vector<Place> places_;
   std::vector<std::unique_ptr<Home>> home_of_leader_;
-  std::vector<std::unique_ptr<Home>> spare_;  // with room for the next ones
-  std::vector<Home*> suspected_;              // homes with suspects
+  /// With room for the next ones, by the bits of the number of points for which they have it.
+  std::array<std::vector<std::unique_ptr<Home>>, 14> spare_;
+  std::vector<Home*> suspected_;  // homes with suspects
   bool renew_ = false;
 
   // State of the present update.
   model::Model::Touched touched_;
   std::vector<std::uint32_t> waiting_, members_;
-  std::vector<Home*> changed_, fresh_;
+  std::vector<Home*> changed_, fresh_, homes_;
+  std::vector<MovedRings> moved_by_;                    // by each fresh one
   std::vector<std::pair<Home*, std::uint32_t>> joins_;  // homes with a body of an articulate that is elsewhere
   std::vector<Unit> units_;
   std::vector<Group> groups_;             // the first ones; others keep their room
