@@ -45,11 +45,8 @@ void for_each_product(const Number* a, int rows, const Number* b, int columns, S
 }  // namespace
 
 void BlockFactor::reset(const BlockPattern& pattern) {
-  pattern_ = &pattern;
-  diagonals_.clear(), lower_.clear(), upper_.clear();
-  resize_with_slack(diagonals_, pattern.diagonal_count());
-  resize_with_slack(lower_, pattern.lower_count());
-  size_fronts();
+  upper_.clear();
+  grow(pattern);
 }
 
 void BlockFactor::grow(const BlockPattern& pattern) {

@@ -12,26 +12,30 @@ namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
 
-/// Adjacency lists of an undirected graph without duplicates or loops, in one array.
+/// Adjacency lists of an undirected graph, in order, without duplicates or loops, in one array.
 struct Adjacency {
-  std::vector<std::uint32_t> first, neighbors, cursor;
+  std::vector<std::uint32_t> first, neighbors, cursor, unordered;
 
+  // Taken in the order of nodes, the ends of edges come to the lists of their neighbors in order.
   void set(std::uint32_t n, std::span<const Edge> edges) {
     first.assign(n + 1, 0);
     for (auto [a, b] : edges)
       if (a != b) ++first[a + 1], ++first[b + 1];
     for (std::uint32_t i = 0; i < n; ++i) first[i + 1] += first[i];
-    neighbors.resize(first[n]);
+    unordered.resize(first[n]), neighbors.resize(first[n]);
     cursor.assign(first.begin(), first.end() - 1);
     for (auto [a, b] : edges)
-      if (a != b) neighbors[cursor[a]++] = b, neighbors[cursor[b]++] = a;
+      if (a != b) unordered[cursor[a]++] = b, unordered[cursor[b]++] = a;
+    cursor.assign(first.begin(), first.end() - 1);
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t k = first[i]; k < first[i + 1]; ++k) {
+        std::uint32_t& end = cursor[unordered[k]];
+        if (end == first[unordered[k]] || neighbors[end - 1] != i) neighbors[end++] = i;
+      }
     std::uint32_t write = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const auto begin = neighbors.begin() + first[i], end = neighbors.begin() + first[i + 1];
-      std::sort(begin, end);
-      const auto unique_end = std::unique(begin, end);
-      first[i] = write;
-      write = static_cast<std::uint32_t>(std::copy(begin, unique_end, neighbors.begin() + write) - neighbors.begin());
+      const std::uint32_t begin = std::exchange(first[i], write);
+      for (std::uint32_t k = begin; k < cursor[i]; ++k) neighbors[write++] = neighbors[k];
     }
     first[n] = write;
   }
@@ -61,14 +65,24 @@ class EliminationGraph {
   }
   /// Couples a node with those of a front. Returns its degree.
   std::uint32_t couple(std::uint32_t node, std::span<const std::uint32_t> front) {
-    merged_.clear();
     const auto list = of(node);
-    std::set_union(list.begin(), list.end(), front.begin(), front.end(), std::back_inserter(merged_));
-    std::erase_if(merged_, [&](std::uint32_t other) { return other == node || eliminated_[other]; });
-    const auto size = static_cast<std::uint32_t>(merged_.size());
+    if (merged_.size() < list.size() + front.size()) merged_.resize(2 * (list.size() + front.size()));
+    std::uint32_t size = 0;
+    const auto add = [&](std::uint32_t other) {
+      merged_[size] = other;
+      size += other != node && !eliminated_[other];
+    };
+    std::size_t i = 0, j = 0;
+    while (i < list.size() && j < front.size()) {
+      const std::uint32_t a = list[i], b = front[j];
+      add(std::min(a, b));
+      i += a <= b, j += b <= a;
+    }
+    for (; i < list.size(); ++i) add(list[i]);
+    for (; j < front.size(); ++j) add(front[j]);
     if (size > lists_[node].room) move_to_end(node, size);
     lists_[node].size = size;
-    std::copy(merged_.begin(), merged_.end(), graph_.neighbors.begin() + lists_[node].begin);
+    std::copy_n(merged_.begin(), size, graph_.neighbors.begin() + lists_[node].begin);
     return size;
   }
 

@@ -507,10 +507,13 @@ void PatternBuilder::set_targets() {
     if (vertices[v].is_wide()) continue;
     std::uint32_t at = vertices[v].first_pair;
     for (std::size_t a = 0; a < front.size(); ++a) {
-      const std::uint32_t va = front[a].vertex;
-      pattern_->pair_targets_[at++] = vertices[va].diagonal;
-      for (std::size_t b = a + 1; b < front.size(); ++b)
-        pattern_->pair_targets_[at++] = pattern_->entries_[pattern_->find_entry(va, front[b].vertex)].offset;
+      const Vertex& target = vertices[front[a].vertex];
+      pattern_->pair_targets_[at++] = target.diagonal;
+      const Entry* below = pattern_->entries_.data() + target.first_entry;
+      for (std::size_t b = a + 1; b < front.size(); ++b) {
+        while (below->vertex != front[b].vertex) ++below;
+        pattern_->pair_targets_[at++] = below->offset;
+      }
     }
   }
 }
