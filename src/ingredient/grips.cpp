@@ -32,25 +32,7 @@ double calc_tied_mass(const Model& model, std::uint32_t body) {
 
 }  // namespace
 
-void Grips::build(const IslandMap& map, Problem& problem) {
-  const Model& model = map.model;
-  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
-    // The nodes of another island may come and go meanwhile: islands are built in parallel.
-    if (!is_free(model.bodies[g.body].kind) || !map.nodes.has(model, g.body)) return;
-    solver::GripForce force;
-    for (std::uint32_t i = 0; i < g.count; ++i) {
-      const std::uint32_t node = map.node_of(g.points[i]);
-      if (node == none) return;
-      force.arm.nodes[i] = node, force.arm.weights[i] = g.weights[i];
-    }
-    force.arm.count = g.count;
-    problem.add(force, {owner, {}, slot});
-    if (find_felt_mass(slot, g.body)) return;
-    // A grip's effective mass: its body and, through the hinges, enough of the connected ones to lift all.
-    const double own = model.body_mass(g.body);
-    felt_masses_.push_back({slot, g.body, own + 0.5 * (calc_tied_mass(model, g.body) - own)});
-  });
-}
+void Grips::build(const IslandMap& map, Problem& problem) { add(map, map.bodies, problem); }
 
 // All forces of this pool are grips.
 void Grips::renew_pulls(const IslandMap& map, Problem& problem) {
@@ -59,7 +41,44 @@ void Grips::renew_pulls(const IslandMap& map, Problem& problem) {
   std::erase_if(felt_masses_, [&](const FeltMass& felt) {
     return !map.model.grips.is_alive(felt.grip) || map.model.grips[felt.grip].body != felt.body;
   });
-  build(map, problem);
+  add(map, map.nodes.bodies, problem);
+}
+
+// In the order of slots. It takes the time of the bodies, or of all grips if they are fewer.
+void Grips::add(const IslandMap& map, std::span<const std::uint32_t> bodies, Problem& problem) {
+  const Model& model = map.model;
+  if (model.grips.size() == 0) return;
+  thread_local std::vector<std::uint32_t> slots;
+  slots.clear();
+  if (model.grips.size() < bodies.size())
+    model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
+      if (map.nodes.has(model, g.body)) slots.push_back(slot);
+    });
+  else
+    for (const std::uint32_t body : bodies)
+      model.grips.for_each_of(body, [&](std::uint32_t slot, const Grip&) { slots.push_back(slot); });
+  std::sort(slots.begin(), slots.end());
+  for (const std::uint32_t slot : slots) {
+    const Grip& g = model.grips[slot];
+    // The nodes of another island may come and go meanwhile: islands are built in parallel.
+    if (!is_free(model.bodies[g.body].kind)) continue;
+    solver::GripForce force;
+    force.arm.count = g.count;
+    bool has_nodes = true;
+    for (std::uint32_t i = 0; i < g.count; ++i) {
+      force.arm.nodes[i] = map.node_of(g.points[i]), force.arm.weights[i] = g.weights[i];
+      has_nodes = has_nodes && force.arm.nodes[i] != none;
+    }
+    if (has_nodes) problem.add(force, {owner, {}, slot});
+  }
+  for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t, solver::ItemKey key) {
+    if (!model.grips.is_alive(key.slot)) return;  // it is being renewed
+    const std::uint32_t body = model.grips[key.slot].body;
+    if (!map.nodes.has(model, body) || find_felt_mass(key.slot, body)) return;
+    // A grip's effective mass: its body and, through the hinges, enough of the connected ones to lift all.
+    const double own = model.body_mass(body);
+    felt_masses_.push_back({key.slot, body, own + 0.5 * (calc_tied_mass(model, body) - own)});
+  });
 }
 
 const double* Grips::find_felt_mass(std::uint32_t grip, std::uint32_t body) const {
@@ -103,6 +122,9 @@ void Grips::check_links(const Model& model, model::Audit& audit) {
 
 void Grips::validate(const Model& model, model::Audit& audit) {
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
+    bool is_listed = false;
+    model.grips.for_each_of(g.body, [&](std::uint32_t other, const Grip&) { is_listed = is_listed || other == slot; });
+    audit.require(is_listed, "grip ", slot, " is not listed at its body");
     for (std::uint32_t i = 0; i < g.count; ++i)
       audit.require(model.particles[g.points[i]].body == g.body, "grip ", slot,
                     " refers to a particle of another body");
@@ -112,8 +134,7 @@ void Grips::validate(const Model& model, model::Audit& audit) {
 // It counts for the part at the held place, whichever points carry that.
 void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
-  model.grips.for_each([&](std::uint32_t, const Grip& g) {
-    if (g.body != body) return;
+  model.grips.for_each_of(body, [&](std::uint32_t, const Grip& g) {
     Vec3 place;
     for (std::uint32_t i = 0; i < g.count; ++i) place += g.weights[i] * step.place(g.points[i]);
     const BodyId part = model.part_at(body, place);
@@ -128,9 +149,7 @@ void Grips::touch(Model& model, std::uint32_t body) {
 }
 
 bool Grips::holds(const Model& model, std::uint32_t particle) {
-  bool any = false;
-  model.grips.for_each([&](std::uint32_t, const Grip& g) { any = any || g.body == model.particles[particle].body; });
-  return any;
+  return model.grips.has_any(model.particles[particle].body);
 }
 
 Vec3 Grips::point(const Model& model, const Grip& grip) {
@@ -180,9 +199,9 @@ void Grips::follow(Model& model, const Memory& held) {
     if (!model.grips.is_alive(before.grip)) continue;
     Grip& grip = model.grips[before.grip];
     if (const auto particle = model.survivor_of(before.nearest)) {
-      grip.body = model.particles[particle->slot].body;
+      model.grips.move(before.grip, model.particles[particle->slot].body);
     } else if (const auto body = model.survivor_of(before.body)) {
-      grip.body = body->slot;
+      model.grips.move(before.grip, body->slot);
     } else {
       model.grips.destroy(before.grip);
       continue;

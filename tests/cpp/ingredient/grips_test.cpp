@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
+#include <vector>
 
 namespace iota::ingredient {
 namespace {
@@ -18,6 +20,28 @@ std::uint32_t hold(model::Model& model, std::uint32_t body, const Vec3& place) {
   grip.body = body;
   Grips::anchor(model, grip, place);
   return model.grips.create(grip).slot;
+}
+
+// Against a walk through all.
+TEST(Grips, are_found_by_their_body_in_the_order_of_slots) {
+  GripTable grips;
+  std::mt19937 random(2);
+  for (int round = 0; round < 500; ++round) {
+    const std::uint32_t body = random() % 5, slot = grips.slot_count() > 0 ? random() % grips.slot_count() : 0;
+    if (random() % 2)
+      (void)grips.create({.body = body});
+    else if (grips.is_alive(slot))
+      random() % 2 ? grips.destroy(slot) : grips.move(slot, body);
+    for (std::uint32_t b = 0; b < 5; ++b) {
+      std::vector<std::uint32_t> expected, found;
+      grips.for_each([&](std::uint32_t s, const Grip& g) {
+        if (g.body == b) expected.push_back(s);
+      });
+      grips.for_each_of(b, [&](std::uint32_t s, const Grip&) { found.push_back(s); });
+      ASSERT_EQ(found, expected) << round;
+      ASSERT_EQ(grips.has_any(b), !expected.empty()) << round;
+    }
+  }
 }
 
 TEST(Grips, hold_the_nearest_place_between_the_ends_of_a_rod) {
