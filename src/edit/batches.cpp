@@ -11,7 +11,7 @@ void apply(Editor& e, const BeginEdit&) {
     return;
   }
   e.held.book_edits();
-  e.batch.emplace(e.model, e.snapshot());
+  e.batch.emplace(e.model, e.snapshot(Editor::Origin::own));
 }
 
 RestructureReport apply(Editor& e, const EndEdit&) {
@@ -41,7 +41,7 @@ bool go_to(Editor& e, History& from, History& to) {
   if (e.batch) throw std::logic_error("undo and redo are not possible within an edit: end or cancel it first");
   const std::optional<Snapshot> state = from.pop();
   if (!state) return false;
-  to.push(e.snapshot());
+  to.push(e.snapshot(Editor::Origin::own));
   e.restore(*state, Editor::Origin::own);
   return true;
 }

@@ -29,12 +29,11 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
-Snapshot Editor::snapshot() {
+Snapshot Editor::snapshot(Origin origin) {
   std::vector<std::byte> content;
   Writer writer(content);
   model.archive(writer);
-  // A restored system builds its islands from saved data; so must this one, or replays differ in the last bits.
-  islands.renew();
+  if (origin == Origin::anywhere) islands.renew();
   keys_saved_below_ = held.functions.next_key;
   return {seal(snapshot_seal, content)};
 }

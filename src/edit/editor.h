@@ -85,10 +85,12 @@ struct Editor {
     if (!keeps_functions && key >= keys_saved_below_) functions.erase(key);
   }
 
-  Snapshot snapshot();
-  /// Throws std::invalid_argument for bytes that are not a snapshot, before any change. The origin of a snapshot's
-  /// bytes: those from outside are checked, in O(n).
   enum class Origin : std::uint8_t { anywhere, own };
+  /// A system that is restored from it builds its islands from saved data. So that this one continues to the same bits
+  /// as another one, it does that, too; not for a snapshot of its own, to which it returns itself.
+  Snapshot snapshot(Origin = Origin::anywhere);
+  /// Throws std::invalid_argument for bytes that are not a snapshot, before any change. Bytes from outside are checked,
+  /// in O(n).
   void restore(const Snapshot&, Origin = Origin::anywhere);
   void forget_history() { batch.reset(), undo.clear(), redo.clear(); }
 

@@ -60,13 +60,13 @@ Quaternion quaternion_in(const double* row) { return {row[0], row[1], row[2], ro
 /// The state before an edit that may be refused in the middle.
 class Undone {
  public:
-  explicit Undone(Editor& e) : editor_(e), before_(e.snapshot()) {}
+  explicit Undone(Editor& e) : editor_(e), before_(e.snapshot(Editor::Origin::own)) {}
   template <class Change>
   auto attempt(Change change) {
     try {
       return change();
     } catch (...) {
-      editor_.restore(before_);
+      editor_.restore(before_, Editor::Origin::own);
       throw;
     }
   }

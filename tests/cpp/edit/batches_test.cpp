@@ -36,6 +36,24 @@ TEST(EditBatch, has_one_report_for_all) {
   EXPECT_THROW((void)system.edits().end(), std::logic_error);
 }
 
+// The halves of a long chain stay in one island for some steps after a cut, unless it is built anew.
+TEST(EditBatch, leaves_the_islands_that_follow_cuts_as_they_are) {
+  System system{{.mode = IntegrationMode::robust}};
+  const auto chain = scenes::make_chain(system, {.links = 200});
+  (void)system.step(0.01);
+  (void)system.edits().separate(chain.lower[99], chain.upper[100]);
+  (void)system.step(0.01);
+  ASSERT_EQ(system.islands().size(), 1u);
+  system.edits().begin();
+  system.bodies().set_damping(chain.links[50], 0.1);
+  (void)system.edits().end();
+  (void)system.step(0.01);
+  EXPECT_EQ(system.islands().size(), 1u);
+  (void)system.snapshot();  // others continue from it to the same bits
+  (void)system.step(0.01);
+  EXPECT_EQ(system.islands().size(), 2u);
+}
+
 TEST(EditBatch, undo_and_redo_give_the_same_hash) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 6});
