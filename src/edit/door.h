@@ -49,6 +49,8 @@ class Door {
   ResultOf<C> put_off(const C& command);
   template <class C>
   ResultOf<C> make(const C& command);
+  template <class C>
+  ResultOf<C> report(const C& command);
   /// An open batch is no longer empty.
   template <class C>
   void note_edit();
@@ -72,7 +74,7 @@ void write(std::vector<std::byte>& bytes, const C& command) {
 
 // --- definitions --------------------------------------------------------------------------------------------------------
 
-// Two functions, so that neither report is copied.
+// Functions of their own for the two ways and for a result: otherwise the compiler moves the report once more.
 template <class C>
 ResultOf<C> Door::execute(const C& command) {
   if (is_stepping_) return put_off(command);
@@ -107,13 +109,18 @@ ResultOf<C> Door::make(const C& command) {
     note_edit<C>();
     record(command);
   } else {
-    ResultOf<C> result = apply(editor_, command);
-    if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>)
-      if (editor_.batch) editor_.batch->add(result);
-    note_edit<C>();
-    record(command);
-    return result;
+    return report(command);
   }
+}
+
+template <class C>
+ResultOf<C> Door::report(const C& command) {
+  ResultOf<C> result = apply(editor_, command);
+  if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>)
+    if (editor_.batch) editor_.batch->add(result);
+  note_edit<C>();
+  record(command);
+  return result;
 }
 
 template <class C>
