@@ -111,6 +111,7 @@ void Problem::note_acting(const Vec3* x) {
   bool is_other = false;
   for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) {  // all act; they may have had bounds for a conflict
+      if (pool.acting.empty()) return;
       is_other = is_other || std::find(pool.acting.begin(), pool.acting.end(), 0) != pool.acting.end();
       pool.acting.clear();
       return;

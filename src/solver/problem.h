@@ -340,7 +340,8 @@ struct Problem {
   template <class Pools, class Visit>
   static void visit_used(Pools& pools, std::uint32_t used, Visit& visit) {
     [&]<std::size_t... i>(std::index_sequence<i...>) {
-      ((used >> i & 1u ? static_cast<void>(visit(std::get<i>(pools))) : void()), ...);
+      // The common types come first, so that most problems end the walk after a few of them.
+      ((used >> i != 0 && ((used >> i & 1u ? static_cast<void>(visit(std::get<i>(pools))) : void()), true)) && ...);
     }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
   }
 
