@@ -5,19 +5,8 @@
 
 namespace iota::model {
 
-void Structure::wake(std::uint32_t articulate) {
-  Articulate& a = articulates[articulate];
-  if (!a.to_wake && !a.velocity_dirty) flagged_.push_back(articulate);
-  a.to_wake = 1;
-}
-
 void Structure::wake_all() {
   articulates.for_each([&](std::uint32_t slot, const Articulate&) { wake(slot); });
-}
-
-void Structure::mark_velocities(std::uint32_t articulate) {
-  wake(articulate);
-  articulates[articulate].velocity_dirty = 1;
 }
 
 void Structure::take_flagged(std::vector<std::uint32_t>& taken) {
@@ -51,11 +40,6 @@ void Structure::touch_locally(std::uint32_t body) {
   touch_rows(body);
 }
 
-// A longer list would take as long as to assemble all islands anew: while a scene is built, everything changes.
-bool Structure::lists_local_changes() const {
-  return local_change_.bodies.size() < std::max<std::size_t>(1024, bodies.size() / 4);
-}
-
 void Structure::touch_rows(std::uint32_t body) {
   const bool is_listed = lists_local_changes();
   if (is_listed && (local_change_.bodies.empty() || local_change_.bodies.back() != body))
@@ -85,10 +69,16 @@ void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
 }
 
 void Structure::take_touched(Touched& taken) {
+  // The room of the lists is used again, unless it is that of a scene that was built at once.
+  const auto clear = [](auto& list) {
+    constexpr std::size_t most_kept = 4096;
+    list.clear();
+    if (list.capacity() > most_kept) list.shrink_to_fit();
+  };
+  clear(taken.articulates), clear(taken.only_locally);
+  clear(taken.local.bodies), clear(taken.local.rings), clear(taken.local.pulled);
   taken.articulates.swap(touched_);
   std::swap(taken.local, local_change_);
-  touched_.clear(), taken.only_locally.clear();
-  local_change_.bodies.clear(), local_change_.rings.clear(), local_change_.pulled.clear();
   for (const std::uint32_t slot : taken.articulates) {
     taken.only_locally.push_back(touch_of_[slot] == locally);
     touch_of_[slot] = untouched;

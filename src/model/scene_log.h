@@ -4,7 +4,6 @@
 #include <iota/view_event.h>
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace iota::model {
@@ -13,10 +12,7 @@ namespace iota::model {
 class ChangedSlots {
  public:
   void note(std::uint32_t slot, bool is_new = false) {
-    if (!is_on) return;
-    if (marks_.size() <= slot) marks_.resize(slot + std::size_t{1}, unchanged);
-    if (marks_[slot] == unchanged) slots_.push_back(slot);
-    if (is_new || marks_[slot] == unchanged) marks_[slot] = is_new ? created : changed;
+    if (is_on) mark(slot, is_new ? created : changed);
   }
   /// Whether it was created since: an older item in its slot, of any id, was another one.
   bool is_new(std::uint32_t slot) const { return slot < marks_.size() && marks_[slot] == created; }
@@ -30,6 +26,7 @@ class ChangedSlots {
 
  private:
   enum Mark : std::uint8_t { unchanged, changed, created };
+  void mark(std::uint32_t slot, Mark);
   std::vector<std::uint32_t> slots_;
   std::vector<Mark> marks_;
 };

@@ -15,6 +15,7 @@
 #include <iota/ids.h>
 #include <iota/options.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -227,10 +228,14 @@ class Structure {
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
   /// Its island is awake in the next step.
-  void wake(std::uint32_t articulate);
+  void wake(std::uint32_t articulate) {
+    Articulate& a = articulates[articulate];
+    if (!a.to_wake && !a.velocity_dirty) flagged_.push_back(articulate);
+    a.to_wake = 1;
+  }
   void wake_all();
   /// The same, and its velocities are projected at the begin of the next step.
-  void mark_velocities(std::uint32_t articulate);
+  void mark_velocities(std::uint32_t articulate) { wake(articulate), articulates[articulate].velocity_dirty = 1; }
   /// Moves the articulates of the last two to `taken`, in the order of slots; their flags remain.
   void take_flagged(std::vector<std::uint32_t>& taken);
   /// Lists them anew by their flags, which are saved; the list is not.
@@ -426,7 +431,10 @@ class Structure {
   Marks body_marks_;
   std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
   enum Touch : std::uint8_t { untouched, locally, anything };
-  bool lists_local_changes() const;
+  /// A longer list would take as long as to assemble all islands anew: while a scene is built, everything changes.
+  bool lists_local_changes() const {
+    return local_change_.bodies.size() < std::max<std::size_t>(1024, bodies.size() / 4);
+  }
   void touch(std::uint32_t articulate, Touch);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
