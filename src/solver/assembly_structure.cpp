@@ -62,17 +62,29 @@ void add_to(CouplingGraph& graph, const Problem& problem, Takes takes) {
   });
 }
 
-/// An empty graph of this thread.
-CouplingGraph& empty_graph(const Problem& problem) {
-  thread_local CouplingGraph graph;
-  if (graph.node_count > most_kept_nodes) graph = {};
-  graph.node_count = static_cast<std::uint32_t>(problem.size());
-  graph.couplings.clear(), graph.constraints.clear(), graph.nodes.clear(), graph.places.clear();
-  return graph;
-}
+/// An empty graph of this thread, which keeps the room of small ones: small problems are compiled often. A large one is
+/// given up after its use: it takes 48 bytes a link.
+class ThreadGraph {
+ public:
+  explicit ThreadGraph(const Problem& problem) {
+    graph_.node_count = static_cast<std::uint32_t>(problem.size());
+    graph_.couplings.clear(), graph_.constraints.clear(), graph_.nodes.clear(), graph_.places.clear();
+  }
+  ~ThreadGraph() {
+    constexpr std::uint32_t most_kept = 1024;  // nodes
+    if (graph_.node_count > most_kept) graph_ = {};
+  }
+  ThreadGraph(const ThreadGraph&) = delete;
+  ThreadGraph& operator=(const ThreadGraph&) = delete;
 
-CouplingGraph& graph_of(const Problem& problem) {
-  CouplingGraph& graph = empty_graph(problem);
+  CouplingGraph& get() { return graph_; }
+
+ private:
+  static thread_local CouplingGraph graph_;
+};
+thread_local CouplingGraph ThreadGraph::graph_;
+
+void fill(CouplingGraph& graph, const Problem& problem) {
   graph.places.assign(problem.position.begin(), problem.position.end());
   std::size_t constraints = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
@@ -80,7 +92,6 @@ CouplingGraph& graph_of(const Problem& problem) {
   graph.constraints.reserve(constraints);
   graph.nodes.reserve(2 * constraints);
   add_to(graph, problem, [](auto&&) { return true; });
-  return graph;
 }
 
 /// The nodes that a change concerns: touched ones, and those of their constraints.
@@ -142,7 +153,9 @@ double set_reference_lengths(Problem& problem) {
 
 void Assembly::compile(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
-  CouplingGraph& graph = graph_of(problem);
+  ThreadGraph room(problem);
+  CouplingGraph& graph = room.get();
+  fill(graph, problem);
   pattern_ = PatternCache::of_thread().find(graph);
   if (!pattern_) own_pattern().analyze(graph), pattern_ = own_pattern_;
   factor_.reset(*pattern_);
@@ -169,7 +182,8 @@ void Assembly::weigh(const Problem& problem) {
 }
 
 void Assembly::follow(Problem& problem) {
-  CouplingGraph& graph = empty_graph(problem);
+  ThreadGraph room(problem);
+  CouplingGraph& graph = room.get();
   const Near near(problem);
   const auto is_near = [&](const auto& nodes) { return near.has_any(nodes); };
   add_to(graph, problem, is_near);
