@@ -71,8 +71,7 @@ class ThreadGraph {
     graph_.couplings.clear(), graph_.constraints.clear(), graph_.nodes.clear(), graph_.places.clear();
   }
   ~ThreadGraph() {
-    constexpr std::uint32_t most_kept = 1024;  // nodes
-    if (graph_.node_count > most_kept) graph_ = {};
+    if (graph_.node_count > most_kept_nodes) graph_ = {};
   }
   ThreadGraph(const ThreadGraph&) = delete;
   ThreadGraph& operator=(const ThreadGraph&) = delete;
