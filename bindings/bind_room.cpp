@@ -388,6 +388,9 @@ void bind_room(nb::module_& module) {
           },
           "pose_time"_a, "Records what viewers are sent. pose_time: between two recorded poses, s.")
       .def(
+          "send_away", [](RoomObject& self, std::uint32_t client) { self.use().send_away(client); }, "client"_a,
+          "Ends the connection of a client; one on another machine stays away, if it is not a host.")
+      .def(
           "take_input", [](RoomObject& self) { return records_of(self.use().take_input()); },
           nb::sig("def take_input(self) -> list[tuple[int, typing.Any]]"),
           "Client and record (iota._protocol.Input) of each input since the last call, in order of arrival.")

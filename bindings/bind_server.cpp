@@ -6,9 +6,12 @@
 #include "net/token.h"
 
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <array>
 #include <system_error>
 
 namespace iota::bindings {
@@ -22,7 +25,8 @@ using net::ServerStatistics;
 constexpr const char* server_doc =
     "Serves the page and its WebSocket on one port, on a thread of its own, for one world or several.\n\n"
     "A World makes one for itself; use `World.serve(server=...)` for worlds that share one. page_folder: the\n"
-    "built page. token: required of every page. hello_time: s, from the upgrade of a connection to its first frame.\n"
+    "built page. token: of the host; every page needs it, or one of the others: guest_token for users who may touch,\n"
+    "viewer_token for those who may only watch, host_tokens for hosts. hello_time: s, from the upgrade of a connection to its first frame.\n"
     "certificate, key: in PEM; with them other machines use https on the same port.\n"
     "Raises OSError if the port is in use.";
 
@@ -52,14 +56,18 @@ std::pair<std::string, std::string> kept_certificate(const std::vector<std::stri
 }
 
 std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port, const std::string& page_folder,
-                                    const std::string& token, double hello_time, const std::string& certificate,
-                                    const std::string& key) {
+                                    const std::string& token, const std::string& guest_token,
+                                    const std::string& viewer_token, const std::vector<std::string>& host_tokens,
+                                    double hello_time, const std::string& certificate, const std::string& key) {
   ServerOptions options;
   options.certificate = {certificate, key};
   options.host = host;
   options.port = port;
   options.page_folder = page_folder;
   options.token = token;
+  if (!guest_token.empty()) options.other_tokens.emplace_back(guest_token, protocol::Role::actor);
+  if (!viewer_token.empty()) options.other_tokens.emplace_back(viewer_token, protocol::Role::viewer);
+  for (const std::string& other : host_tokens) options.other_tokens.emplace_back(other, protocol::Role::host);
   options.hello_time = finite_positive(hello_time, "hello_time", "s");
   try {
     return std::make_unique<Server>(std::move(options));
@@ -102,10 +110,14 @@ void bind_server(nb::module_& module) {
       .def(
           "__init__",
           [](ServerObject* self, const std::string& host, std::uint16_t port, const std::string& page_folder,
-             const std::string& token, double hello_time, const std::string& certificate, const std::string& key) {
-            new (self) ServerObject{make_server(host, port, page_folder, token, hello_time, certificate, key)};
+             const std::string& token, const std::string& guest_token, const std::string& viewer_token,
+             const std::vector<std::string>& host_tokens, double hello_time, const std::string& certificate,
+             const std::string& key) {
+            new (self) ServerObject{make_server(host, port, page_folder, token, guest_token, viewer_token, host_tokens,
+                                                hello_time, certificate, key)};
           },
           nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a,
+          "guest_token"_a = "", "viewer_token"_a = "", "host_tokens"_a = std::vector<std::string>(),
           "hello_time"_a = 10.0, "certificate"_a = "", "key"_a = "")
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
@@ -126,6 +138,24 @@ void bind_server(nb::module_& module) {
           },
           "host"_a, "world"_a = "",
           "Address for other machines, for which this one is `host`. Without a world: the first one's.")
+      .def(
+          "relay",
+          [](ServerObject& self, const std::string& world, std::uint16_t port, const std::vector<std::string>& tokens) {
+            if (tokens.size() != 3 && port != 0) throw nb::value_error("a world has a token for each of three roles");
+            std::array<std::string, 3> each;
+            std::ranges::copy_n(tokens.begin(), static_cast<std::ptrdiff_t>(std::min<std::size_t>(tokens.size(), 3)),
+                                each.begin());
+            self.use().relay(world, port, each);
+          },
+          "world"_a, "port"_a = 0, "tokens"_a = std::vector<std::string>(),
+          "A world that another process of this machine serves at a port, with its tokens for actors, viewers and\n"
+          "hosts: its clients are passed on. Port 0: they wait until it is known.")
+      .def(
+          "end_relay", [](ServerObject& self, const std::string& world) { self.use().end_relay(world); }, "world"_a,
+          "Clients that wait for it are let go.")
+      .def(
+          "visitors", [](ServerObject& self, const std::string& world) { return self.use().visitors(world); },
+          "world"_a, "Clients that are passed on to such a world, or wait for it.")
       .def_prop_ro("statistics", [](ServerObject& self) { return self.use().statistics(); });
 }
 

@@ -162,6 +162,7 @@ CLIENT: list[Vector] = [
     ),
     ("presence", "presence", b"\x0d" + STANCE_BYTES, {"stance": STANCE}),
     ("profile", "profile", b"\x0e\x01", {"on": True}),
+    ("send_away", "send_away", b"\x0f\x02\x01\x00\x00", {"client": 258}),
 ]
 
 BODIES = [

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "net/connection.h"
 
+#include "net/relay.h"
 #include "net/static_files.h"
 #include "net/stream.h"
 #include "net/token.h"
@@ -69,8 +70,9 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
                                public ClientLink,
                                public OpenConnection {
  public:
-  WebSocketSession(Stream stream, ConnectionContext& context)
+  WebSocketSession(Stream stream, ConnectionContext& context, protocol::Role role)
       : context_(context),
+        role_(role),
         socket_(std::move(stream)),
         timer_(socket_.get_executor()),
         queue_(context.options.max_queue_bytes) {
@@ -114,6 +116,12 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     start_close();
   }
 
+  void refuse(std::string_view reason) override { send_refusal(reason); }
+  std::string address() const override {
+    error_code error;
+    const auto other = socket_.next_layer().socket().remote_endpoint(error);
+    return error || other.address().is_loopback() ? std::string() : other.address().to_string();
+  }
   void world_ended() override { close_when_sent(websocket::close_code::going_away, "the world has ended"); }
   void finish() override { close_when_sent(websocket::close_code::going_away, "the server stops"); }
   void evict() override { ended(); }
@@ -136,7 +144,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
         std::chrono::duration<double>(context_.options.hello_time)));
     timer_.async_wait([weak = weak_from_this()](error_code error) {
       const auto self = weak.lock();
-      if (!error && self && self->client_ == 0) self->refuse("no hello came");
+      if (!error && self && self->client_ == 0) self->send_refusal("no hello came");
     });
   }
 
@@ -162,22 +170,24 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     const auto* hello = decoded ? std::get_if<protocol::Hello>(&*decoded.value) : nullptr;
     if (hello == nullptr) {
       ++context_.counters.frames_refused;
-      return refuse(decoded ? "the first frame has to be hello" : "the first frame has to be hello: " + decoded.error);
+      return send_refusal(decoded ? "the first frame has to be hello" : "the first frame has to be hello: " + decoded.error);
     }
     auto [hub, unknown] = context_.find_world(hello->world);
-    if (!hub) return refuse(unknown);
-    auto [client, reason] = hub->join(*this, *hello);
-    if (client == 0) return refuse(reason);
+    if (!hub) return send_refusal(unknown);
+    protocol::Hello granted = *hello;  // the address says what a client may do; one can only ask for less
+    if (granted.role != protocol::Role::viewer) granted.role = role_;
+    auto [client, reason] = hub->join(*this, granted);
+    if (client == 0) return send_refusal(reason);
     hub_ = std::move(hub);
     client_ = client;
     timer_.cancel();
     pump();
   }
 
-  void refuse(const std::string& reason) {
+  void send_refusal(std::string_view reason) {
     if (is_closing_) return;
     // The reason may contain a name from outside, which is known to be UTF-8 and short.
-    protocol::Refused message{reason.substr(0, 1024)};
+    protocol::Refused message{std::string(reason.substr(0, 1024))};
     send(std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)), {});
     close_when_sent(websocket::close_code::policy_error, "refused");
   }
@@ -236,6 +246,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   }
 
   ConnectionContext& context_;
+  const protocol::Role role_;
   std::shared_ptr<Hub> hub_;  ///< none until welcomed
   websocket::stream<Stream> socket_;
   asio::steady_timer timer_;
@@ -323,7 +334,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const Request& request = parser_->get();
     is_head_ = request.method() == http::verb::head;
     const auto target = parse_target(to_view(request.target()));
-    knows_token_ = target && knows_token(*target);
+    role_ = target ? role_of(*target) : std::nullopt;
     if (const auto reason = refuse_by_host(request)) return refuse(*reason);
     if (must_redirect_) return send_to_https();
     if (!target) return send_text(http::status::bad_request, "malformed target");
@@ -349,8 +360,14 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     return refuse_host(to_view(request[http::field::host]), endpoint);
   }
 
-  bool knows_token(const RequestTarget& target) const {
-    return equal_in_constant_time(query_value(target.query, "token"), context_.options.token);
+  /// By the token in its address; none for a wrong one.
+  std::optional<protocol::Role> role_of(const RequestTarget& target) const {
+    const std::string given = query_value(target.query, "token");
+    std::optional<protocol::Role> found;
+    if (equal_in_constant_time(given, context_.options.token)) found = protocol::Role::host;
+    for (const auto& [token, role] : context_.options.other_tokens)
+      if (equal_in_constant_time(given, token)) found = role;
+    return found;
   }
 
   void upgrade() {
@@ -364,11 +381,14 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
           refuse_origin(to_view(request[http::field::origin]), stream_.scheme(), to_view(request[http::field::host]));
       if (reason) return refuse(*reason);
     }
-    if (!knows_token_) {
+    if (!role_) {
       return refuse("the token is wrong: open the URL that the server printed");
     }
+    const auto target = parse_target(to_view(request.target()));
+    const std::string world = target ? query_value(target->query, "world") : std::string();
+    if (context_.relays.find(world)) return start_relay(std::move(stream_), request, world, *role_, context_);
     stream_.expires_never();
-    std::make_shared<WebSocketSession>(std::move(stream_), context_)->start(request);
+    std::make_shared<WebSocketSession>(std::move(stream_), context_, *role_)->start(request);
   }
 
   /// The address contains the token, so a plain answer is only the redirect to https.
@@ -431,7 +451,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
     response.set("Content-Security-Policy",
-                 content_security_policy(stream_.scheme(), to_view(request[http::field::host]), knows_token_));
+                 content_security_policy(stream_.scheme(), to_view(request[http::field::host]), role_.has_value()));
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");  // the page's URL contains the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
@@ -475,7 +495,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   std::optional<Response> response_;
   bool is_head_ = false;
   bool must_close_ = false;
-  bool knows_token_ = false;  // of the request that is answered
+  std::optional<protocol::Role> role_;  // of the request that is answered
   bool must_redirect_ = false;
   bool is_served_ = false;
 };

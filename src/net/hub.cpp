@@ -27,6 +27,7 @@ constexpr std::size_t max_waiting_bytes_of_world = 4 << 20;
 constexpr std::size_t least_waiting_bytes = 64 << 10;
 constexpr std::size_t forgetful_bytes = 1 << 20;  ///< of a world: above, clients that nobody knows are forgotten
 constexpr std::size_t max_holds = 32;
+constexpr std::string_view sent_away = "the host has sent you away";
 constexpr std::string_view clients_key = "clients";
 constexpr std::string_view people_key = "people";
 constexpr std::size_t max_picture_bytes = 64 << 20;
@@ -198,6 +199,10 @@ bool Hub::pulse(std::uint32_t client, const protocol::Pulse& pulse) {
   });
 }
 
+bool Hub::send_away(std::uint32_t client) {
+  return post([this, client] { send_away_now(client); });
+}
+
 std::vector<ClientInput> Hub::take_input() {
   const std::lock_guard lock(in_mutex_);
   waiting_.clear();
@@ -259,6 +264,7 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
   if (clients_.size() >= max_clients_) {
     return {0, "the world is full: " + std::to_string(max_clients_) + " clients are connected"};
   }
+  if (hello.role != protocol::Role::host && sent_away_.contains(link.address())) return {0, std::string(sent_away)};
   const std::uint32_t number = next_client_++;
   clients_[number] = {.link = &link, .name = hello.name, .role = hello.role, .selected = {}, .holds = {}};
   ++counters_.clients;
@@ -312,7 +318,7 @@ void Hub::tell(std::uint32_t client, const protocol::Notice& notice) {
 }
 
 bool Hub::may_send(std::uint32_t client, protocol::Viewers viewers) {
-  if (viewers == protocol::Viewers::allowed || clients_.at(client).role == protocol::Role::actor) return true;
+  if (viewers == protocol::Viewers::allowed || clients_.at(client).role != protocol::Role::viewer) return true;
   if (viewers == protocol::Viewers::told)
     tell(client, make_notice(0, "You only watch", "This page came as a viewer of the world.", "Open it as an actor."));
   return false;
@@ -459,7 +465,7 @@ bool Hub::accept(std::uint32_t client, const protocol::GrabEnd& message) {
 }
 
 bool Hub::accept(std::uint32_t client, const protocol::Control& message) {
-  return message.command != protocol::ControlCommand::reset || may_reset(client);
+  return is_host(client) && (message.command != protocol::ControlCommand::reset || may_reset(client));
 }
 
 bool Hub::accept(std::uint32_t client, const protocol::Pointer& message) {
@@ -488,6 +494,26 @@ void Hub::answer(std::uint32_t client, const protocol::Presence& message) {
   if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
   clients_.at(client).stance = stance;
   tell_people();
+}
+
+void Hub::answer(std::uint32_t client, const protocol::SendAway& message) {
+  if (is_host(client) && message.client != client) send_away_now(message.client);
+}
+
+void Hub::send_away_now(std::uint32_t client) {
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  ClientLink& link = *found->second.link;
+  if (const std::string address = link.address(); !address.empty() && found->second.role != protocol::Role::host)
+    sent_away_.insert(address);
+  link.refuse(sent_away);
+}
+
+bool Hub::is_host(std::uint32_t client) {
+  if (clients_.at(client).role == protocol::Role::host) return true;
+  tell(client, make_notice(0, "Only the host does that", "Pause, steps, resets and the speed are for all at once.",
+                           "Ask who gave you the address."));
+  return false;
 }
 
 }  // namespace iota::net

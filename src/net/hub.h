@@ -35,6 +35,10 @@ class ClientLink {
   virtual void world_changed() = 0;
   /// Sends the reason and closes.
   virtual void drop(std::string_view reason) = 0;
+  /// Sends the reason, after which a page does not come back by itself.
+  virtual void refuse(std::string_view reason) { drop(reason); }
+  /// Of the machine, if it is another one.
+  virtual std::string address() const { return {}; }
   /// The world has ended: sends the queue, then closes.
   virtual void world_ended() = 0;
 
@@ -69,6 +73,7 @@ class Hub {
   [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position, float volume = 1);
+  [[nodiscard]] bool send_away(std::uint32_t client);
   [[nodiscard]] bool pulse(std::uint32_t client, const protocol::Pulse& pulse);
   std::vector<ClientInput> take_input();
   /// Only parts of pictures; everything else waits for take_input.
@@ -158,6 +163,10 @@ class Hub {
   void answer(std::uint32_t client, const protocol::Hello& message);
   void answer(std::uint32_t client, const protocol::Ping& message);
   void answer(std::uint32_t client, const protocol::Presence& message);
+  void answer(std::uint32_t client, const protocol::SendAway& message);
+  void send_away_now(std::uint32_t client);
+  /// Whether a client is a host; others are told that this is for hosts.
+  bool is_host(std::uint32_t client);
 
   const std::string world_;
   const std::size_t max_clients_;
@@ -180,6 +189,7 @@ class Hub {
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;
   std::vector<std::shared_ptr<ClientLink>> watchers_;
+  std::set<std::string> sent_away_;  ///< addresses of machines
   std::uint32_t next_client_ = 1;
   double resets_left_ = 0;  ///< see may_reset
   Clock::time_point reset_at_ = Clock::time_point::min();

@@ -4,6 +4,7 @@
 #include "net/connection.h"
 #include "net/hub.h"
 #include "net/recorder.h"
+#include "net/relay.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -166,7 +167,8 @@ struct Server::Implementation {
       : options(checked(std::move(given))),
         link(std::make_shared<Room::Link>(io)),
         tls(make_tls(options.certificate)),
-        context{options, counters, tls.get(), [this](const std::string& world) { return link->worlds.ask(world); }},
+        context{options, counters, tls.get(), [this](const std::string& world) { return link->worlds.ask(world); },
+                relays},
         acceptor(listen(io, options)),
         timer(io),
         frame_timer(io) {
@@ -238,6 +240,7 @@ struct Server::Implementation {
   const ServerOptions options;
   Counters counters;
   std::shared_ptr<Room::Link> link;
+  Relays relays;
   const std::unique_ptr<asio::ssl::context> tls;
   ConnectionContext context;
   asio::io_context io{1};  // destroyed first: handlers own connections, which refer to the members above
@@ -278,6 +281,12 @@ ServerStatistics Server::statistics() const {
   return {now.clients,        now.bytes_sent,       now.frames_sent,    now.frames_dropped,
           now.frames_refused, now.upgrades_refused, now.clients_dropped};
 }
+
+void Server::relay(const std::string& world, std::uint16_t port, const std::array<std::string, 3>& tokens) {
+  implementation_->relays.set(world, {port, tokens});
+}
+void Server::end_relay(const std::string& world) { implementation_->relays.remove(world); }
+int Server::visitors(const std::string& world) const { return implementation_->relays.visitors(world); }
 
 // ------------------------------------------------------------------------------------------------------------ a room
 
@@ -330,6 +339,8 @@ std::unique_ptr<Recording> Room::record(double pose_time) {
   };
   return std::unique_ptr<Recording>(new Recording(std::move(recorder), std::move(end)));
 }
+
+void Room::send_away(std::uint32_t client) { deliver_if(hub_->send_away(client)); }
 
 std::vector<ClientInput> Room::take_input() { return hub_->take_input(); }
 std::vector<ClientInput> Room::take_pictures() { return hub_->take_pictures(); }

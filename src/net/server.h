@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace iota::net {
@@ -31,7 +32,9 @@ struct ServerOptions {
   Certificate certificate = {};
   std::uint16_t port = 8080;              ///< 0: any free one
   std::filesystem::path page_folder;      ///< the built page: index.html and its files
-  std::string token;                      ///< required for every WebSocket; must not be empty
+  std::string token;                      ///< of the host; every WebSocket needs this or another one; not empty
+  /// What clients with other tokens may do.
+  std::vector<std::pair<std::string, protocol::Role>> other_tokens = {};
   std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client
   std::size_t max_clients = 64;           ///< of each world
   double hello_time = 10;                 ///< s, from the upgrade of a connection to its first frame
@@ -118,6 +121,9 @@ class Room {
   /// Records what viewers are sent. pose_time: between two recorded poses, s.
   std::unique_ptr<Recording> record(double pose_time);
 
+  /// Ends the connection of a client; one on another machine stays away, if it is not a host.
+  void send_away(std::uint32_t client);
+
   /// Inputs since the last call, in order of arrival. Of successive moves of one grip or pointer there is only the
   /// newest. A `Leave` ends the client's holds and selection: no `GrabEnd` precedes it.
   std::vector<ClientInput> take_input();
@@ -154,6 +160,14 @@ class Server {
   /// Address for other machines; `host` is this one: https://192.168.0.2:8080/?token=... An empty world: the first.
   std::string url_at(const std::string& host, const std::string& world = {}) const;
   ServerStatistics statistics() const;
+
+  /// A world that another process serves, as its only one: clients that name it in the address of their WebSocket are
+  /// passed on to its port on the loopback address, with its token for their role. Port 0: they wait until it is known.
+  void relay(const std::string& world, std::uint16_t port, const std::array<std::string, 3>& tokens);
+  /// Clients that wait for it are let go.
+  void end_relay(const std::string& world);
+  /// Clients that are passed on to it, or wait.
+  int visitors(const std::string& world) const;
 
  private:
   struct Implementation;

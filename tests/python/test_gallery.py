@@ -4,15 +4,22 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 from urllib.request import urlopen
 
 import pytest
 from page_client import CONSTANTS, SCHEMA, PageClient, decode, encode
 from pages import listen_for_complaints, needs_browser, open_page
+from websockets.exceptions import ConnectionClosed, InvalidMessage
 from websockets.sync.client import connect
 
 from iota import studies
@@ -25,8 +32,6 @@ NAMES = ["chain", "molecule", "broken"]
 @pytest.fixture
 def gallery(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gallery]:
     monkeypatch.setattr(serving, "LEAVE", 0.3)
-    real = studies.module
-    monkeypatch.setattr(studies, "module", lambda name: None if name == "broken" else real(name))
     stopped = threading.Event()
     with make_folder() as folder:
         gallery = Gallery(Path(folder), 0, NAMES)
@@ -66,17 +71,69 @@ def test_the_first_visitor_can_take_hold_though_the_study_started_after_it_came(
         page.wait_for(lambda: page.last["poses"]["holds"])
 
 
-def test_a_study_that_cannot_be_built_says_so_to_its_visitors_and_the_others_go_on(gallery: Gallery) -> None:
+def first_notice(gallery: Gallery, world: str) -> dict[str, Any]:
+    """The card that a page gets, which comes back when its connection ends."""
     base, query = gallery.url.split("/?")
-    with connect(base.replace("http", "ws") + f"/ws?{query}", origin=base, proxy=None) as socket:
-        hello = {"magic": CONSTANTS["protocol_magic"], "version": SCHEMA["version"], "role": 0, "name": ""}
-        socket.send(encode("hello", world="broken", **hello))
-        name = ""
-        while name != "notice":
-            name, values = decode(socket.recv(20, decode=False))
-        assert values["title"] == "broken cannot be shown" and values["text"]
-        with PageClient(gallery.url_of("chain")) as page:
-            page.wait_for(lambda: page.last["poses"]["step"] > 0)
+    hello = {"magic": CONSTANTS["protocol_magic"], "version": SCHEMA["version"], "role": 0, "name": ""}
+    for _ in range(200):
+        with (
+            suppress(ConnectionClosed, InvalidMessage, EOFError),
+            connect(base.replace("http", "ws") + f"/ws?{query}&world={world}", origin=base, proxy=None) as socket,
+        ):
+            socket.send(encode("hello", world=world, **hello))
+            while True:
+                name, values = decode(socket.recv(20, decode=False))
+                if name == "notice":
+                    return values
+        time.sleep(0.05)
+    raise AssertionError("no card came")
+
+
+def test_a_study_that_cannot_be_built_says_so_to_its_visitors_and_the_others_go_on(
+    gallery: Gallery, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(serving, "LEAVE", 20.0)
+    card = first_notice(gallery, "broken")
+    assert card["title"] == "broken cannot be shown" and "No module named" in card["text"]
+    with PageClient(gallery.url_of("chain")) as page:
+        page.wait_for(lambda: page.last["poses"]["step"] > 0)
+
+
+def test_a_study_that_hangs_or_ends_leaves_the_others_alone(gallery: Gallery) -> None:
+    with PageClient(gallery.url_of("molecule")) as other, PageClient(gallery.url_of("chain")) as page:
+        page.wait_for(lambda: page.last["poses"]["step"] > 10)
+        hanging = gallery._studies["chain"].process
+        os.kill(hanging, signal.SIGSTOP)
+        step = other.last["poses"]["step"]
+        other.wait_for(lambda: other.last["poses"]["step"] > step + 60)
+        os.kill(hanging, signal.SIGKILL)
+        page.wait_for(page.closed.is_set)
+        with PageClient(gallery.url_of("chain")) as again:
+            again.wait_for(lambda: again.last["poses"]["step"] > 10)
+            assert gallery._studies["chain"].process != hanging
+            os.kill(gallery._studies["chain"].process, signal.SIGSTOP)  # the gallery ends all the same, see the fixture
+        assert not other.closed.is_set()
+
+
+def test_the_processes_of_studies_end_with_the_gallery_however_that_ends() -> None:
+    command = [sys.executable, "-m", "iota", "gallery", "--port", "0", "--no-open"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        url = process.stdout.readline().split()[1]
+        with PageClient(f"{url}&world=chain") as page:
+            children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            assert len(children) == 1
+            process.kill()
+            page.wait_for(page.closed.is_set)
+    wait_until(lambda: not Path(f"/proc/{children[0]}").exists() or "Z" in Path(f"/proc/{children[0]}/stat").read_text())
+
+
+@pytest.mark.parametrize("role", ["guest", "viewer"])
+def test_a_role_holds_in_the_process_of_a_study_too(gallery: Gallery, role: str) -> None:
+    with PageClient(gallery.link(gallery.url_of("chain"), role)) as page:
+        page.send("control", command=0, value=0.0)
+        page.wait_for(lambda: page.notices)
+        assert page.notices[0]["title"] == ("Only the host does that" if role == "guest" else "You only watch")
 
 
 def test_every_study_has_a_thumbnail_and_a_line(gallery: Gallery) -> None:

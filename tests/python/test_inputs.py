@@ -47,7 +47,7 @@ def test_a_message_arrives_as_the_record_of_its_fields(run_world: Runner, monkey
         for name, values in SENT:
             page.send(name, **values)
         page.wait_for(lambda: len(seen) > len(SENT))
-        assert seen[0] == (page.id, protocol.Join("Ada", protocol.Role.ACTOR))
+        assert seen[0] == (page.id, protocol.Join("Ada", protocol.Role.HOST))
         for (client, record), (name, values) in zip(seen[1:], SENT, strict=True):
             assert client == page.id
             assert type(record).__name__.lower() == name.replace("_", "")

@@ -1,66 +1,95 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Serves every study on one port. A study is built for its first visitor, and ends some time after the last one has
-left."""
+"""Serves every study on one port, each in a process of its own: none can slow the others, or end them. A study begins with
+its first visitor, and ends some time after the last one has left."""
 
 from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from iota import studies
 from iota._core import Room
-from iota._protocol import Input, Join, Leave
-from iota.world import Server, World
-from iota.world.callbacks import one_line, print_error
+from iota.world import Server
 from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
 FIRST = ("chain", "ladder", "cradle", "undersea", "cloth", "playground", "physics-class", "fireworks")  # on the page
 LOOK = 0.1  # s, between two checks for visitors
+PATIENCE = 2.0  # s, within which a study has to end
 
 
-class WaitingRoom:
-    """The room of a study that is not running yet. It keeps its visitors' input for the world that takes it over."""
+class Study:
+    """The process of a study, and where it serves."""
 
-    def __init__(self, room: Room) -> None:
-        self._room = room
-        self._seen: list[tuple[int, Input]] = []
+    def __init__(self, name: str) -> None:
+        self.left: float | None = None  # when it was first found without visitors
+        self.is_told = False
+        self._answer: dict[str, Any] | None = None
+        words = [sys.executable, "-m", "iota.gallery.study", name]
+        self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        threading.Thread(target=self._listen, name="iota-study", daemon=True).start()
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._room, name)
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        with suppress(OSError, ValueError):
+            self._answer = json.loads(self._process.stdout.readline())
 
-    def has_visitors(self) -> bool:
-        self._seen += self._room.take_input()
-        left = {client for client, message in self._seen if isinstance(message, Leave)}
-        return any(isinstance(message, Join) and client not in left for client, message in self._seen)
+    @property
+    def answer(self) -> dict[str, Any] | None:
+        """Its port and tokens, or its error; None while it starts."""
+        return {"error": "its process ended"} if self.has_ended and self._answer is None else self._answer
 
-    def take_input(self) -> list[tuple[int, Input]]:
-        seen, self._seen = self._seen, []
-        return seen + self._room.take_input()
+    @property
+    def process(self) -> int:
+        """Its number."""
+        return self._process.pid
+
+    @property
+    def has_ended(self) -> bool:
+        return self._process.poll() is not None
+
+    def ask_to_end(self) -> None:
+        assert self._process.stdin is not None
+        with suppress(OSError):
+            self._process.stdin.close()
+
+    def end(self) -> None:
+        """A study that hangs is killed: its visitors have left, or the gallery ends."""
+        assert self._process.stdout is not None
+        self.ask_to_end()
+        try:
+            self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._process.stdout.close()
 
 
 class Gallery(Server):
-    """A server with a room for each study. folder: with the gallery's page, see `make_folder`."""
+    """A server that passes the visitors of each study on to its process. folder: with the gallery's page, see
+    `make_folder`."""
 
     def __init__(self, folder: str | Path, port: int = 8080, names: list[str] | None = None) -> None:
         super().__init__(port=port, folder=folder)
-        self._waiting = {name: WaitingRoom(super(Gallery, self).open(name)) for name in names or studies.names()}
-        self._worlds: dict[str, World] = {}
-        self._left: dict[str, float] = {}  # when a study was first found without visitors
-
-    def open(self, world: str) -> Any:
-        """The waiting room of a study."""
-        return self._waiting.pop(world)
+        self._names = names or studies.names()
+        self._studies: dict[str, Study] = {}
+        self._failed: dict[str, tuple[Room, float]] = {}  # with a card for visitors, and since when
+        for name in self._names:
+            self.relay(name)
 
     @property
     def running(self) -> list[str]:
         """The running studies."""
-        return list(self._worlds)
+        return list(self._studies)
 
     def run(self, goes_on: Callable[[], bool] = lambda: True) -> None:
         """Runs until `goes_on` returns False."""
@@ -69,37 +98,56 @@ class Gallery(Server):
                 self.look()
                 time.sleep(LOOK)
         finally:
+            self.close()  # lets all visitors go
+            for study in self._studies.values():
+                study.ask_to_end()
             for name in self.running:
-                self._worlds.pop(name).stop()
-            self.close()
+                self._end(name)
 
     def look(self) -> None:
         """Starts studies with visitors, and ends those without."""
-        for name, room in list(self._waiting.items()):
-            if room.has_visitors():
-                self._start(name, room)
         now = time.monotonic()
-        for name, world in list(self._worlds.items()):
-            if world.users.clients:
-                self._left.pop(name, None)
-            elif now - self._left.setdefault(name, now) > LEAVE:
+        for name in self._names:
+            study = self._studies.get(name)
+            if study is not None:
+                self._look_at(name, study, now)
+            elif name in self._failed:
+                if now - self._failed[name][1] > LEAVE:  # the next visitor may try again
+                    self._failed.pop(name)[0].close()
+                    self.relay(name)
+            elif self.visitors(name):
+                self._studies[name] = Study(name)
+
+    def _look_at(self, name: str, study: Study, now: float) -> None:
+        answer = study.answer
+        if answer is not None and "error" in answer:
+            self._end(name)
+            self._tell_of_failure(name, answer["error"], now)
+        elif study.has_ended:  # its visitors' pages come back by themselves, and start it again
+            self._end(name)
+            self.relay(name)
+        else:
+            if answer is not None and not study.is_told:
+                study.is_told = True
+                self.relay(name, answer["port"], answer["tokens"])
+            if self.visitors(name):
+                study.left = None
+            elif study.left is None:
+                study.left = now
+            elif now - study.left > LEAVE:
+                self.relay(name)  # first: who comes now waits for the next process
                 self._end(name)
 
-    def _start(self, name: str, room: WaitingRoom) -> None:
-        try:
-            world = studies.module(name).build()
-        except Exception as error:  # such as a missing package: the other studies continue
-            print_error(error)
-            room.notice(0, 2, f"{name} cannot be shown", one_line(error), "", True)
-            room.take_input()
-            return
-        self._worlds[name] = world
-        world.start(server=self, id=name)
-
     def _end(self, name: str) -> None:
-        self._left.pop(name)
-        self._worlds.pop(name).stop()
-        self._waiting[name] = WaitingRoom(super().open(name))
+        self._studies.pop(name).end()
+
+    def _tell_of_failure(self, name: str, text: str, now: float) -> None:
+        """Visitors come back to a room that only has a card."""
+        room = self.open(name)
+        room.set_settings(title=name, styles=[], style="", camera=None, ground=None, modules=[])
+        room.notice(0, 2, f"{name} cannot be shown", text, "", True)
+        self._failed[name] = room, now
+        self.end_relay(name)
 
 
 def make_folder() -> tempfile.TemporaryDirectory[str]:

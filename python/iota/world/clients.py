@@ -124,6 +124,7 @@ class Clients:
         self.take_picture: TakePicture | None = None
         self.send_pulse: SendPulse | None = None
         self.send_camera: SendCamera | None = None
+        self.send_away: Callable[[int], None] | None = None
         self.taken_away: list[tuple[Hold, str]] = []  # with the reason; their functions wait to be told
 
     def join(self, id: int, name: str) -> None:

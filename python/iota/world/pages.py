@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 from iota.world import options as run_options
 from iota.world.callbacks import print_on_terminal
@@ -16,6 +17,7 @@ from iota.world.recording import LiveRecording
 from iota.world.server import Server
 from iota.world.state import State
 
+ROLES = ("host", "guest", "viewer")
 Call = Callable[[Callable[[], None]], None]  # calls a function on the thread that runs the world
 
 
@@ -40,6 +42,20 @@ class Pages(Part):
     def lan_url(self) -> str | None:
         """Address of the page for other machines; None while it is not served with lan."""
         return None if self._publisher is None else self._publisher.lan_url
+
+    def link(self, role: Literal["host", "guest", "viewer"], lan: bool = False) -> str | None:
+        """An address of the page for somebody. A host may do everything, as with `url`; a guest may touch, but not pause, reset, change
+        the speed or send others away; a viewer only watches. lan: for other machines. None while it is not served so.
+
+        print(world.pages.link("guest", lan=True))
+        """
+        if role not in ROLES:
+            raise ValueError(f"role must be {', '.join(ROLES[:-1])} or {ROLES[-1]}, not {role!r}")
+        return self._link(role, lan)
+
+    def _link(self, role: str, lan: bool = False) -> str | None:
+        url = self.lan_url if lan else self.url
+        return None if self._publisher is None or url is None else self._publisher.link(url, role)
 
     def client_module(self, file: str | Path) -> None:
         """Lets pages load a JavaScript module (.js or .mjs, at most 4 MiB), before the world is served. A relative path is

@@ -34,6 +34,7 @@ class Publisher:
         self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.clients.send_pulse, state.clients.send_camera = room.pulse, self._tell_camera
+        state.clients.send_away = room.send_away
         state.things.effect = room.effect
         state.visuals.tell_anew()
         state.things.tell_anew()
@@ -62,9 +63,12 @@ class Publisher:
             return []
         return announcement(self.lan_url, self._server.fingerprint, self._server.port, shows_code)
 
+    def link(self, url: str, role: str) -> str:
+        return self._server.link(url, role)
+
     def close(self) -> None:
         self._state.notices.show = self._state.notices.forget = None
-        self._state.clients.send_pulse = self._state.clients.send_camera = None
+        self._state.clients.send_pulse = self._state.clients.send_camera = self._state.clients.send_away = None
         self._state.things.effect = None
         self.room.close(self._state.system)
         if self._is_alone:

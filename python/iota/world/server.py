@@ -35,17 +35,29 @@ class Server(_core.Server):
         if lan:
             certificate, key = (lan if isinstance(lan, Lan) else Lan()).certificate()
             host = "0.0.0.0" if host == "127.0.0.1" else host
+        token, frame_token = page.token(), _core.make_token()
+        guest_token, viewer_token = page.token_for("guest", token), page.token_for("viewer", token)
+        self.tokens = [guest_token, viewer_token, token]
+        """The secrets of guests, viewers and hosts, see `Pages.link`."""
+        self._tokens = {"guest": guest_token, "viewer": viewer_token, "host": token, "frame": frame_token}
         super().__init__(
             host=host,
             port=port,
             page_folder=str(folder),
-            token=page.token(),
+            token=token,
+            guest_token=guest_token,
+            viewer_token=viewer_token,
+            host_tokens=[frame_token],
             hello_time=hello_time,
             certificate=certificate,
             key=key,
         )
         self.fingerprint = _core.fingerprint(certificate) if lan else None
         """SHA-256 of the certificate, as browsers show it; None without lan."""
+
+    def link(self, url: str, role: str) -> str:
+        """An address of this server with the token of a role, in place of the host's; "frame": of a host, until this server ends."""
+        return url.replace(self._tokens["host"], self._tokens[role])
 
     def lan_url(self, world: str = "") -> str | None:
         """Address of a world's page for other machines; None without lan. Without a world: the first one's."""

@@ -34,3 +34,8 @@ class Users(Part):
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
         self._notices.send(title, text, hint, level, client)
+
+    def send_away(self, client: int) -> None:
+        """Closes the page of a client. From another machine it does not come back, unless it has the host's address."""
+        if self._clients.send_away is not None:
+            self._clients.send_away(client)

@@ -258,12 +258,13 @@ class World:
     def _repr_html_(self) -> str:
         """The page in a cell of a notebook."""
         title = html.escape(self.title)
-        if self.pages.url is None:
+        url = self._pages._link("frame")  # the notebook is saved with it, and others may read that
+        if url is None:
             return f"<p>The world {title!r} is on no page. Try: <code>world.start()</code></p>"
         style = "width: 100%; height: 480px; border: 0; border-radius: 8px"
         allowed = "fullscreen; gamepad; xr-spatial-tracking"
         return (
-            f'<iframe src="{html.escape(self.pages.url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
+            f'<iframe src="{html.escape(url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
         )
 
     def reset(self) -> None:
@@ -592,6 +593,9 @@ class World:
         lines = [f"{self.title}: {self.pages.url}"]
         if self._pages._publisher is not None:
             lines += self._pages._publisher.announce_lan(shows_code=is_terminal())
+        if self.pages.lan_url is not None:
+            lines.append(f"  for guests, who may touch, but not pause or reset: {self.pages.link('guest', lan=True)}")
+            lines.append(f"  for those who only watch: {self.pages.link('viewer', lan=True)}")
         lines += [action.line for action in self._state.actions if action.key]
         print_on_terminal("\n".join(lines) + "\n", is_error=False)
         if show and self.pages.url and not webbrowser.open(self.pages.url):

@@ -22,6 +22,7 @@ class Link : public ClientLink {
   void world_changed() override { ++changes; }
   void drop(std::string_view reason) override { dropped = reason; }
   void world_ended() override { has_ended = true; }
+  std::string address() const override { return machine; }
 
   template <class Message>
   std::vector<Message> all() const {
@@ -37,16 +38,16 @@ class Link : public ClientLink {
 
   std::vector<protocol::ServerMessage> received;
   int changes = 0;
-  std::string dropped;
+  std::string dropped, machine;
   bool has_ended = false;
 };
 
 class HubTest : public testing::Test {
  protected:
-  static protocol::Hello hello(const std::string& name = {}, protocol::Role role = protocol::Role::actor) {
+  static protocol::Hello hello(const std::string& name = {}, protocol::Role role = protocol::Role::host) {
     return {protocol::protocol_magic, protocol::protocol_version, {}, role, name};
   }
-  std::uint32_t join(Link& link, const std::string& name = {}, protocol::Role role = protocol::Role::actor) {
+  std::uint32_t join(Link& link, const std::string& name = {}, protocol::Role role = protocol::Role::host) {
     return hub.join(link, hello(name, role)).first;
   }
   template <class Message>
@@ -79,7 +80,7 @@ TEST_F(HubTest, welcomes_who_joins_and_says_who_is_there) {
   const auto events = hub.take_input();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].client, client);
-  EXPECT_EQ(events[0].what, protocol::Input(protocol::Join{"Ada", protocol::Role::actor}));
+  EXPECT_EQ(events[0].what, protocol::Input(protocol::Join{"Ada", protocol::Role::host}));
 }
 
 TEST_F(HubTest, refuses_a_full_world_and_another_protocol_with_a_reason) {
@@ -304,6 +305,35 @@ TEST_F(HubTest, answers_bytes_that_are_no_message_with_a_notice) {
   EXPECT_TRUE(take_gestures().empty());
 }
 
+TEST_F(HubTest, lets_guests_touch_but_not_pause_reset_or_send_away) {
+  Link host, guest;
+  const std::uint32_t first = join(host), client = join(guest, "", protocol::Role::actor);
+  receive(client, protocol::GrabStart{.hold = 1});
+  receive(client, protocol::Action{.name = "break"});
+  receive(client, protocol::Change{{1, 1}, 0.5, ""});
+  EXPECT_EQ(take_gestures().size(), 3u);
+  for (int command = 0; command < 5; ++command)
+    receive(client, protocol::Control{static_cast<protocol::ControlCommand>(command), 0});
+  receive(client, protocol::SendAway{first});
+  EXPECT_TRUE(take_gestures().empty());
+  EXPECT_EQ(guest.all<protocol::Notice>().size(), 6u);
+  EXPECT_NE(guest.last_notice().find("Only the host"), std::string::npos);
+  EXPECT_EQ(host.dropped, "");
+}
+
+TEST_F(HubTest, lets_a_host_send_others_away_who_stay_away_on_another_machine) {
+  Link host, guest;
+  const std::uint32_t first = join(host), client = join(guest, "", protocol::Role::actor);
+  guest.machine = "192.168.0.7";
+  receive(first, protocol::SendAway{first});
+  EXPECT_EQ(host.dropped, "") << "not itself";
+  receive(first, protocol::SendAway{client});
+  EXPECT_EQ(guest.dropped, "the host has sent you away");
+  hub.leave(client);
+  EXPECT_EQ(join(guest, "", protocol::Role::viewer), 0u);
+  EXPECT_NE(join(guest, "", protocol::Role::host), 0u) << "a host by its address may come from there";
+}
+
 TEST_F(HubTest, lets_a_viewer_select_and_nothing_else) {
   Link link;
   const std::uint32_t client = join(link, "", protocol::Role::viewer);
@@ -312,6 +342,11 @@ TEST_F(HubTest, lets_a_viewer_select_and_nothing_else) {
   EXPECT_NE(link.last_notice().find("You only watch"), std::string::npos);
   receive(client, protocol::Action{.name = "break", .body = {4, 1}});
   receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
+  receive(client, protocol::Change{{1, 1}, 0.5, ""});
+  receive(client, protocol::Key{"k", true});
+  receive(client, protocol::Pointer{.kind = protocol::PointerKind::click, .name = "mouse"});
+  receive(client, protocol::Profile{true});
+  receive(client, protocol::SendAway{7});
   const auto events = take_gestures();
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].what, protocol::Input(protocol::Select{{4, 1}}));

@@ -328,7 +328,7 @@ TEST_F(ServerTest, welcomes_a_client_that_says_hello) {
   EXPECT_EQ(welcome->client, 1U);
   const auto events = take(1);
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].what, Input(protocol::Join{"Ada", protocol::Role::actor}));
+  EXPECT_EQ(events[0].what, Input(protocol::Join{"Ada", protocol::Role::host}));
   EXPECT_EQ(server_->statistics().clients, 1U);
 }
 
@@ -475,7 +475,8 @@ TEST_F(ServerTest, two_clients_have_their_own_selections_and_see_each_other) {
   EXPECT_NE(a->client, b->client);
   say(*ada, protocol::Select{body_id(3)});
   say(*bob, protocol::Select{body_id(5)});
-  std::vector<protocol::ClientEntry> expected{{a->client, "Ada", body_id(3), {}}, {b->client, "Bob", body_id(5), {}}};
+  std::vector<protocol::ClientEntry> expected{{a->client, "Ada", body_id(3), protocol::Role::host},
+                                              {b->client, "Bob", body_id(5), protocol::Role::host}};
   for (PageClient* client : {ada.get(), bob.get()}) {
     std::optional<protocol::Clients> clients;
     do {
@@ -676,6 +677,28 @@ TEST_F(ServerTest, a_room_outlives_its_server_in_silence) {
   EXPECT_TRUE(room_->take_input().empty());
 }
 
+TEST_F(ServerTest, the_token_says_what_a_client_may_do_and_the_client_can_only_ask_for_less) {
+  ServerOptions given = options(0);
+  given.other_tokens = {{"guest", protocol::Role::actor}, {"eyes", protocol::Role::viewer}, {"frame", protocol::Role::host}};
+  start(given);
+  using protocol::Role;
+  const std::tuple<std::string, Role, Role> cases[] = {
+      {token, Role::actor, Role::host},    {token, Role::viewer, Role::viewer}, {"guest", Role::host, Role::actor},
+      {"guest", Role::viewer, Role::viewer}, {"eyes", Role::host, Role::viewer},  {"frame", Role::actor, Role::host}};
+  for (const auto& [secret, asked, granted] : cases) {
+    PageClient client;
+    ASSERT_EQ(client.connect(server_->port(), "/ws?token=" + secret), 101U);
+    say(client, protocol::Hello{protocol::protocol_magic, protocol::protocol_version, "", asked, secret});
+    const auto clients = hear<protocol::Clients>(client);
+    ASSERT_TRUE(clients);
+    EXPECT_EQ(clients->clients.back().role, granted) << secret;
+  }
+  for (const char* wrong : {"", "gues", "guestt", "eyesguest"}) {
+    PageClient client;
+    EXPECT_EQ(client.connect(server_->port(), std::string("/ws?token=") + wrong), 403U) << wrong;
+  }
+}
+
 TEST_F(ServerTest, a_viewer_sees_and_selects_but_does_not_act) {
   const auto viewer = join("eyes", false, "", protocol::Role::viewer);
   ASSERT_TRUE(hear<protocol::Welcome>(*viewer));
@@ -714,7 +737,7 @@ TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
   ASSERT_TRUE(is_alive(*client));
   std::vector<Input> taken;
   for (const auto& event : room_->take_input()) taken.push_back(event.what);
-  const std::vector<Input> expected{protocol::Join{"", protocol::Role::actor},
+  const std::vector<Input> expected{protocol::Join{"", protocol::Role::host},
                                     protocol::GrabStart{1, body_id(5), {0.1F, 0, 0}, {1, 1, 1}},
                                     protocol::GrabStart{2, body_id(6), {}, {}},
                                     protocol::GrabMove{1, {100, 0, 0}},

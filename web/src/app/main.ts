@@ -24,6 +24,9 @@ function socketUrl(): string {
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   const token = takeToken();
   if (token !== null) url.searchParams.set("token", token);
+  // A gallery passes the socket on to the process of its world.
+  const world = new URLSearchParams(location.search).get("world");
+  if (world !== null) url.searchParams.set("world", world);
   return url.href;
 }
 
