@@ -70,9 +70,10 @@ void bind_recording(nb::module_& module) {
       .def_prop_ro(
           "steps", [](const Recording& r) { return r.hashes.size(); }, "Number of steps.")
       .def_ro("hashes", &Recording::hashes, "`System.state_hash()` after each step.")
-      .def("save", &save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
-           "Writes it to a file that ends in .replay, completely or not at all. Raises OSError, or ValueError for another\n"
-           "ending.")
+      .def(
+          "save", &save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
+          "Writes it to a file that ends in .replay, completely or not at all. Raises OSError, or ValueError for another\n"
+          "ending.")
       .def_static("load", &load, "path"_a, nb::sig("def load(path: str | os.PathLike[str]) -> Recording"),
                   "Reads a file made by `save`. Raises OSError, or ValueError for a file that is not a complete "
                   "recording.")

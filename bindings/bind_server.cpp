@@ -116,9 +116,9 @@ void bind_server(nb::module_& module) {
             new (self) ServerObject{make_server(host, port, page_folder, token, guest_token, viewer_token, host_tokens,
                                                 hello_time, certificate, key)};
           },
-          nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a,
-          "guest_token"_a = "", "viewer_token"_a = "", "host_tokens"_a = std::vector<std::string>(),
-          "hello_time"_a = 10.0, "certificate"_a = "", "key"_a = "")
+          nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a, "guest_token"_a = "",
+          "viewer_token"_a = "", "host_tokens"_a = std::vector<std::string>(), "hello_time"_a = 10.0,
+          "certificate"_a = "", "key"_a = "")
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
           "world"_a,

@@ -58,7 +58,8 @@ void write_new_file(const fs::path& file, std::span<const std::byte> bytes, Read
   out.close();
   if (!out) fail(errno, file);
 #else
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readers == Readers::owner ? 0600 : 0666);
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readers == Readers::owner ? 0600 : 0666);
   if (descriptor < 0) fail(errno, file);
   int reason = 0;
   while (!bytes.empty() && reason == 0) {

@@ -170,7 +170,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     const auto* hello = decoded ? std::get_if<protocol::Hello>(&*decoded.value) : nullptr;
     if (hello == nullptr) {
       ++context_.counters.frames_refused;
-      return send_refusal(decoded ? "the first frame has to be hello" : "the first frame has to be hello: " + decoded.error);
+      return send_refusal(decoded ? "the first frame has to be hello"
+                                  : "the first frame has to be hello: " + decoded.error);
     }
     auto [hub, unknown] = context_.find_world(hello->world);
     if (!hub) return send_refusal(unknown);

@@ -394,8 +394,9 @@ bool Hub::try_push(ClientInput input) {
   const std::size_t bytes = size_of(input);
   Waiting& own = waiting_[input.client];
   const bool is_own = is_a<protocol::Join>(input) || is_a<protocol::Leave>(input);
-  const bool is_too_much = own.count >= max_waiting_input || own.bytes + bytes > max_waiting_bytes ||
-                           (waiting_bytes_ + bytes > max_waiting_bytes_of_world && own.bytes + bytes > least_waiting_bytes);
+  const bool is_too_much =
+      own.count >= max_waiting_input || own.bytes + bytes > max_waiting_bytes ||
+      (waiting_bytes_ + bytes > max_waiting_bytes_of_world && own.bytes + bytes > least_waiting_bytes);
   if (!is_own && is_too_much) return false;
   own.count += is_own ? 0 : 1;
   own.bytes += bytes;

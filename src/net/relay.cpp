@@ -73,7 +73,8 @@ class Relay final : public std::enable_shared_from_this<Relay>, public OpenConne
   /// One direction.
   template <class From, class To>
   void pass(From& from, To& to, std::array<char, 16384>& buffer) {
-    from.async_read_some(asio::buffer(buffer), [self = shared_from_this(), &from, &to, &buffer](error_code error, std::size_t size) {
+    from.async_read_some(asio::buffer(buffer), [self = shared_from_this(), &from, &to, &buffer](error_code error,
+                                                                                                std::size_t size) {
       if (error) return self->finish();
       self->client_.expires_after(silence_time);
       asio::async_write(to, asio::buffer(buffer, size), [self, &from, &to, &buffer](error_code failed, std::size_t) {
@@ -90,19 +91,20 @@ class Relay final : public std::enable_shared_from_this<Relay>, public OpenConne
     request_.erase(http::field::origin);  // it was checked, and is not that of the process
     out << request_;
     head_ = out.str();
-    process_.async_connect({asio::ip::address_v4::loopback(), target.port}, [self = shared_from_this()](error_code error) {
-      if (error) {  // it has just ended, and begins anew
-        error_code ignored;
-        self->process_.close(ignored);
-        return self->look_later();
-      }
-      self->process_.set_option(tcp::no_delay(true), error);
-      asio::async_write(self->process_, asio::buffer(self->head_), [self](error_code failed, std::size_t) {
-        if (failed) return self->finish();
-        self->pass(self->client_, self->process_, self->to_process_);
-        self->pass(self->process_, self->client_, self->to_client_);
-      });
-    });
+    process_.async_connect(
+        {asio::ip::address_v4::loopback(), target.port}, [self = shared_from_this()](error_code error) {
+          if (error) {  // it has just ended, and begins anew
+            error_code ignored;
+            self->process_.close(ignored);
+            return self->look_later();
+          }
+          self->process_.set_option(tcp::no_delay(true), error);
+          asio::async_write(self->process_, asio::buffer(self->head_), [self](error_code failed, std::size_t) {
+            if (failed) return self->finish();
+            self->pass(self->client_, self->process_, self->to_process_);
+            self->pass(self->process_, self->client_, self->to_client_);
+          });
+        });
   }
 
   ConnectionContext& context_;

@@ -22,7 +22,7 @@ namespace iota::net {
 class Relays {
  public:
   struct Target {
-    std::uint16_t port = 0;             ///< of the process, on the loopback address; 0: it does not run yet, and clients wait
+    std::uint16_t port = 0;  ///< of the process, on the loopback address; 0: it does not run yet, and clients wait
     std::array<std::string, 3> tokens;  ///< its own, by role
   };
   void set(const std::string& world, Target target);

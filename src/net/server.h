@@ -30,9 +30,9 @@ struct ServerOptions {
   std::string host = "127.0.0.1";  ///< name or address to listen on
   /// With a certificate, other machines use https on the same port; plain http is for this machine only.
   Certificate certificate = {};
-  std::uint16_t port = 8080;              ///< 0: any free one
-  std::filesystem::path page_folder;      ///< the built page: index.html and its files
-  std::string token;                      ///< of the host; every WebSocket needs this or another one; not empty
+  std::uint16_t port = 8080;          ///< 0: any free one
+  std::filesystem::path page_folder;  ///< the built page: index.html and its files
+  std::string token;                  ///< of the host; every WebSocket needs this or another one; not empty
   /// What clients with other tokens may do.
   std::vector<std::pair<std::string, protocol::Role>> other_tokens = {};
   std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client

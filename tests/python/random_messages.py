@@ -14,7 +14,21 @@ ENUMS = {entry["name"]: [value["value"] for value in entry["values"]] for entry 
 F32 = [0.0, -0.0, 1.0, -1.0, 0.5, 1e-38, 1e9, -1e9, 9.9e8, 3.4e38, -3.4e38, 1e-45]
 F64 = [*F32, 1e308, -1e308, 1.7976931348623157e308, 5e-324, 2.0**53, -(2.0**63)]
 WHOLE = {"u8": 2**8, "u16": 2**16, "u32": 2**32, "u64": 2**64}
-TEXTS = ["", "a", "\0", "é" * 16, "\u202ex", "<b>&", "{0}%s", "-" * 32, "1e308", "nan", "../x", "\x1b[31m", "\U0001f600" * 8]
+TEXTS = [
+    "",
+    "a",
+    "\0",
+    "é" * 16,
+    "\u202ex",
+    "<b>&",
+    "{0}%s",
+    "-" * 32,
+    "1e308",
+    "nan",
+    "../x",
+    "\x1b[31m",
+    "\U0001f600" * 8,
+]
 # A hello ends nothing but is refused, and a picture that nobody asked for, too: neither reaches the script.
 KINDS = [name for name in TO_SERVER if name not in ("hello", "ping", "presence", "picture")]
 

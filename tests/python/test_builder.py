@@ -174,7 +174,7 @@ def test_a_structure_of_another_version_is_refused_and_one_of_before_versions_is
     del saved["version"]
     assert iota.builder.Structure.from_json(saved).to_json() == swing().to_json()
     for version in (2, 0, "1", None, [1]):
-        with pytest.raises(ValueError, match="the structure has version .* reads version 1"):
+        with pytest.raises(ValueError, match=r"the structure has version .* reads version 1"):
             iota.builder.Structure.from_json({"version": version, "wheels": []})
 
 

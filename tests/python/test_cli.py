@@ -437,7 +437,9 @@ def test_a_world_that_nohup_started_outlives_its_terminal() -> None:
 @pytest.mark.parametrize("out", ["1>&-", ">/dev/full"])
 def test_a_world_runs_without_anything_to_print_on(tmp_path: Path, out: str) -> None:
     path = tmp_path / "mine.py"
-    path.write_text("import iota\nworld = iota.World(iota.System())\nworld.run()\nprint('%.1f' % world.system.time, file=open('time', 'w'))\n")
+    path.write_text(
+        "import iota\nworld = iota.World(iota.System())\nworld.run()\nprint('%.1f' % world.system.time, file=open('time', 'w'))\n"
+    )
     command = f"{sys.executable} -m iota run mine.py --no-open --port 0 --seconds 1 {out}"
     done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, text=True, timeout=60, cwd=tmp_path)
     assert "Traceback" not in done.stderr and (tmp_path / "time").read_text() != "0.0\n"

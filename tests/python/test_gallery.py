@@ -97,6 +97,9 @@ def test_a_study_that_cannot_be_built_says_so_to_its_visitors_and_the_others_go_
     assert card["title"] == "broken cannot be shown" and "No module named" in card["text"]
     with PageClient(gallery.url_of("chain")) as page:
         page.wait_for(lambda: page.last["poses"]["step"] > 0)
+    monkeypatch.setattr(serving, "LEAVE", 0.3)
+    wait_until(lambda: not gallery._failed)
+    assert first_notice(gallery, "broken") == card, "a later visitor tries again"
 
 
 def test_a_study_that_hangs_or_ends_leaves_the_others_alone(gallery: Gallery) -> None:
@@ -125,7 +128,9 @@ def test_the_processes_of_studies_end_with_the_gallery_however_that_ends() -> No
             assert len(children) == 1
             process.kill()
             page.wait_for(page.closed.is_set)
-    wait_until(lambda: not Path(f"/proc/{children[0]}").exists() or "Z" in Path(f"/proc/{children[0]}/stat").read_text())
+    wait_until(
+        lambda: not Path(f"/proc/{children[0]}").exists() or "Z" in Path(f"/proc/{children[0]}/stat").read_text()
+    )
 
 
 @pytest.mark.parametrize("role", ["guest", "viewer"])

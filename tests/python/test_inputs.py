@@ -75,7 +75,9 @@ def test_an_error_of_our_own_is_one_card_for_the_sender(monkeypatch: pytest.Monk
         raise OverflowError("too large")
 
     monkeypatch.setitem(HANDLERS, protocol.Key, fail)
-    inputs.take([(5, protocol.Join("", protocol.Role.ACTOR)), (6, protocol.Join("", protocol.Role.ACTOR))], lambda ids: [])
+    inputs.take(
+        [(5, protocol.Join("", protocol.Role.ACTOR)), (6, protocol.Join("", protocol.Role.ACTOR))], lambda ids: []
+    )
     inputs.take([(5, protocol.Key("k", True)), (6, protocol.Profile(True))], lambda ids: [])
     ((client, title, text),) = shown
     assert (client, title) == (5, "That failed") and text.startswith("OverflowError: too large")

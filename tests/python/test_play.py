@@ -77,7 +77,10 @@ def test_messages_of_another_version_are_refused(tmp_path: Path) -> None:
     check_version([(0.0, welcome(PROTOCOL_VERSION)), (1.0, b"more")])
     (tmp_path / "old.iota").write_bytes(pack([(0.0, welcome(3))]))
     done = iota("play", tmp_path / "old.iota", "--no-open")
-    assert done.returncode == 1 and f"version 3 of the protocol, and this iota plays version {PROTOCOL_VERSION}" in done.stderr
+    assert (
+        done.returncode == 1
+        and f"version 3 of the protocol, and this iota plays version {PROTOCOL_VERSION}" in done.stderr
+    )
     for first in (b"", b"@", bytes(9)):
         with pytest.raises(Failed, match="does not begin with a welcome"):
             check_version([(0.0, first)])
@@ -86,7 +89,7 @@ def test_messages_of_another_version_are_refused(tmp_path: Path) -> None:
 def test_the_recording_of_a_system_is_told_from_one_of_pages() -> None:
     system = iota_package.System()
     system.start_recording()
-    with pytest.raises(Failed, match="Recording.load"):
+    with pytest.raises(Failed, match=r"Recording\.load"):
         unpack(system.stop_recording().to_bytes())
 
 

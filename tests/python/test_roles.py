@@ -57,7 +57,11 @@ def test_a_guest_touches_but_does_not_pause_and_a_viewer_watches(run_world: Runn
 def test_a_host_and_the_script_send_others_away(run_world: Runner) -> None:
     world = iota.World(iota.System())
     url = run_world(world)
-    with PageClient(url) as host, PageClient(link(world, "guest")) as guest, PageClient(link(world, "viewer")) as viewer:
+    with (
+        PageClient(url) as host,
+        PageClient(link(world, "guest")) as guest,
+        PageClient(link(world, "viewer")) as viewer,
+    ):
         guest.send("send_away", client=host.id)
         guest.wait_for(lambda: [card["title"] for card in guest.notices] == ["Only the host does that"])
         host.send("send_away", client=guest.id)

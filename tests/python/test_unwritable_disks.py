@@ -14,7 +14,16 @@ import pytest
 
 # Tests may run as root, whom permissions do not stop: a mount does. It is seen by the tested process only.
 UNSHARE = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
-NAMES = ("run.replay", "film.iota", "film.html", "sheet.png", "playground.json", "playground.py", "ball.json", "now.png")
+NAMES = (
+    "run.replay",
+    "film.iota",
+    "film.html",
+    "sheet.png",
+    "playground.json",
+    "playground.py",
+    "ball.json",
+    "now.png",
+)
 OLDER = "an older one"
 
 
@@ -90,7 +99,11 @@ def run(disk: Disk, folder: Path, *command: str) -> subprocess.CompletedProcess[
 @pytest.mark.parametrize(
     ("file", "build", "save"),
     [
-        ("run.replay", "chain.build()", "world.system.start_recording(); world.system.stop_recording().save('run.replay')"),
+        (
+            "run.replay",
+            "chain.build()",
+            "world.system.start_recording(); world.system.stop_recording().save('run.replay')",
+        ),
         ("playground.json", "playground.build()", BUTTON.format(label="save")),
         ("playground.py", "playground.build()", BUTTON.format(label="export script")),
         ("now.png", "chain.build()", "Client(1, take_picture=lambda client, wait: b'a picture').screenshot('now.png')"),

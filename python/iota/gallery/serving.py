@@ -113,7 +113,7 @@ class Gallery(Server):
                 self._look_at(name, study, now)
             elif name in self._failed:
                 if now - self._failed[name][1] > LEAVE:  # the next visitor may try again
-                    self._failed.pop(name)[0].close()
+                    self._failed.pop(name)[0].close(None)
                     self.relay(name)
             elif self.visitors(name):
                 self._studies[name] = Study(name)

@@ -28,7 +28,9 @@ BodiesOf = Callable[[Sequence[protocol.Id]], list[Any]]
 Handler = Callable[["Inputs", Client, Any], None]
 HANDLERS: dict[type, Handler] = {}
 SHARES: dict[type, float] = {}
-TOO_FAST = "A page can run 30 actions a second, and all pages those that take half of the time. The others were left out."
+TOO_FAST = (
+    "A page can run 30 actions a second, and all pages those that take half of the time. The others were left out."
+)
 
 
 def handles(message: type, share: float = 0.0) -> Callable[[Handler], Handler]:

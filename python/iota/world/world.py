@@ -263,9 +263,7 @@ class World:
             return f"<p>The world {title!r} is on no page. Try: <code>world.start()</code></p>"
         style = "width: 100%; height: 480px; border: 0; border-radius: 8px"
         allowed = "fullscreen; gamepad; xr-spatial-tracking"
-        return (
-            f'<iframe src="{html.escape(url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
-        )
+        return f'<iframe src="{html.escape(url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
 
     def reset(self) -> None:
         """Returns to the start of the run, with the timed events registered before it and the camera of then."""

@@ -679,11 +679,12 @@ TEST_F(ServerTest, a_room_outlives_its_server_in_silence) {
 
 TEST_F(ServerTest, the_token_says_what_a_client_may_do_and_the_client_can_only_ask_for_less) {
   ServerOptions given = options(0);
-  given.other_tokens = {{"guest", protocol::Role::actor}, {"eyes", protocol::Role::viewer}, {"frame", protocol::Role::host}};
+  given.other_tokens = {
+      {"guest", protocol::Role::actor}, {"eyes", protocol::Role::viewer}, {"frame", protocol::Role::host}};
   start(given);
   using protocol::Role;
   const std::tuple<std::string, Role, Role> cases[] = {
-      {token, Role::actor, Role::host},    {token, Role::viewer, Role::viewer}, {"guest", Role::host, Role::actor},
+      {token, Role::actor, Role::host},      {token, Role::viewer, Role::viewer}, {"guest", Role::host, Role::actor},
       {"guest", Role::viewer, Role::viewer}, {"eyes", Role::host, Role::viewer},  {"frame", Role::actor, Role::host}};
   for (const auto& [secret, asked, granted] : cases) {
     PageClient client;
