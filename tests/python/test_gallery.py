@@ -118,6 +118,25 @@ def test_a_study_that_hangs_or_ends_leaves_the_others_alone(gallery: Gallery) ->
         assert not other.closed.is_set()
 
 
+def test_a_machine_that_cannot_start_one_more_process_goes_on_with_the_others(
+    gallery: Gallery, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with PageClient(gallery.url_of("molecule")) as page:
+        tried: list[str] = []
+
+        def fail(name: str) -> None:
+            tried.append(name)
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(serving, "Study", fail)
+            waiting = threading.Thread(target=lambda: PageClient(gallery.url_of("chain")).close())
+            waiting.start()
+            wait_until(lambda: len(tried) > 2)
+        waiting.join(60)
+        assert "chain" in gallery.running and not page.closed.is_set()
+
+
 def test_the_processes_of_studies_end_with_the_gallery_however_that_ends() -> None:
     command = [sys.executable, "-m", "iota", "gallery", "--port", "0", "--no-open"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:

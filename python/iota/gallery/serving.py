@@ -19,6 +19,7 @@ from typing import Any
 from iota import studies
 from iota._core import Room
 from iota.world import Server
+from iota.world.callbacks import print_error
 from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
@@ -95,7 +96,10 @@ class Gallery(Server):
         """Runs until `goes_on` returns False."""
         try:
             while goes_on():
-                self.look()
+                try:
+                    self.look()
+                except OSError as error:  # such as too many processes: the studies that run go on
+                    print_error(error)
                 time.sleep(LOOK)
         finally:
             self.close()  # lets all visitors go
@@ -113,7 +117,7 @@ class Gallery(Server):
                 self._look_at(name, study, now)
             elif name in self._failed:
                 if now - self._failed[name][1] > LEAVE:  # the next visitor may try again
-                    self._failed.pop(name)[0].close(None)
+                    del self._failed[name]  # the room ends with it
                     self.relay(name)
             elif self.visitors(name):
                 self._studies[name] = Study(name)
