@@ -21,11 +21,13 @@ void Audit::require_group(const char* what, std::uint32_t slot, std::uint32_t gr
   require(group == none || model_.groups.is_alive(group), what, " ", slot, " acts on no living group");
 }
 
-void Audit::require_shape(const char* what, std::uint32_t slot, const shape::Data& data) {
+bool Audit::require_shape(const char* what, std::uint32_t slot, const shape::Data& data) {
   try {
     shape::check(shape::from_data(data));
+    return true;
   } catch (const std::invalid_argument& error) {
     require(false, what, " ", slot, " has no shape: ", error.what());
+    return false;
   }
 }
 
@@ -55,6 +57,7 @@ void Audit::check_links() {
   });
   model_.obstacles.for_each([&](std::uint32_t slot, const Obstacle& o) {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " is an obstacle");
+    if (!model_.bodies.is_alive(slot)) return;
     const Body& b = model_.bodies[slot];
     const BodyKind kind = b.kind == BodyKind::inactive ? b.kind_before : b.kind;
     require(kind == BodyKind::static_ && b.count == 0 && b.first_solid != none, "obstacle ", slot,
@@ -79,9 +82,8 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(s.body), "solid ", slot, " is not of body ", s.body);
     for (const std::uint32_t p : s.points)
       require(model_.obstacles.has(s.body) ? p == none : is_point(p), "solid ", slot, " stands on stranger ", p);
-    require_shape("solid", slot, s.shape);
-    if (model_.bodies.is_alive(s.body))
-      require(!is_free(model_.bodies[s.body].kind) || !lacks_volume(model_, s.body), "solid ", slot,
+    if (require_shape("solid", slot, s.shape) && model_.bodies.is_alive(s.body))
+      require(!is_free(model_.bodies[s.body].kind) || !lacks_volume(model_, s.shape), "solid ", slot,
               " has no volume, but its body can move");
   });
   check_meshes();

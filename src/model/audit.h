@@ -37,7 +37,7 @@ class Audit {
     require(std::find(characters.begin(), characters.end(), '\0') != characters.end(), what, " ", slot,
             " has a text without an end");
   }
-  void require_shape(const char* what, std::uint32_t slot, const shape::Data&);
+  bool require_shape(const char* what, std::uint32_t slot, const shape::Data&);
   ///@}
 
   template <class... Parts>

@@ -66,12 +66,14 @@ std::uint32_t add_solid(Structure& model, std::uint32_t body, Solid solid, doubl
   return slot;
 }
 
+bool lacks_volume(const Structure& model, const shape::Data& data) {
+  return data.key != 0 ? model.meshes.is_open(data.key) : !shape::is_solid(shape::from_data(data));
+}
+
 bool lacks_volume(const Structure& model, std::uint32_t body) {
   bool lacks = false;
-  model.for_each_solid_of(body, [&](std::uint32_t solid) {
-    const shape::Data& data = model.solids[solid].shape;
-    lacks = lacks || (data.key != 0 ? model.meshes.is_open(data.key) : !shape::is_solid(shape::from_data(data)));
-  });
+  model.for_each_solid_of(
+      body, [&](std::uint32_t solid) { lacks = lacks || lacks_volume(model, model.solids[solid].shape); });
   return lacks;
 }
 

@@ -23,6 +23,7 @@ std::uint32_t add_solid(Structure&, std::uint32_t body, Solid solid, double mass
 
 /// Whether one of a body's shapes has no volume (a half-space, an open mesh). Such a body is static or scripted.
 bool lacks_volume(const Structure&, std::uint32_t body);
+bool lacks_volume(const Structure&, const shape::Data&);
 
 /// Whether the four points of a solid may still be moved: they have no hinge, nail or bond, and equal masses.
 bool is_untouched(const Structure&, std::uint32_t solid);
