@@ -28,6 +28,11 @@ namespace iota::edit {
 struct Step {
   double dt;
 };
+/// A snapshot was taken for others: what it does to the islands has to be repeated by a replay.
+struct TakeSnapshot {
+  static constexpr bool keeps_energy = true;
+};
+inline void apply(Editor& e, const TakeSnapshot&) { e.islands.renew(); }
 
 // One per line, to avoid merge conflicts. Recordings name a command by its place, and have the length of the list in the
 // version of their format (door.cpp).
@@ -136,7 +141,8 @@ using Command = std::variant<
     Destroy<AngleSpringId>,
     SetRadius,
     SetUsualRadius,
-    CreateObstacle>;
+    CreateObstacle,
+    TakeSnapshot>;
 // clang-format on
 
 /// The place of a command in that list.

@@ -75,6 +75,11 @@ void Door::apply_queue(StepReport& report) {
   report.edits->energy_change = editor_.held.book().edits - before;
 }
 
+Snapshot Door::take_snapshot() {
+  record(TakeSnapshot{});
+  return editor_.snapshot();
+}
+
 void Door::start_recording() {
   editor_.forget_history();  // a replay would not have this history
   recording_ = Recording{editor_.snapshot(), {}, {}};

@@ -34,6 +34,7 @@ class Door {
   /// @name Recordings
   ///@{
   bool is_recording() const { return recording_.has_value(); }
+  Snapshot take_snapshot();  ///< for others
   void start_recording();
   Recording stop_recording();
   /// Records a completed step.
@@ -125,7 +126,7 @@ ResultOf<C> Door::report(const C& command) {
 
 template <class C>
 void Door::note_edit() {
-  if constexpr (!std::is_same_v<C, BeginEdit> && !std::is_same_v<C, EndEdit>)
+  if constexpr (!std::is_same_v<C, BeginEdit> && !std::is_same_v<C, EndEdit> && !std::is_same_v<C, TakeSnapshot>)
     if (editor_.batch) editor_.batch->is_empty = false;
 }
 

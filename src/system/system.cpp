@@ -141,7 +141,7 @@ std::uint64_t System::state_hash() const { return core_->model.hash(); }
 
 Energy System::energy() const { return core_->held.book(); }
 
-Snapshot System::snapshot() const { return core_->editor.snapshot(); }
+Snapshot System::snapshot() const { return core_->door.take_snapshot(); }
 
 void System::restore(const Snapshot& snapshot) {
   if (core_->door.is_stepping()) throw std::logic_error("restore: not while the system steps");
