@@ -39,14 +39,9 @@ inline void settle(Model& model, std::span<const std::uint32_t> bodies, std::vec
   for_each_type<Ingredients>([&]<class I>() { I::settle(model, bodies, notes); });
 }
 
-/// Adds rows to tables that an island with the body will write from several threads.
+/// Before an island with the body is built or follows a change.
 inline void prepare(Model& model, std::uint32_t body) {
   for_each_type<Ingredients>([&]<class I>() { I::prepare(model, body); });
-}
-
-/// Bodies may have other bases than when ingredients chose their points.
-inline void follow_bases(Model& model) {
-  for_each_type<Ingredients>([&]<class I>() { I::follow_bases(model); });
 }
 
 }  // namespace iota::ingredient

@@ -211,12 +211,12 @@ void Grips::follow(Model& model, const Memory& held) {
   }
 }
 
-void Grips::follow_bases(Model& model) {
-  model.grips.for_each([&](std::uint32_t, Grip& g) {
-    const model::Body& body = model.bodies[g.body];
+void Grips::prepare(Model& model, std::uint32_t slot) {
+  const model::Body& body = model.bodies[slot];
+  model.grips.for_each_of(slot, [&](std::uint32_t grip, const Grip& g) {
     const bool same =
         g.count == body.rank && std::equal(body.basis.begin(), body.basis.begin() + body.rank, g.points.begin());
-    if (!same) anchor(model, g, point(model, g));
+    if (!same) anchor(model, model.grips[grip], point(model, g));
   });
 }
 

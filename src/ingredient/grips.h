@@ -97,7 +97,7 @@ class Grips : public NoAnswers {
   using Memory = std::vector<Held>;
   static Memory remember(const Model&, std::span<const std::uint32_t> bodies);
   static void follow(Model&, const Memory&);
-  static void follow_bases(Model&);
+  static void prepare(Model&, std::uint32_t body);
 
   /// A grip at a body was added or will be removed. A single particle then enters an island, or leaves it.
   static void touch(Model&, std::uint32_t body);

@@ -115,9 +115,8 @@ struct NoAnswers {
   static Memory remember(const Model&, std::span<const std::uint32_t> /*bodies*/) { return {}; }
   /// Since then particles may have been absorbed, bodies joined, split or destroyed.
   static void follow(Model&, const Memory&) {}
-  /// Bodies may have other bases, in the same places.
-  static void follow_bases(Model&) {}
-  /// Adds rows to tables that an island with the body will write from several threads.
+  /// Before an island with the body is built or follows a change: the body may have another basis, in the same place. Adds
+  /// rows to tables that islands will write from several threads.
   static void prepare(Model&, std::uint32_t /*body*/) {}
   ///@}
 
@@ -233,7 +232,6 @@ concept ModelIngredient = requires(
   I::settle(model, bodies, notes);
   { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
   I::follow(model, I::remember(seen, bodies));
-  I::follow_bases(model);
   I::prepare(model, slot);
   { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
   I::describe(view, changes);

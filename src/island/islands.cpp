@@ -385,7 +385,6 @@ bool Islands::follow(Model& model, const Group& group, MovedRings& moved) {
   ingredient::sort_unique(change.local.bodies);
   change.local.rings = touched_.local.rings, change.local.pulled = touched_.local.pulled;
   for (const std::uint32_t body : change.local.bodies) make_ready(model, body);
-  ingredient::follow_bases(model);
   if (!host.island.follow(model, members, change, node_of_ring_, moved)) return false;
 
   host.leaving.clear(), host.is_changed = false, host.has_followed = true;
@@ -434,7 +433,6 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
   for (const Home* const home : fresh_)
     for (const std::uint32_t a : home->articulates)
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
-  ingredient::follow_bases(model);
   if (moved_by_.size() < fresh_.size()) moved_by_.resize(fresh_.size());
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
     moved_by_[i].before.clear(), moved_by_[i].is_asked_for = moved.is_asked_for;
