@@ -302,9 +302,12 @@ void Islands::collect_groups(const Model& model) {
       group_of(unit).homes.push_back(home);
     else
       group_of(unit).waiting.push_back(units_[unit].articulate);
-  for (const std::uint32_t body : touched_.local.bodies)
-    if (model.bodies.is_alive(body))
-      if (Home* const home = places_[model.bodies[body].articulate].home) group_of(home->unit).bodies.push_back(body);
+  for (const std::uint32_t body : touched_.local.bodies) {
+    if (!model.bodies.is_alive(body)) continue;
+    const Place& place = places_[model.bodies[body].articulate];  // a home's body may be in an articulate that waits
+    const std::uint32_t unit = place.home ? place.home->unit : place.unit;
+    if (unit != none) group_of(unit).bodies.push_back(body);
+  }
   for (const Unit& unit : units_) (unit.home ? unit.home->unit : places_[unit.articulate].unit) = none;
   by_lowest_.clear();
   for (std::uint32_t g = 0; g < group_count_; ++g) {

@@ -93,7 +93,7 @@ class Islands {
     std::uint32_t lowest = none;  ///< of its articulates
     std::vector<Home*> homes;
     std::vector<std::uint32_t> waiting;  ///< articulates
-    std::vector<std::uint32_t> bodies;   ///< changed ones of its homes
+    std::vector<std::uint32_t> bodies;   ///< changed ones
     void clear() { lowest = none, homes.clear(), waiting.clear(), bodies.clear(); }
   };
 

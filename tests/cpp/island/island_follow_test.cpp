@@ -2,6 +2,7 @@
 // Large islands follow edits in place; what comes out is what islands give that are built anew.
 #include "scenes/chain.h"
 #include "scenes/loose_bodies.h"
+#include "tests/cpp/amount.h"
 
 #include <gtest/gtest.h>
 
@@ -185,6 +186,25 @@ TEST(FollowingIsland, settles_a_rejoined_hinge_around_it_and_tells_what_that_cha
   }
 }
 
+// The eight links between both places change to the articulate of the ten, whose island is small and waits for another.
+TEST(FollowingIsland, of_a_cut_and_a_rejoined_piece_lets_all_points_beyond_the_cut_fall) {
+  double fall[2];
+  for (const bool renewed : {false, true}) {
+    System system{SystemOptions{.gravity = {0, -1, 0}, .mode = IntegrationMode::robust}};
+    const scenes::Chain chain = scenes::make_chain(system, {.links = 114, .direction = {0, 1, 0}});
+    (void)system.edits().separate(chain.lower[103], chain.upper[104]);
+    (void)system.step(0.01);
+    (void)system.edits().separate(chain.lower[95], chain.upper[96]);
+    (void)system.edits().combine(chain.lower[103], chain.upper[104]);
+    if (renewed) (void)system.snapshot();
+    (void)system.step(0.01);
+    EXPECT_EQ(system.islands().size(), renewed ? 2u : 1u);
+    fall[renewed] = system.particles().velocity(chain.upper[96]).y;
+  }
+  EXPECT_LT(fall[1], -0.01);
+  EXPECT_NEAR(fall[0], fall[1], 1e-9);
+}
+
 TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
   const auto make = [](System& system, ConstraintId& rope) {
     auto chain = scenes::make_chain(system, {.links = 300});
@@ -262,6 +282,124 @@ TEST(FollowingIsland, of_loose_bodies_replays_to_the_same_bits_from_a_snapshot_a
     const Recording recording = world.system.record().stop();
     System other;
     EXPECT_EQ(other.record().replay(recording), std::nullopt);
+  }
+}
+
+TEST(FollowingIsland, of_loose_bodies_replays_to_the_same_bits_if_snapshots_were_taken_meanwhile) {
+  BusyBoxes world(160, 4);
+  for (int i = 0; i < 10; ++i) (void)world.step();
+  world.system.record().start();
+  for (int i = 0; i < 20; ++i) {
+    (void)world.step();
+    if (i % 7 == 3) (void)world.system.snapshot();
+    if (i % 7 == 5) world.system.edits().begin(), (void)world.system.snapshot(), (void)world.system.edits().end();
+  }
+  EXPECT_FALSE(world.system.edits().undo()) << "a snapshot is no edit";
+  const Recording recording = world.system.record().stop();
+  System other;
+  EXPECT_EQ(other.record().replay(recording), std::nullopt);
+}
+
+/// Boxes and a nailed chain, among which ropes, springs, grips and, on request, cuts come and go. What happens next depends
+/// on `now` alone, so that a restored system can go on in the same way.
+struct RandomScene {
+  System system;
+  struct Now {
+    std::vector<BodyId> boxes;
+    std::vector<ParticleId> knots;  ///< of the boxes, then the upper ends of the links
+    scenes::Chain chain;
+    std::vector<ConstraintId> ropes;
+    std::vector<BondId> springs;
+    std::vector<GripId> grips;
+    std::vector<std::size_t> cuts;
+    std::mt19937 random;
+  } now;
+
+  explicit RandomScene(IntegrationMode mode) : system({.gravity = {0, -1, 0}, .mode = mode, .threads = 1}) {}
+  void build(unsigned seed) {
+    now.random.seed(seed);
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 place{1.0 * (i % 3), 1.0 * (i / 3 % 3), 1.0 * (i / 9)};
+      now.boxes.push_back(system.bodies().create(Box{{0.5, 0.5, 0.5}}, {.position = place,
+                                                                        .velocity = {0.02 * (i % 4), 0.01 * (i % 5), 0},
+                                                                        .spin = {0.1 * (i % 5), 0, 0.1 * (i % 3)},
+                                                                        .attachments = {{0.25, 0.25, 0.25}}}));
+      now.knots.push_back(system.bodies().attachments(now.boxes.back())[0]);
+    }
+    now.chain = scenes::make_chain(system, {.links = 60, .top = {-1.5, 3, 0}, .direction = {0, -0.8, 0.6}});
+    now.knots.insert(now.knots.end(), now.chain.upper.begin(), now.chain.upper.end());
+  }
+  template <class T>
+  T take_any(std::vector<T>& list) {
+    std::swap(list[now.random() % list.size()], list.back());
+    const T taken = list.back();
+    list.pop_back();
+    return taken;
+  }
+  void change(bool cuts) {
+    const ParticleId p = now.knots[now.random() % now.knots.size()], q = now.knots[now.random() % now.knots.size()];
+    const double apart = norm(system.particles().position(p) - system.particles().position(q));
+    const std::size_t link = 1 + now.random() % 59, choice = now.random() % (cuts ? 12 : 10);
+    const bool may_tie = system.particles().body(p) != system.particles().body(q) && apart > 0.1 && apart < 1.6;
+    if (choice < 3 && may_tie)
+      now.ropes.push_back(system.joints().create(
+          DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = (1 + 0.02 * (link % 3)) * apart}));
+    else if (choice < 5 && !now.ropes.empty())
+      system.joints().destroy(take_any(now.ropes));
+    else if (choice == 5 && may_tie)
+      now.springs.push_back(system.bonds().create(p, q, SpringLaw{.stiffness = 5, .damping = 0.1, .length = 1}));
+    else if (choice == 6 && !now.springs.empty())
+      system.bonds().destroy(take_any(now.springs));
+    else if (choice == 7)
+      now.grips.push_back(system.grips().create(now.boxes[link % 27], {}, system.particles().position(p)));
+    else if (choice == 8 && !now.grips.empty())
+      system.grips().destroy(take_any(now.grips));
+    else if (choice == 9 && !now.ropes.empty())
+      system.joints().set_active(now.ropes[link % now.ropes.size()], link % 2);
+    else if (choice == 10 && now.cuts.size() < 3 && system.particles().ring(now.chain.upper[link]).size() > 1)
+      (void)system.edits().separate(now.chain.lower[link - 1], now.chain.upper[link]), now.cuts.push_back(link);
+    else if (choice == 11 && !now.cuts.empty())
+      (void)system.edits().combine(now.chain.lower[now.cuts.back() - 1], now.chain.upper[now.cuts.back()]),
+          now.cuts.pop_back();
+  }
+  void step(bool cuts = false) {
+    for (std::size_t i = 1 + now.random() % 6; i > 0; --i) change(cuts);
+    (void)system.step(1.0 / 240);
+  }
+};
+
+TEST(FollowingIsland, of_random_scenes_continues_to_the_same_bits_from_a_snapshot_at_any_step) {
+  for (unsigned seed = 1; seed <= sampled(60u); ++seed) {
+    const auto mode = seed % 3 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
+    RandomScene scene(mode);
+    scene.build(seed);
+    std::mt19937 random(seed);
+    for (int round = 0; round < 6; ++round) {
+      for (std::size_t i = random() % 15; i > 0; --i) scene.step(true);
+      RandomScene other(mode);
+      other.system.restore(scene.system.snapshot());
+      other.now = scene.now;
+      for (int step = 0; step < 10; ++step) {
+        scene.step(true), other.step(true);
+        ASSERT_EQ(scene.system.state_hash(), other.system.state_hash()) << "seed " << seed << " step " << step;
+      }
+      ASSERT_EQ(scene.system.validate(), std::vector<std::string>{}) << "seed " << seed;
+    }
+  }
+}
+
+TEST(FollowingIsland, of_random_scenes_gives_what_islands_that_are_built_anew_give) {
+  for (unsigned seed = 1; seed <= sampled(60u); ++seed) {
+    const auto mode = seed % 3 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
+    RandomScene followed(mode), renewed(mode);
+    followed.build(seed), renewed.build(seed);
+    for (int step = 0; step < 60; ++step) {
+      (void)renewed.system.snapshot();  // builds all islands anew
+      followed.step(), renewed.step();
+      for (const ParticleId p : followed.now.knots)
+        ASSERT_LT(norm(followed.system.particles().position(p) - renewed.system.particles().position(p)), 1e-7)
+            << "seed " << seed << " step " << step;
+    }
   }
 }
 
