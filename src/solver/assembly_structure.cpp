@@ -110,7 +110,9 @@ class Near {
   }
   template <class Nodes>
   bool has_any(const Nodes& nodes) const {
-    return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return mark_[node] != far; });
+    for (const std::uint32_t node : nodes)  // a call of an algorithm took longer than these few comparisons
+      if (mark_[node] != far) return true;
+    return false;
   }
 
  private:
@@ -204,8 +206,10 @@ void Assembly::follow(Problem& problem) {
   weigh(problem);
   const auto has_moved = [&](std::uint32_t node) { return pattern_->has_moved(node_unknown_[node]); };
   place_items(problem, [&](const auto& nodes, std::uint32_t unknown) {
-    return std::any_of(nodes.begin(), nodes.end(), has_moved) ||
-           (unknown != CouplingGraph::no_unknown && pattern_->has_moved(unknown));
+    if (unknown != CouplingGraph::no_unknown && pattern_->has_moved(unknown)) return true;
+    for (const std::uint32_t node : nodes)
+      if (has_moved(node)) return true;
+    return false;
   });
   own_pattern_->forget_moves();
   problem.note_compiled();

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace iota::solver {
 
@@ -111,16 +113,21 @@ void Wheels::find(const Problem& problem) {
   wheel_of_.assign(problem.size(), static_cast<std::uint32_t>(wheels_.size()));
   for (std::uint32_t k = 0; k < wheels_.size(); ++k)
     for (const std::uint32_t i : wheels_[k].points()) wheel_of_[i] = k;
-  for (std::uint32_t k = 0; k < problem.mass_couplings.size(); ++k) {
-    const auto& c = problem.mass_couplings[k];
-    const std::uint32_t wheel = std::min(wheel_of_[c.a], wheel_of_[c.b]);
-    if (wheel < wheels_.size()) couplings_.push_back({wheel, k});
-  }
-  std::sort(couplings_.begin(), couplings_.end());
-  auto next = couplings_.begin();
+  // Counted before they are placed: in a chain with a loop nearly every rod is a wheel, and to sort the list took longer
+  // than to find the wheels.
+  const auto wheel_with = [&](const auto& c) { return std::min(wheel_of_[c.a], wheel_of_[c.b]); };
+  std::vector<std::uint32_t>& end = end_of_couplings_;
+  end.assign(wheels_.size() + 1, 0);
+  for (const auto& c : problem.mass_couplings) ++end[wheel_with(c)];  // the last counts those of no wheel
+  end.back() = 0;
+  std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
+  couplings_.resize(end.back());
+  for (std::uint32_t k = 0; k < problem.mass_couplings.size(); ++k)
+    if (const std::uint32_t wheel = wheel_with(problem.mass_couplings[k]); wheel < wheels_.size())
+      couplings_[end[wheel]++] = k;
+  auto next = couplings_.cbegin();
   for (std::uint32_t k = 0; k < wheels_.size(); ++k) {
-    const auto first = next;
-    while (next != couplings_.end() && next->first == k) ++next;
+    const auto first = std::exchange(next, couplings_.cbegin() + end[k]);
     wheels_[k].couplings = {first, next};
   }
 }
@@ -129,7 +136,7 @@ void Wheels::find(const Problem& problem) {
 template <class Visit>
 void Wheels::for_each_mass(const Problem& problem, const Wheel& wheel, Visit visit) {
   for (std::size_t i = 0; i < wheel.own_count; ++i) visit(problem.mass[wheel.own[i]], i, wheel.own[i]);
-  for (const auto& [_, k] : wheel.couplings) {
+  for (const std::uint32_t k : wheel.couplings) {
     const auto& c = problem.mass_couplings[k];
     if (const std::size_t i = wheel.place_of(c.a); i < wheel.own_count) visit(c.mass, i, c.b);
     if (const std::size_t i = wheel.place_of(c.b); i < wheel.own_count) visit(c.mass, i, c.a);

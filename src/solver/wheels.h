@@ -42,11 +42,11 @@ class Wheels {
     std::array<std::uint32_t, 2> axis;
     std::array<std::uint32_t, most_nodes> own;
     std::uint32_t own_count = 0;
-    std::span<const std::pair<std::uint32_t, std::uint32_t>> couplings;  // of its own points' masses, the second
-    std::array<Vec3, most_nodes> turning;                                // e at the end of the step
-    double lost = 0;                                                     // kg m^2/s
-    double inertia = 0;                                                  // kg m^2
-    double turn = 0;                                                     // rad/s
+    std::span<const std::uint32_t> couplings;  // of its own points' masses, in Problem::mass_couplings
+    std::array<Vec3, most_nodes> turning;      // e at the end of the step
+    double lost = 0;                           // kg m^2/s
+    double inertia = 0;                        // kg m^2
+    double turn = 0;                           // rad/s
 
     std::span<const std::uint32_t> points() const { return {own.data(), own_count}; }
     /// Among its own points; `own_count` or more if it is another one.
@@ -62,11 +62,11 @@ class Wheels {
 
   bool is_known_ = false;
   std::vector<Wheel> wheels_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings_;  // wheel, place of the coupling; in order
+  std::vector<std::uint32_t> couplings_;  // of the wheels, one after the other
   // Room to find them.
   std::unique_ptr<Neighbors> neighbors_;
   std::vector<std::uint8_t> is_own_;
-  std::vector<std::uint32_t> wheel_of_;
+  std::vector<std::uint32_t> wheel_of_, end_of_couplings_;
   std::vector<double> row_masses_;
 };
 
