@@ -77,40 +77,5 @@ STILL(from_a_snapshot);
 STILL(particles);
 STILL(fixed);
 
-/// Loose boxes in a row, of which a share of the neighbors is tied by a rope or parted in each step.
-void tie_and_part(benchmark::State& state) {
-  const int count = static_cast<int>(state.range(0)), changes = static_cast<int>(state.range(1));
-  System system({.gravity = {}, .mode = IntegrationMode::robust, .threads = 1});
-  std::vector<ParticleId> corners;
-  for (int i = 0; i < count; ++i) {
-    const BodyId box =
-        system.bodies().create(Box{{1, 1, 1}}, {.position = {2.0 * i, 0, 0}, .attachments = {{0.5, 0.5, 0.5}}});
-    corners.push_back(system.bodies().attachments(box)[0]);
-    system.bodies().set_angular_velocity(box, {0.3, 0.2 * (i % 5), 1});
-  }
-  std::mt19937 random(1);
-  std::vector<ConstraintId> ropes(static_cast<std::size_t>(count) - 1);
-  StepTimes times;
-  const TimedSteps timed(times);
-  for (auto _ : state) {
-    for (int i = 0; i < changes; ++i) {
-      const std::size_t pair = random() % ropes.size();
-      if (const ConstraintId rope = std::exchange(ropes[pair], {}); rope != ConstraintId{}) {
-        system.joints().destroy(rope);
-        continue;
-      }
-      ropes[pair] = system.joints().create(DistanceSpec{ConstraintKind::rope, corners[pair], corners[pair + 1], 1.9});
-    }
-    (void)system.step(1.0 / 120);
-  }
-  state.counters["share_of_islands"] = times.analyze / times.total();
-}
-BENCHMARK(tie_and_part)
-    ->Name("ties")
-    ->Args({1000, 0})
-    ->Args({1000, 100})
-    ->Iterations(60)
-    ->Unit(benchmark::kMillisecond);
-
 }  // namespace
 }  // namespace iota::bench
