@@ -2,6 +2,8 @@
 #pragma once
 
 #include <iota/ids.h>
+#include <iota/joint_options.h>
+#include <iota/kinds.h>
 #include <iota/shapes.h>
 #include <iota/vec3.h>
 
@@ -14,74 +16,6 @@
 #include <vector>
 
 namespace iota {
-
-/// Kinds of constraints. Nails and hinges are not in the list: a nail belongs to a particle, a hinge is a shared
-/// particle (`combine`).
-enum class ConstraintKind : std::uint8_t {
-  ball,         ///< a point of a stays at a point of b
-  universal,    ///< ball, and an axis of a stays at right angles to an axis of b
-  revolute,     ///< ball, and a common axis: one angle
-  cylindrical,  ///< a common axis along which b also slides: an angle and a slide
-  prismatic,    ///< b slides along an axis of a without turning
-  orientation,  ///< b does not turn against a, but moves freely
-  weld,         ///< b neither turns nor moves against a
-  rod,          ///< two particles keep their distance
-  rope,         ///< the distance of two particles is at most a length
-  path,         ///< a particle stays on a curve: one slide, the length along it
-  surface,      ///< a particle stays on a surface
-  inside,       ///< a particle stays on the inner side of a surface
-  outside,      ///< a particle stays on the outer side of a surface
-  touching,     ///< two surfaces stay in touch
-  apart,        ///< two surfaces do not overlap
-  span,         ///< makes the distance of two particles a slide, for limits, motors, springs and couplings
-  coupling,     ///< a weighted sum of coordinates is constant: gears, racks, belts, differentials
-  tackle,       ///< a weighted sum of coordinates has an upper bound: a rope over several points
-  screw,        ///< cylindrical; each turn slides by the lead
-  planar,       ///< a moves in a plane of b and turns about the plane's normal
-};
-
-/// The coordinates that joints have: the angle about the axis (revolute, cylindrical, screw, planar; of a universal joint about a's axis),
-/// the slide along it (prismatic, cylindrical, screw), along a path or of a span, and the second angle of a universal joint, about b's axis.
-/// All are of a relative to b, in the positive sense of the axis, and zero when the joint is made.
-enum class JointCoordinate : std::uint8_t { angle, slide, second_angle };
-inline constexpr std::array joint_coordinates{JointCoordinate::angle, JointCoordinate::slide,
-                                              JointCoordinate::second_angle};
-
-bool has_coordinate(ConstraintKind, JointCoordinate);
-
-/// Limits, motor, friction and spring of a coordinate. Angles: rad, rad/s, N m, N m/rad, N m s/rad; slides: m, m/s, N, N/m, N s/m.
-struct CoordinateOptions {
-  double lower = -std::numeric_limits<double>::infinity();  ///< stops, inelastic
-  double upper = std::numeric_limits<double>::infinity();
-  double motor_speed = 0;
-  double motor_max = 0;  ///< largest torque or force of the motor; 0: none. With speed 0 it is a brake
-  /// Target of the motor, rad or m; NaN: none. With a target, motor_speed is the largest speed; near the target the
-  /// motor slows down such that the distance to it falls as exp(-t / servo_time), servo_time in s.
-  double servo = std::numeric_limits<double>::quiet_NaN();
-  double servo_time = 0.05;
-  double friction = 0;   ///< dry: up to this torque or force against any motion
-  double stiffness = 0;  ///< of a spring towards `rest`
-  double damping = 0;
-  double rest = 0;
-  /// Coulomb friction, for the slide of a prismatic or cylindrical joint: up to this times the reaction across the axis.
-  double friction_coefficient = 0;
-};
-
-/// Loads above which a constraint breaks: it becomes inactive, and the step's report names it.
-struct BreakLimits {
-  double force = std::numeric_limits<double>::infinity();   ///< N
-  double torque = std::numeric_limits<double>::infinity();  ///< N m, about the constraint's place
-};
-
-/// Makes a joint, rod or rope yield in the directions that it holds, like a spring. Zero: exact.
-struct Compliance {
-  double linear = 0;   ///< m/N
-  double angular = 0;  ///< rad/(N m)
-  double time = 0;     ///< relaxation time: damping over stiffness, s
-
-  friend bool operator==(const Compliance&, const Compliance&) = default;
-  bool is_exact() const { return linear == 0 && angular == 0; }
-};
 
 /// A joint between bodies a and b, or between a and the world where b is null. Relative position and orientation are
 /// the present ones of the bodies.
@@ -102,11 +36,6 @@ struct DistanceSpec {
   ParticleId p, q;
   double length = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: the distance now
   BreakLimits breaks;
-};
-
-enum class CurveKind : std::uint8_t {
-  spline,    ///< cubic, through the points
-  polyline,  ///< straight pieces with rounded corners
 };
 
 /// The distance of two particles, which may be of one body.
@@ -150,13 +79,6 @@ struct PathSpec {
   /// Along the path from its first point, m. The default limits of an open path are its ends.
   CoordinateOptions slide;
   BreakLimits breaks;
-};
-
-/// phi(r) = 0, with phi negative inside and, near the surface, about the distance in m. Called during a step, on any
-/// thread; it must not use the system. Not part of snapshots.
-struct SurfaceFunction {
-  std::function<double(const Vec3&)> phi;
-  double size = 1;  ///< of the surface, m
 };
 
 /// The surface of a shape (but a Mesh), or of a function, with its frame; fixed in a body or in the world.

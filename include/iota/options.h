@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of systems and the kinds of bodies: what the engine's own data need of the public interface.
 #pragma once
 
+#include <iota/kinds.h>
 #include <iota/vec3.h>
 
-#include <cstdint>
-
 namespace iota {
-
-enum class BodyKind : std::uint8_t {
-  dynamic,
-  static_,   ///< never moves
-  scripted,  ///< moved by the script (set_position, set_pose), infinite mass
-  inactive,  ///< kept, but neither stepped nor drawn
-  resting,   ///< dynamic, asleep with its whole articulate; wakes when touched, see RestOptions
-};
-
-/// Modes from plausible to accurate; can be changed at any time. docs/solver.md lists cost and accuracy of each.
-enum class IntegrationMode : std::uint8_t {
-  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for distant things
-  robust,          ///< backward Euler: never fails, never gains energy, dissipates
-  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` if a step fails
-  accurate,        ///< fifth order, in sub-steps whose estimated errors stay below the tolerance
-};
 
 /// Articulates tied by bonds and constraints fall asleep together when no particle of them has been faster than `speed`
 /// for `after` seconds: they are then `resting`, do not move, and are not solved. An edit, an assigned velocity, a

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <iota/constraints.h>
 #include <iota/ids.h>
+#include <iota/kinds.h>
 #include <iota/vec3.h>
 #include <iota/view_event.h>
 

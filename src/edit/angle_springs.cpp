@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/angle_springs.h"
 
-#include "edit/checks.h"
+#include "math/checks.h"
 
 #include <numbers>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/attributes.h"
 
-#include "edit/checks.h"
+#include "math/checks.h"
 
 namespace iota::edit {
 

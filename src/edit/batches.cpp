@@ -3,6 +3,8 @@
 
 #include "edit/settle.h"
 
+#include <iota/reports.h>
+
 namespace iota::edit {
 
 void apply(Editor& e, const BeginEdit&) {

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/bodies.h"
 
-#include "edit/checks.h"
 #include "edit/constraints.h"
 #include "edit/nails.h"
 #include "edit/settle.h"
 #include "ingredient/followers.h"
+#include "math/checks.h"
 #include "math/mat3.h"
 #include "model/obstacle.h"
 #include "model/outline.h"
 #include "model/solid.h"
 #include "shape/mesh.h"
+#include "shape/shape.h"
+
+#include <iota/reports.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/body_forces.h"
 
-#include "edit/checks.h"
 #include "edit/law_checks.h"
 #include "edit/particles.h"
+#include "math/checks.h"
 #include "math/mat3.h"
 
 namespace iota::edit {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/combine.h"
 
-#include "edit/checks.h"
 #include "edit/settle.h"
+#include "math/checks.h"
+
+#include <iota/reports.h>
 
 namespace iota::edit {
 

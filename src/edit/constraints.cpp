@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/constraints.h"
 
-#include "edit/checks.h"
 #include "ingredient/joint_readings.h"
 #include "ingredient/joint_rows.h"
 #include "ingredient/pin_form.h"
+#include "math/checks.h"
 #include "math/mat3.h"
+#include "shape/shape.h"
 
 #include <cmath>
 

@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/constraints.h>
+
 namespace iota::edit {
 
 struct CreateJoint {

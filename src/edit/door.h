@@ -3,6 +3,8 @@
 
 #include "edit/commands.h"
 
+#include <iota/reports.h>
+
 #include <functional>
 #include <utility>
 

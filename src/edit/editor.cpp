@@ -16,15 +16,6 @@ constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'C', ingredients}, "
 
 }  // namespace
 
-void refuse_null(std::string_view kind) {
-  throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-}
-
-void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor) {
-  if (survivor) throw StaleIdError(text(kind, " ", slot, " is gone: it was absorbed by ", kind, " ", *survivor));
-  throw StaleIdError(text(kind, " ", slot, " is gone: it was destroyed"));
-}
-
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }

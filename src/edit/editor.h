@@ -34,23 +34,12 @@ struct LastEnumerator<CurveKind> : std::integral_constant<CurveKind, CurveKind::
 
 /// Everything that changes a system is a command: a struct of serializable fields, and a function `apply` that checks
 /// the fields, throws before any change, or changes the model. Commands are queued during a step, recorded and replayed
-/// (door.h). A new command is declared and defined in the files of its noun, and added to commands.h.
+/// (door.h). A new command is declared and defined in the files of its noun, and added to commands.h, or it is an
+/// ingredient's own.
 namespace iota::edit {
 
-[[noreturn]] void refuse_null(std::string_view kind);
-/// survivor: the slot of the object that absorbed it.
-[[noreturn]] void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor);
-
-/// Slot of a living thing. Throws StaleIdError, which says what became of it.
-template <KindName kind>
-std::uint32_t require(const model::Model& model, Id<kind> id) {
-  if (model::table_of(model, id).contains(id)) return id.slot;
-  if (!id) refuse_null(kind.text);
-  std::optional<std::uint32_t> survivor;
-  if constexpr (requires { model.survivor_of(id); })
-    if (const auto other = model.survivor_of(id)) survivor = other->slot;
-  refuse_stale(kind.text, id.slot, survivor);
-}
+using ingredient::Destroy;
+using model::require;
 
 /// The state on which commands act.
 struct Editor {
@@ -96,12 +85,6 @@ struct Editor {
 
  private:
   std::uint64_t keys_saved_below_ = 0;  // of functions in the latest snapshot
-};
-
-template <class IdType>
-struct Destroy {
-  static constexpr std::string_view queued_as = "destroy";
-  IdType id;
 };
 
 }  // namespace iota::edit

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/emitters.h"
 
-#include "edit/checks.h"
+#include "math/checks.h"
 #include "read/attributes.h"
+#include "shape/shape.h"
 
 namespace iota::edit {
 

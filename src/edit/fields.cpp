@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/fields.h"
 
-#include "edit/checks.h"
 #include "edit/law_checks.h"
+#include "math/checks.h"
 
 #include <cmath>
 

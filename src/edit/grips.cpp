@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/grips.h"
 
-#include "edit/checks.h"
 #include "ingredient/grips.h"
+#include "math/checks.h"
 #include "math/mat3.h"
 
 namespace iota::edit {

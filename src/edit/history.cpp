@@ -3,6 +3,8 @@
 
 #include "ingredient/quantities.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 
 namespace iota::edit {
@@ -46,29 +48,32 @@ void add_report(RestructureReport& sum, const RestructureReport& report) {
 
 Batch::Batch(const model::Model& model, Snapshot start)
     : before(std::move(start)),
+      report_(std::make_unique<RestructureReport>()),
       bodies_(model.bodies.ids()),
       particles_(model.particles.ids()),
       version_(model.structure_version),
       edit_energy_(ingredient::energy_of_edits(model)) {
-  report_.articulates_before = model.articulate_count();
+  report_->articulates_before = model.articulate_count();
 }
 
+Batch::~Batch() = default;
+
 void Batch::add(const RestructureReport& report) {
-  const std::uint32_t articulates = report_.articulates_before;
-  add_report(report_, report);
-  report_.articulates_before = articulates;
+  const std::uint32_t articulates = report_->articulates_before;
+  add_report(*report_, report);
+  report_->articulates_before = articulates;
 }
 
 RestructureReport Batch::finish(const model::Model& model) {
-  report_.changed = report_.changed || model.structure_version != version_;
-  note_changes(bodies_, model.bodies.ids(), report_.created_bodies, report_.destroyed_bodies);
-  note_changes(particles_, model.particles.ids(), report_.created_particles, report_.destroyed_particles);
-  forget_absorbed(report_.destroyed_bodies, report_.absorbed_bodies);
-  forget_absorbed(report_.destroyed_particles, report_.absorbed_particles);
-  report_.articulates_after = model.articulate_count();
-  report_.structure_version = model.structure_version;
-  report_.energy_change = ingredient::energy_of_edits(model) - edit_energy_;
-  return std::move(report_);
+  report_->changed = report_->changed || model.structure_version != version_;
+  note_changes(bodies_, model.bodies.ids(), report_->created_bodies, report_->destroyed_bodies);
+  note_changes(particles_, model.particles.ids(), report_->created_particles, report_->destroyed_particles);
+  forget_absorbed(report_->destroyed_bodies, report_->absorbed_bodies);
+  forget_absorbed(report_->destroyed_particles, report_->absorbed_particles);
+  report_->articulates_after = model.articulate_count();
+  report_->structure_version = model.structure_version;
+  report_->energy_change = ingredient::energy_of_edits(model) - edit_energy_;
+  return std::move(*report_);
 }
 
 void History::push(Snapshot state) {

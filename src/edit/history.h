@@ -4,9 +4,14 @@
 #include "ingredient/model.h"
 
 #include <iota/record.h>
-#include <iota/reports.h>
 
 #include <deque>
+#include <memory>
+#include <optional>
+
+namespace iota {
+struct RestructureReport;
+}
 
 namespace iota::edit {
 
@@ -14,6 +19,7 @@ namespace iota::edit {
 class Batch {
  public:
   Batch(const model::Model&, Snapshot before);
+  ~Batch();
 
   void add(const RestructureReport&);
   /// One report of all edits.
@@ -24,7 +30,7 @@ class Batch {
   Snapshot before;
 
  private:
-  RestructureReport report_;
+  std::unique_ptr<RestructureReport> report_;
   std::vector<BodyId> bodies_;  // alive at the start, in order of slots
   std::vector<ParticleId> particles_;
   std::uint32_t version_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/joint_pose.h"
 
-#include "edit/checks.h"
 #include "edit/constraints.h"
 #include "ingredient/joint_readings.h"
+#include "math/checks.h"
 #include "math/mat3.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edit/checks.h"
 #include "ingredient/model.h"
 #include "laws/pair_laws.h"
+#include "math/checks.h"
 
 #include <iota/forces.h>
 

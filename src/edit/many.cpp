@@ -7,12 +7,14 @@
 #include "edit/bodies.h"
 #include "edit/body_forces.h"
 #include "edit/bonds.h"
-#include "edit/checks.h"
 #include "edit/combine.h"
 #include "edit/constraints.h"
 #include "edit/particles.h"
+#include "math/checks.h"
 #include "math/mat3.h"
 #include "model/solid.h"
+
+#include <iota/reports.h>
 
 #include <algorithm>
 #include <utility>

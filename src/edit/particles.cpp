@@ -2,10 +2,10 @@
 #include "edit/particles.h"
 
 #include "edit/bodies.h"
-#include "edit/checks.h"
 #include "edit/constraints.h"
 #include "edit/nails.h"
 #include "ingredient/followers.h"
+#include "math/checks.h"
 #include "model/restructure.h"
 
 #include <array>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/separate.h"
 
-#include "edit/checks.h"
 #include "edit/combine.h"
 #include "edit/settle.h"
+#include "math/checks.h"
+
+#include <iota/reports.h>
 
 namespace iota::edit {
 

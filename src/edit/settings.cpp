@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/settings.h"
 
-#include "edit/checks.h"
 #include "edit/law_checks.h"
+#include "math/checks.h"
 
 #include <iota/solver.h>
 
@@ -27,7 +27,7 @@ void apply(Editor& e, const SetBudget& c) {
   if (c.budget.iterations < 0)
     throw std::invalid_argument(text("budget.iterations must be zero or more, got ", c.budget.iterations));
   require_not_negative("budget.seconds", c.budget.seconds);
-  e.model.budget = c.budget;
+  e.model.budget_iterations = c.budget.iterations, e.model.budget_seconds = c.budget.seconds;
 }
 
 void apply(Editor& e, const SetSolver& c) {

@@ -3,6 +3,8 @@
 
 #include "edit/editor.h"
 
+#include <iota/options.h>
+
 /// Commands for settings of the system.
 namespace iota::edit {
 

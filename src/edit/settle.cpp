@@ -6,6 +6,8 @@
 #include "math/mat3.h"
 #include "model/solid.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -6,6 +6,8 @@
 #include "ingredient/scope.h"
 #include "model/restructure.h"
 
+#include <iota/reports.h>
+
 #include <array>
 #include <span>
 #include <vector>

@@ -7,6 +7,8 @@
 #include "math/text.h"
 #include "solver/forces/force_list.h"
 
+#include <iota/reports.h>
+
 #include <cmath>
 
 namespace iota::held {

@@ -5,6 +5,8 @@
 #include "held/held_forces.h"
 #include "laws/force_limit.h"
 
+#include <iota/reports.h>
+
 #include <cmath>
 
 namespace iota::held {

@@ -3,6 +3,8 @@
 
 #include "ingredient/quantities.h"
 
+#include <iota/reports.h>
+
 #include <cmath>
 
 namespace iota::held {

@@ -6,7 +6,10 @@
 #include "held/functions.h"
 #include "held/particle_sets.h"
 
-#include <iota/reports.h>
+namespace iota {
+struct Energy;
+struct StepReport;
+}  // namespace iota
 
 namespace iota::held {
 

@@ -3,10 +3,12 @@
 
 #include "geometry/curve.h"
 #include "model/structure.h"
-#include "shape/shape.h"
+#include "shape/data.h"
 #include "shape/surface.h"
 
-#include <iota/constraints.h>
+#include <iota/ids.h>
+#include <iota/joint_options.h>
+#include <iota/kinds.h>
 
 #include <array>
 #include <cstdint>
@@ -14,6 +16,15 @@
 #include <span>
 #include <string>
 #include <vector>
+
+namespace iota {
+struct JointSpec;
+struct DistanceSpec;
+struct PathSpec;
+struct SpanSpec;
+struct CouplingSpec;
+struct TackleSpec;
+}  // namespace iota
 
 namespace iota::ingredient {
 

@@ -4,6 +4,8 @@
 #include "ingredient/joint_forms.h"
 #include "ingredient/joint_frames.h"
 
+#include <iota/constraints.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>

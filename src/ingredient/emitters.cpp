@@ -4,6 +4,7 @@
 #include "ingredient/model.h"
 #include "ingredient/outcome.h"
 #include "math/mat3.h"
+#include "shape/shape.h"
 #include "shape/traits.h"
 
 #include <iota/scene.h>

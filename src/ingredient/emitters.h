@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ingredient/ingredient.h"
-#include "shape/shape.h"
+#include "shape/data.h"
 
 #include <iota/attributes.h>
 

@@ -14,6 +14,8 @@
 #include <concepts>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -28,6 +30,13 @@ using model::Structure;
 using solver::Problem;
 using Visit = Structure::Visit;
 struct Outcome;
+
+/// The command that destroys the object of an id.
+template <class IdType>
+struct Destroy {
+  static constexpr std::string_view queued_as = "destroy";
+  IdType id;
+};
 
 /// The default functions of an ingredient, which do nothing. An ingredient inherits them and hides those that it
 /// defines. Static functions are for the whole model. The others are for one island: an ingredient object belongs to an
@@ -45,6 +54,9 @@ struct NoAnswers {
     template <class Archive>
     void archive(Archive&, const Structure&) {}
   };
+  /// The commands that change its tables and nothing else, each with a function `apply(Model&, const C&)`. The other
+  /// commands are in src/edit.
+  using Commands = std::tuple<>;
   /// Moves data that are not saved from the replaced model, and rebuilds data that are derived from tables.
   static void take_over(Model& /*restored*/, Model& /*before*/) {}
   static void validate(const Model&, model::Audit&) {}
@@ -201,6 +213,7 @@ concept ModelIngredient = requires(
     std::vector<std::string>& notes, Visit visit, Structure::VisitLine visit_line, const SceneView& view,
     SceneChanges& changes, DrawnBody& drawn, double h, Outcome& outcome) {
   typename I::Tables;
+  typename I::Commands;
   I::take_over(model, model);
   I::validate(seen, audit);
   I::check_links(seen, audit);

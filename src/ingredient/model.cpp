@@ -2,6 +2,8 @@
 // A model calls all of its ingredients; none of them is named here.
 #include "ingredient/model.h"
 
+#include "base/text.h"
+
 #include <algorithm>
 
 namespace iota::model {
@@ -145,6 +147,15 @@ std::uint64_t Model::hash() const {
       [&](std::uint32_t slot, const Particle& p) { h.value(slot), h.value(p.body), h.value(p.ring), h.value(p.mass); });
   bodies.for_each([&](std::uint32_t slot, const Body& b) { h.value(slot), h.value(b.articulate), h.value(b.count); });
   return h.result();
+}
+
+void refuse_null(std::string_view kind) {
+  throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
+}
+
+void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor) {
+  if (survivor) throw StaleIdError(text(kind, " ", slot, " is gone: it was absorbed by ", kind, " ", *survivor));
+  throw StaleIdError(text(kind, " ", slot, " is gone: it was destroyed"));
 }
 
 }  // namespace iota::model

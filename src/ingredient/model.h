@@ -4,11 +4,13 @@
 #include "ingredient/ingredient_list.h"
 #include "model/structure.h"
 
-#include <iota/options.h>
+#include <iota/kinds.h>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -34,8 +36,9 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   IntegrationMode mode = IntegrationMode::energy_keeping;
   /// Whether forces are those at the end of a step (backward Euler), not in its middle.
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
-  double tolerance = 1e-4;  ///< of mode accurate, see System::tolerance
-  StepBudget budget;
+  double tolerance = 1e-4;    ///< of mode accurate, see System::tolerance
+  int budget_iterations = 0;  ///< see StepBudget
+  double budget_seconds = 0;
   double damping = 0;
   /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};
@@ -89,7 +92,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
 template <class Archive>
 void Model::archive(Archive& ar) {
   Structure::archive(ar);
-  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget.iterations), ar.value(budget.seconds);
+  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget_iterations), ar.value(budget_seconds);
   ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step);
   ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy),
@@ -110,6 +113,21 @@ const auto& table_of(const Model& model, IdType id) {
     return static_cast<const Own&>(model).table_of(id);
   else
     return table_of<first + 1>(model, id);
+}
+
+[[noreturn]] void refuse_null(std::string_view kind);
+/// survivor: the slot of the object that absorbed it.
+[[noreturn]] void refuse_stale(std::string_view kind, std::uint32_t slot, std::optional<std::uint32_t> survivor);
+
+/// Slot of a living thing. Throws StaleIdError, which says what became of it.
+template <KindName kind>
+std::uint32_t require(const Model& model, Id<kind> id) {
+  if (table_of(model, id).contains(id)) return id.slot;
+  if (!id) refuse_null(kind.text);
+  std::optional<std::uint32_t> survivor;
+  if constexpr (requires { model.survivor_of(id); })
+    if (const auto other = model.survivor_of(id)) survivor = other->slot;
+  refuse_stale(kind.text, id.slot, survivor);
 }
 
 }  // namespace iota::model

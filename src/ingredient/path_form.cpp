@@ -3,6 +3,8 @@
 
 #include "ingredient/joint_frames.h"
 
+#include <iota/constraints.h>
+
 #include <cmath>
 #include <memory>
 #include <span>

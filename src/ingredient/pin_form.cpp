@@ -4,6 +4,8 @@
 #include "ingredient/joint_frames.h"
 #include "math/mat3.h"
 
+#include <iota/constraints.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -2,6 +2,7 @@
 #include "ingredient/surface_form.h"
 
 #include "ingredient/joint_frames.h"
+#include "shape/shape.h"
 
 #include <algorithm>
 #include <array>

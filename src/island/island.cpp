@@ -281,7 +281,7 @@ Island::Tried Island::try_motion(const Model& model, double h, Clock::time_point
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
   problem_.unsolved_steps = memory.unsolved_steps;
   solver::IntegratorSettings settings = settings_of(model);
-  settings.max_iterations = model.budget.iterations, settings.deadline = deadline;
+  settings.max_iterations = model.budget_iterations, settings.deadline = deadline;
   last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();

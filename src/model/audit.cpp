@@ -2,6 +2,7 @@
 #include "model/audit.h"
 
 #include "model/solid.h"
+#include "shape/shape.h"
 
 #include <algorithm>
 #include <cmath>

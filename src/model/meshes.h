@@ -3,12 +3,14 @@
 
 #include "base/archive.h"
 
-#include <iota/shapes.h>
-
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
+
+namespace iota {
+struct Mesh;
+}
 
 namespace iota::model {
 

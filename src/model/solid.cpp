@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/solid.h"
 
+#include "shape/shape.h"
+
 #include <algorithm>
 #include <cmath>
 

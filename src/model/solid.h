@@ -4,6 +4,8 @@
 #include "math/mat3.h"
 #include "model/structure.h"
 
+#include <iota/shapes.h>
+
 namespace iota::model {
 
 /// The pose of a solid's own frame.

@@ -10,17 +10,19 @@
 #include "model/end_table.h"
 #include "model/meshes.h"
 #include "model/scene_log.h"
-#include "shape/shape.h"
+#include "shape/data.h"
 
 #include <iota/ids.h>
-#include <iota/options.h>
+#include <iota/kinds.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace iota {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shape/data.h"
+
 #include <iota/shapes.h>
 
-#include <array>
-#include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,12 +16,8 @@
 /// Functions of any shape: folds over the list. Points and directions are in the shape's frame, lengths in m.
 namespace iota::shape {
 
-/// A shape as plain data, for tables and commands. The object of a key is outside the tables.
-struct Data {
-  std::uint32_t kind = 0, padding = 0;  ///< number in the list
-  std::array<double, 4> sizes{};        ///< in the order of the list, those of three numbers as three
-  std::uint64_t key = 0;                ///< of a mesh, by its content
-};
+class Surface;
+
 Data to_data(const Shape&);
 /// A mesh comes back empty. Throws std::invalid_argument for a number that is not in the list.
 Shape from_data(const Data&);
@@ -33,6 +30,10 @@ std::vector<std::string> size_names(const Shape&);
 void check(const Shape&);
 /// Whether it has a volume, and so mass properties: neither a half-space nor a mesh that is not closed.
 bool is_solid(const Shape&);
+
+/// Its surface, for constraints. Throws std::invalid_argument for sizes that are out of range, and for shapes that cannot
+/// constrain points.
+std::shared_ptr<const Surface> make_surface(const Shape&);
 
 /// Whether a point is inside, or on the surface.
 bool is_within(const Shape&, const Vec3& p);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shape/traits.h"
+#include "shape/level.h"
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -23,9 +22,6 @@ class Surface {
   /// The reason why the surface failed; empty if it has not.
   virtual std::string_view failure() const { return {}; }
 };
-
-/// Throws std::invalid_argument for sizes that are out of range, and for shapes that cannot constrain points.
-std::shared_ptr<const Surface> make_surface(const Shape&);
 
 /// phi given by a function; derivatives by central differences. Once the function has thrown, or was not finite, it is
 /// not called again: phi and its derivatives are then zero, which constrains nothing. (A phi that is not a number would

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "math/mat3.h"
+#include "shape/level.h"
 
 #include <iota/shapes.h>
 
@@ -18,13 +18,6 @@
 /// Shapes: one header each, listed in shape_list.h. All have one frame convention: the origin is at the center, the
 /// long axis is x, sizes are full (except radii). Drawing, mass and constraints use the same shape.
 namespace iota::shape {
-
-/// phi and its derivatives at a point, in the shape's frame.
-struct Level {
-  double value = 0;  ///< m
-  Vec3 gradient;
-  Mat3 hessian;
-};
 
 /// The range of a size.
 enum class Range {

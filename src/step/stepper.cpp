@@ -20,7 +20,7 @@ StepReport Stepper::step(double dt) {
   StepReport report;
   report.dt = dt;
   using Clock = island::Island::Clock;
-  const double seconds = editor_.model.budget.seconds;
+  const double seconds = editor_.model.budget_seconds;
   deadline_ = seconds > 0 && seconds < 1e6
                   ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
                   : Clock::time_point::max();

@@ -108,7 +108,7 @@ IntegrationMode System::mode() const { return core_->model.mode; }
 
 double System::tolerance() const { return core_->model.tolerance; }
 
-StepBudget System::budget() const { return core_->model.budget; }
+StepBudget System::budget() const { return {core_->model.budget_iterations, core_->model.budget_seconds}; }
 
 std::vector<IslandReport> System::islands() const {
   std::vector<IslandReport> reports;

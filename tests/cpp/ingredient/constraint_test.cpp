@@ -6,6 +6,8 @@
 #include "ingredient/tables.h"
 #include "tests/cpp/model/small_model.h"
 
+#include <iota/constraints.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "ingredient/emitters.h"
 
 #include "ingredient/tables.h"
+#include "shape/shape.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,8 @@
 #include "ingredient/joint_forms.h"
 #include "tests/cpp/model/small_model.h"
 
+#include <iota/constraints.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>

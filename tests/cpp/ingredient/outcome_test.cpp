@@ -2,6 +2,7 @@
 #include "ingredient/outcome.h"
 
 #include "ingredient/model.h"
+#include "shape/shape.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 #include "ingredient/surface_form.h"
 
 #include "ingredient/joint_readings.h"
+#include "shape/shape.h"
 #include "tests/cpp/ingredient/joint_values.h"
 
 #include <gtest/gtest.h>

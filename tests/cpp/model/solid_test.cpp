@@ -4,6 +4,7 @@
 #include "ingredient/quantities.h"
 #include "ingredient/tables.h"
 
+#include "shape/shape.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/surface.h"
 
+#include "shape/shape.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows with bounds, springs and holds against closed forms, in both schemes.
+#include "shape/shape.h"
 #include "solver/integrator.h"
 #include "tests/cpp/allocations.h"
 #include "tests/cpp/solver/small_problem.h"

@@ -3,6 +3,8 @@
 // compile here before it has an `example`.
 #include "solver/constraints/constraint_list.h"
 
+#include "shape/shape.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "edit/checks.h"
+#include "math/checks.h"
 
-namespace iota::edit {
+namespace iota {
 
 namespace {
 
@@ -23,4 +23,4 @@ void refuse(std::string_view name, std::string_view condition, const Quaternion&
   refuse_text(name, condition, text("(", value.x, ", ", value.y, ", ", value.z, ", ", value.w, ")"));
 }
 
-}  // namespace iota::edit
+}  // namespace iota

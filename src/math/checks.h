@@ -12,7 +12,7 @@
 #include <string_view>
 
 /// Checks of numbers that a user passes in: they name the argument and its value, and throw std::invalid_argument.
-namespace iota::edit {
+namespace iota {
 
 /// Throws "`name` must `condition`, got `value`". Not inline: a check that passes is a comparison.
 [[noreturn]] void refuse(std::string_view name, std::string_view condition, double value);
@@ -58,8 +58,9 @@ inline void require_color(const Color& color) {
 /// The unit quaternion along q; refuses one without a direction.
 inline Quaternion require_quaternion(std::string_view name, const Quaternion& q) {
   const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  if (!(length2 > 1e-12) || !std::isfinite(length2)) refuse(name, "be a quaternion x y z w that is finite and not zero", q);
+  if (!(length2 > 1e-12) || !std::isfinite(length2))
+    refuse(name, "be a quaternion x y z w that is finite and not zero", q);
   return normalized(q);
 }
 
-}  // namespace iota::edit
+}  // namespace iota
