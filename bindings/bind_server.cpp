@@ -105,7 +105,6 @@ void bind_server(nb::module_& module) {
       "replaced if it is not for one of them or expires soon. Raises OSError if it cannot be written.");
   module.def("fingerprint", &net::fingerprint, "certificate"_a,
              "SHA-256 of a certificate in PEM, as browsers show it. Raises ValueError for other texts.");
-  bind_room(module);
   nb::class_<ServerObject>(module, "Server", server_doc)
       .def(
           "__init__",

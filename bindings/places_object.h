@@ -24,6 +24,4 @@ struct PlacesObject {
   Places places = system->engine.places();
 };
 
-void bind_places(nb::module_&);
-
 }  // namespace iota::bindings

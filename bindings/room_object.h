@@ -54,6 +54,4 @@ struct RoomRecordingObject {
   std::unique_ptr<net::Recording> recording;  ///< null once it has ended
 };
 
-void bind_room(nb::module_& module);
-
 }  // namespace iota::bindings

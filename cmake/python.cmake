@@ -32,12 +32,26 @@ endif()
 find_package(nanobind CONFIG REQUIRED)
 
 file(GLOB_RECURSE iota_binding_sources CONFIGURE_DEPENDS bindings/*.cpp)
+# The functions that bindings/module.cpp calls. The types that others name or add functions to come first.
+set(iota_binders vector shapes reports recording system body particle laws bonds fields grip constraints)
+list(TRANSFORM iota_binders REPLACE ".+" "BIND(\\0)" OUTPUT_VARIABLE iota_first_binders)
+set(iota_other_binders ${iota_binding_sources})
+list(FILTER iota_other_binders INCLUDE REGEX "/bind_[a-z_]+\\.cpp$")
+list(TRANSFORM iota_other_binders REPLACE ".+/bind_([a-z_]+)\\.cpp" "\\1")
+list(REMOVE_ITEM iota_other_binders ${iota_binders})
+list(TRANSFORM iota_other_binders REPLACE ".+" "BIND(\\0)")
+list(JOIN iota_first_binders " " iota_first_binders)
+list(JOIN iota_other_binders " " iota_other_binders)
+file(CONFIGURE OUTPUT bindings/binders_of_folder.h CONTENT "#pragma once
+#define IOTA_FIRST_BINDERS(BIND) @iota_first_binders@
+#define IOTA_OTHER_BINDERS(BIND) @iota_other_binders@
+" @ONLY)
 # NOMINSIZE: nanobind would compile our sources for size; the calls that cross arrays are worth the speed.
 nanobind_add_module(_core NB_STATIC NOMINSIZE NB_SUPPRESS_WARNINGS ${iota_binding_sources})
 iota_compile(_core -O2)
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/python/iota")
 target_compile_definitions(_core PRIVATE IOTA_VERSION="${PROJECT_VERSION}")
-target_include_directories(_core PRIVATE bindings src ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(_core PRIVATE bindings src ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/bindings)
 target_link_libraries(_core PRIVATE iota_engine iota_net)
 add_dependencies(_core iota_protocol_python)
 # Only the module's entry point is seen from outside: nothing of Boost or of ours can clash with another extension.

@@ -4,7 +4,8 @@
 
     tools/check_one_more.py
 
-An ingredient shall cost a header, a source, a test and a line; a joint with a new type of row that row, a test, an example
+An ingredient shall cost a header, a source, a test and a line, and with a handle for users eight files besides its
+tests: also the header and source of its view, its binder, its lines in system.h and its name in Python; a joint with a new type of row that row, a test, an example
 in another, its line in a form and a line in each of four lists; a shape a struct, a header, a file of the page, an
 example in two tests and a line each; a client message its entry in the schema, its handler and its sender
 (docs/architecture.md, docs/bodies.md, protocol/README.md). The new files are in tests/one_more, the new lines below; no
@@ -48,17 +49,29 @@ LINES = {
         '#include "ingredient/bonds.h"': '#include "ingredient/balloons.h"\n',
         "    AngleSprings>": "    Balloons,\n",
     },
+    "include/iota/system.h": {
+        "#include <iota/bodies.h>": "#include <iota/balloons.h>\n",
+        ", Joints, Laws,": ", Balloons",
+        "  Joints joints() {": "  Balloons balloons() { return Balloons(*core_); }\n",
+        "  const Joints joints()": "  const Balloons balloons() const { return Balloons(*core_); }\n",
+    },
+    "python/iota/__init__.py": {
+        "    Body,\n": "    Balloon,\n",
+        '    "Body",\n': '    "Balloon",\n',
+        "    Ellipsoid,\n": "    Octahedron,\n",
+        '    "Ellipsoid",\n': '    "Octahedron",\n',
+    },
     "src/solver/constraints/constraint_list.h": {
         '#include "solver/constraints/span.h"': '#include "solver/constraints/level.h"\n',
         ">;\n\ntemplate <class C>\nstruct CheckConstraint": ", Pool<LevelConstraint>",
     },
-    "include/iota/constraints.h": {"};\n\n/// The coordinates that joints have": "  level,  ///< a point of a keeps the height of one of b\n"},
+    "include/iota/kinds.h": {"};\n\n/// The coordinates that joints have": "  level,  ///< a point of a keeps the height of one of b\n"},
     "src/ingredient/constraint.h": {
         "  bool angle = false;": "  bool level = false;  ///< 1 row: the origins have the same height\n",
         "});\ninline const ConstraintKindInfo& info": '    {.name = "level", .level = true},\n',
     },
     "src/ingredient/pin_form.h": {
-        "    if (kind.line)\n": """    if (kind.level) {
+        "    if (kind.line && rubs(j.c))\n": """    if (kind.level) {
       solver::LevelConstraint row;
       j.sides(row, {a_origin}, {b_origin});
       j.add(row, 0, a_origin, 1), j.add(row, 0, b_origin, -1);
@@ -77,7 +90,6 @@ LINES = {
     "include/iota/shapes.h": {"/// Their order is that of": OCTAHEDRON, ">;\n\nusing Matrix3": ", Octahedron"},
     "src/shape/shape_list.h": {'#include "shape/sphere.h"': '#include "shape/octahedron.h"\n'},
     "protocol/shapes.json": {"\n  ]": ',\n    { "name": "octahedron", "sizes": ["radius"] }'},
-    "python/iota/__init__.py": {"    Ellipsoid,\n": "    Octahedron,\n", '    "Ellipsoid",\n': '    "Octahedron",\n'},
     "web/src/scene/shapes/shape_list.ts": {
         'import { sphere }': 'import { octahedron } from "./octahedron.ts";\n',
         "];\n\nconst byName": ", octahedron",
@@ -153,6 +165,7 @@ def main() -> int:
     python, npx = ".venv/bin/python", ("../.venv/bin/npx", "--no-install")
     inputs = "tests/python/test_inputs.py::test_every_input_has_one_function"
     run("the message, from a page to its handler", python, "-m", "pytest", "-q", "tests/python/test_wave.py", inputs)
+    run("the handle of the ingredient", python, "-m", "pytest", "-q", "tests/python/test_balloon.py")
     run("distances of shapes, by the engine", python, "tests/shapes/make_samples.py")
     run("messages of the page", python, "tools/generate_protocol.py", "--ts", "web/src/protocol/generated.ts")
     run("types of the page", *npx, "tsc", "--noEmit", folder="web")

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edit/angle_springs.h"
 #include "edit/attributes.h"
 #include "edit/batches.h"
 #include "edit/bodies.h"
@@ -20,6 +19,8 @@
 #include "edit/separate.h"
 #include "edit/settings.h"
 
+#include <tuple>
+#include <utility>
 #include <variant>
 
 namespace iota::edit {
@@ -34,10 +35,9 @@ struct TakeSnapshot {
 };
 inline void apply(Editor& e, const TakeSnapshot&) { e.islands.renew(); }
 
-// One per line, to avoid merge conflicts. Recordings name a command by its place, and have the length of the list in the
-// version of their format (door.cpp).
+// One per line, to avoid merge conflicts.
 // clang-format off
-using Command = std::variant<
+using OfNouns = std::variant<
     Step,
     SetGravity,
     SetMode,
@@ -136,14 +136,33 @@ using Command = std::variant<
     SetCompliance,
     SetTolerance,
     SetBudget,
-    CreateAngleSpring,
-    SetAngleSpring,
-    Destroy<AngleSpringId>,
     SetRadius,
     SetUsualRadius,
     CreateObstacle,
     TakeSnapshot>;
 // clang-format on
+
+namespace detail {
+template <class OfNouns, class Ingredients>
+struct AllCommands;
+template <class... C, class... I>
+struct AllCommands<std::variant<C...>, std::tuple<I...>> {
+  template <class... Own>
+  static std::variant<C..., Own...> join(std::tuple<Own...>*);
+  using type = decltype(join(static_cast<decltype(std::tuple_cat(std::declval<typename I::Commands>()...))*>(nullptr)));
+};
+}  // namespace detail
+
+/// Those above, then those of the ingredients. Recordings name a command by its place, and have the length of the list in
+/// the version of their format (door.cpp).
+using Command = detail::AllCommands<OfNouns, ingredient::Ingredients>::type;
+
+/// An ingredient's own command.
+template <class C>
+  requires(ingredient::is_own_command<C>)
+auto apply(Editor& e, const C& c) {
+  return ingredient::OwnerOf<C>::apply(e.model, c);
+}
 
 /// The place of a command in that list.
 template <class C, class Commands = Command>

@@ -2,6 +2,7 @@
 #include "ingredient/angle_springs.h"
 
 #include "ingredient/model.h"
+#include "math/checks.h"
 
 #include <array>
 #include <cmath>
@@ -44,6 +45,33 @@ double energy(const Model& model, std::uint32_t slot) {
   if (!is_in_force(model, spring)) return 0;
   const solver::SpringForce force = force_of(spring);
   return force.energy(force.arm.value(places(model, spring).data()));
+}
+
+constexpr double least_rest = 0.01;  // rad: the energy is a function of the chord's middle, which hardly changes near 0
+
+/// Takes the options of a command.
+template <class C>
+void take_options(AngleSpring& spring, const Model& model, const C& c) {
+  const double rest = std::isnan(c.rest) ? AngleSprings::angle(model, spring) : c.rest;
+  require_not_negative("stiffness", c.stiffness);
+  require_not_negative("damping", c.damping);
+  if (!(rest >= least_rest && rest <= std::numbers::pi))
+    throw std::invalid_argument(
+        text("the rest angle of an angle spring must be between 0.01 and pi (straight), got ", rest));
+  spring.stiffness = c.stiffness, spring.damping = c.damping, spring.rest = rest;
+}
+
+/// It begins or ends to need its particles as unknowns.
+void note_ends(Model& model, const AngleSpring& spring, int uses) {
+  for (const std::uint32_t particle : spring.particles) {
+    model.particles[particle].uses += static_cast<std::uint32_t>(uses);
+    model.touch_locally(model.particles[particle].body);
+  }
+}
+
+void remove_spring(Model& model, std::uint32_t slot) {
+  note_ends(model, model.angle_springs[slot], -1);
+  model.angle_springs.destroy(slot);
 }
 
 }  // namespace
@@ -140,27 +168,37 @@ void AngleSprings::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
     --model.particles[q].uses, ++model.particles[p].uses;
     model.touch_particle(p);
   };
-  model.angle_springs.redirect(q, p, moved, [&](std::uint32_t slot) { remove(model, slot); });
+  model.angle_springs.redirect(q, p, moved, [&](std::uint32_t slot) { remove_spring(model, slot); });
 }
 
 void AngleSprings::drop(Model& model, std::uint32_t particle) {
-  model.angle_springs.for_each_of(particle, [&](std::uint32_t slot) { remove(model, slot); });
+  model.angle_springs.for_each_of(particle, [&](std::uint32_t slot) { remove_spring(model, slot); });
 }
 
-std::uint32_t AngleSprings::add(Model& model, const AngleSpring& spring) {
-  for (const std::uint32_t particle : spring.particles) {
-    ++model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
-  }
-  return model.angle_springs.create(spring);
+Id<"angle spring"> AngleSprings::apply(Model& model, const CreateAngleSpring& c) {
+  AngleSpring spring;
+  spring.particles = {require(model, c.p), require(model, c.middle), require(model, c.q)};
+  const Vec3 middle = model.position(c.middle.slot);
+  spring.lengths = {norm(model.position(c.p.slot) - middle), norm(model.position(c.q.slot) - middle)};
+  if (!(spring.lengths[0] > 0 && spring.lengths[1] > 0) || c.p == c.q)
+    throw std::invalid_argument(
+        text("an angle spring needs three particles, the middle one away from the others, got particles ", c.p.slot,
+             ", ", c.middle.slot, " and ", c.q.slot));
+  take_options(spring, model, c);
+  ++model.structure_version;
+  note_ends(model, spring, 1);
+  return model.angle_springs.id(model.angle_springs.create(spring));
 }
 
-void AngleSprings::remove(Model& model, std::uint32_t slot) {
-  for (const std::uint32_t particle : model.angle_springs[slot].particles) {
-    --model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
-  }
-  model.angle_springs.destroy(slot);
+void AngleSprings::apply(Model& model, const SetAngleSpring& c) {
+  AngleSpring& spring = model.angle_springs[require(model, c.spring)];
+  take_options(spring, model, c);
+  model.wake(model.bodies[model.particles[spring.at(1)].body].articulate);
+}
+
+void AngleSprings::apply(Model& model, const Destroy<Id<"angle spring">>& c) {
+  remove_spring(model, require(model, c.id));
+  ++model.structure_version;
 }
 
 double AngleSprings::angle(const Model& model, const AngleSpring& spring) {

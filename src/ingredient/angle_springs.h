@@ -15,6 +15,16 @@ struct AngleSpring : model::ThreeEnds {
   std::array<double, 2> lengths{1, 1};  ///< of the legs, from the middle to the first and to the last particle, m
 };
 
+/// Commands, with AngleSpringOptions as plain data.
+struct CreateAngleSpring {
+  ParticleId p, middle, q;
+  double stiffness, damping, rest;
+};
+struct SetAngleSpring {
+  Id<"angle spring"> spring;
+  double stiffness, damping, rest;
+};
+
 /// Springs on angles: bending stiffness of ropes and beams, angle terms of molecules.
 ///
 ///   e = (b x_p + a x_q) / (a + b) - x_m    a, b: the lengths of the legs m-p and m-q when the spring was made
@@ -48,8 +58,11 @@ class AngleSprings : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
 
-  static std::uint32_t add(Model&, const AngleSpring&);  ///< returns the slot
-  static void remove(Model&, std::uint32_t spring);
+  using Commands = std::tuple<CreateAngleSpring, SetAngleSpring, Destroy<Id<"angle spring">>>;
+  static Id<"angle spring"> apply(Model&, const CreateAngleSpring&);
+  static void apply(Model&, const SetAngleSpring&);
+  static void apply(Model&, const Destroy<Id<"angle spring">>&);
+
   static double angle(const Model&, const AngleSpring&);     ///< now, rad
   static double moment(const Model&, std::uint32_t spring);  ///< that opens the angle, -dU/dangle, N m
 

@@ -21,6 +21,7 @@
 #include "ingredient/ties.h"
 
 #include <tuple>
+#include <type_traits>
 
 namespace iota::ingredient {
 
@@ -44,6 +45,25 @@ using Ingredients = std::tuple<  //
     Names,                       //
     CosmeticBonds,               //
     AngleSprings>;
+
+/// The ingredient with a command among its own; void if there is none.
+template <class C, class List = Ingredients>
+struct OwnerOfCommand {
+  using type = void;
+};
+template <class C, class First, class... Others>
+struct OwnerOfCommand<C, std::tuple<First, Others...>> {
+  template <class... Own>
+  static constexpr bool is_among(std::tuple<Own...>*) {
+    return (std::is_same_v<C, Own> || ...);
+  }
+  using type = typename std::conditional_t<is_among(static_cast<typename First::Commands*>(nullptr)),
+                                           std::type_identity<First>, OwnerOfCommand<C, std::tuple<Others...>>>::type;
+};
+template <class C>
+using OwnerOf = typename OwnerOfCommand<C>::type;
+template <class C>
+inline constexpr bool is_own_command = !std::is_void_v<OwnerOf<C>>;
 
 template <class List>
 struct TypesOf;

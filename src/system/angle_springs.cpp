@@ -4,11 +4,11 @@
 namespace iota {
 
 AngleSpringId AngleSprings::create(ParticleId p, ParticleId middle, ParticleId q, const AngleSpringOptions& options) {
-  return core_.execute(edit::CreateAngleSpring{p, middle, q, options});
+  return core_.execute(ingredient::CreateAngleSpring{p, middle, q, options.stiffness, options.damping, options.rest});
 }
 
 void AngleSprings::set(AngleSpringId id, const AngleSpringOptions& options) {
-  core_.execute(edit::SetAngleSpring{id, options});
+  core_.execute(ingredient::SetAngleSpring{id, options.stiffness, options.damping, options.rest});
 }
 
 void AngleSprings::destroy(AngleSpringId id) { core_.execute(edit::Destroy<AngleSpringId>{id}); }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "edit/angle_springs.h"
-
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
