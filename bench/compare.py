@@ -7,7 +7,7 @@
 
 The two programs take turns (before, after, before, after ...) within each row, so that a drift of the machine's speed
 affects both equally. A row is the median of its runs; the last column is after / before. Memory rows compare bytes a
-link. Exit code 1 if a row is above --limit.
+link or box. Exit code 1 if a row is above --limit.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import sys
 from pathlib import Path
 
 # For steps that allocate or whose median differs from the mean, their own counter is more precise.
-COUNTERS = ("us_per_link_step", "step_ms_p50", "bytes_per_link")
+COUNTERS = ("us_per_link_step", "step_ms_p50", "bytes_per_link", "bytes_per_box")
 
 
 def rows_of(program: Path, pattern: str) -> list[str]:
