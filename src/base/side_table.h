@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/archive.h"
+#include "base/slack.h"
 
 #include <cstdint>
 #include <type_traits>
@@ -37,6 +38,7 @@ class SideTable {
     if (!has(slot)) {
       if (place_of_.size() <= slot) place_of_.resize(slot + std::size_t{1}, absent);
       place_of_[slot] = size();
+      reserve_a_quarter(values_), reserve_a_quarter(owners_);
       values_.push_back({}), owners_.push_back(slot);
     }
     return at(slot);

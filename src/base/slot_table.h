@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/archive.h"
+#include "base/slack.h"
 
 #include <cstdint>
 #include <type_traits>
@@ -20,6 +21,7 @@ class SlotTable {
     std::uint32_t slot;
     if (free_.empty()) {
       slot = static_cast<std::uint32_t>(items_.size());
+      reserve_a_quarter(items_), reserve_a_quarter(generations_);
       items_.push_back(value);
       generations_.push_back(1);
     } else {
