@@ -104,7 +104,7 @@ void Bonds::build(const IslandMap& map, Problem& problem) {
 
 void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   const auto load_all = [&]<class Force>() {
-    auto& forces = problem.pool_of<Force>().items;
+    const std::span forces = problem.items_of<Force>();
     for_each_item_of<Force>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
       set_parameters(forces[i], model.bonds[key.slot], model.time + h);
     });
@@ -112,6 +112,7 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
   load_all.operator()<solver::SpringForce>();
   load_all.operator()<solver::DragForce>();
   load_all.operator()<solver::RadialForce>();
+  if (!problem.has_used<solver::SpanConstraint>()) return;
   auto& rows = problem.pool_of<solver::SpanConstraint>();
   for_each_item_of<solver::SpanConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Bond& bond = model.bonds[key.slot];

@@ -36,8 +36,10 @@ void Grips::build(const IslandMap& map, Problem& problem) { add(map, map.bodies,
 
 // All forces of this pool are grips.
 void Grips::renew_pulls(const IslandMap& map, Problem& problem) {
-  auto& pool = problem.pool_of<solver::GripForce>();
-  pool.items.clear(), pool.keys.clear(), pool.slots.clear();
+  if (problem.has_used<solver::GripForce>()) {
+    auto& pool = problem.pool_of<solver::GripForce>();
+    pool.items.clear(), pool.keys.clear(), pool.slots.clear();
+  }
   std::erase_if(felt_masses_, [&](const FeltMass& felt) {
     return !map.model.grips.is_alive(felt.grip) || map.model.grips[felt.grip].body != felt.body;
   });
@@ -88,7 +90,7 @@ const double* Grips::find_felt_mass(std::uint32_t grip, std::uint32_t body) cons
 }
 
 void Grips::load(const Model& model, const IslandNodes&, double, Problem& problem) {
-  auto& forces = problem.pool_of<solver::GripForce>().items;
+  const std::span forces = problem.items_of<solver::GripForce>();
   arms_.resize(forces.size());
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Grip& g = model.grips[key.slot];

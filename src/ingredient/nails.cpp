@@ -18,9 +18,9 @@ Vec3 velocity_of(const solver::AffineConstraint& nail, double h) { return (1 / h
 /// visit(nail, node) for the nails of a problem.
 template <class SomeProblem, class Visit>
 void for_each_nail(std::uint8_t owner, SomeProblem& problem, Visit visit) {
-  auto& affines = problem.template pool_of<solver::AffineConstraint>();
+  const std::span affines = problem.template items_of<solver::AffineConstraint>();
   for_each_item_of<solver::AffineConstraint>(
-      owner, problem, [&](std::size_t i, solver::ItemKey) { visit(affines.items[i], affines.items[i].nodes[0]); });
+      owner, problem, [&](std::size_t i, solver::ItemKey) { visit(affines[i], affines[i].nodes[0]); });
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ void Nails::build(const IslandMap& map, Problem& problem) {
 }
 
 void Nails::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
+  if (!problem.has_used<solver::AffineConstraint>()) return;
   auto& affines = problem.pool_of<solver::AffineConstraint>();
   for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Nail& from = model.nails.at(key.slot);

@@ -24,7 +24,7 @@ void RigidRows::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   std::size_t count = 0;
   for (const std::uint32_t body : map.bodies) count += model.bodies[body].row_count;
-  problem.pool_of<solver::DistanceConstraint>().reserve(count);
+  if (count > 0) problem.pool_of<solver::DistanceConstraint>().reserve(count);
   for (const std::uint32_t slot : map.bodies) {
     const model::Body& body = model.bodies[slot];
     for (std::uint8_t row = 0; row < body.row_count; ++row) {
@@ -44,6 +44,7 @@ void RigidRows::leave(const IslandMap& map) {
 }
 
 void RigidRows::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  if (!problem.has_used<solver::DistanceConstraint>()) return;
   auto& multipliers = problem.pool_of<solver::DistanceConstraint>().multipliers;
   for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     multipliers[i] = model.row(key.slot, key.part[0]).multiplier;

@@ -4,6 +4,7 @@
 #include "ingredient/model.h"
 
 #include <cmath>
+#include <span>
 
 namespace iota::ingredient {
 
@@ -32,7 +33,7 @@ void RodSpins::build(const IslandMap& map, Problem& problem) {
 }
 
 void RodSpins::load(const Model& model, const IslandNodes&, double, Problem& problem) {
-  auto& forces = problem.pool_of<solver::GyroscopicForce>().items;
+  const std::span forces = problem.items_of<solver::GyroscopicForce>();
   for_each_item_of<solver::GyroscopicForce>(
       owner, problem, [&](std::size_t i, solver::ItemKey key) { forces[i].spin = spin_of(model, key.slot); });
 }

@@ -66,6 +66,7 @@ void Ties::leave(const IslandMap& map) {
 }
 
 void Ties::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  if (!problem.has_used<solver::AffineConstraint>()) return;
   auto& affines = problem.pool_of<solver::AffineConstraint>();
   for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     std::copy_n(model.ties.at(key.slot).multiplier.begin(), 3, affines.multiplier(i));

@@ -146,7 +146,7 @@ double mean_reference_length(const Problem& problem) {
 /// Rows of nails and of carried points use the same length.
 double set_reference_lengths(Problem& problem) {
   const double length = mean_reference_length(problem);
-  for (auto& c : problem.pool_of<AffineConstraint>().items) c.reference = length;
+  for (auto& c : problem.items_of<AffineConstraint>()) c.reference = length;
   return length;
 }
 

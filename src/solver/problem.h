@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -127,6 +128,35 @@ struct ForcePool {
   static std::span<const std::uint32_t> nodes_of(const F& item) { return {item.arm.nodes.data(), item.arm.count}; }
 };
 
+/// A pool that is made when it is first written to: of twenty kinds a small problem has one or two.
+template <class Pool>
+class Lazy {
+ public:
+  Lazy() = default;
+  Lazy(const Lazy& other) : pool_(other.pool_ ? std::make_unique<Pool>(*other.pool_) : nullptr) {}
+  Lazy(Lazy&&) noexcept = default;
+  Lazy& operator=(Lazy other) noexcept {
+    pool_ = std::move(other.pool_);
+    return *this;
+  }
+  Pool& get() {
+    if (!pool_) pool_ = std::make_unique<Pool>();
+    return *pool_;
+  }
+  const Pool& get() const { return pool_ ? *pool_ : none; }
+  /// That has been made.
+  Pool& operator*() { return *pool_; }
+  const Pool& operator*() const { return *pool_; }
+
+ private:
+  static inline const Pool none = {};
+  std::unique_ptr<Pool> pool_;
+};
+template <class C>
+using LazyConstraintPool = Lazy<ConstraintPool<C>>;
+template <class F>
+using LazyForcePool = Lazy<ForcePool<F>>;
+
 /// One independent problem: points with masses, constraints and forces. It knows no bodies; the step fills it from the
 /// model and reads positions, velocities and multipliers back.
 struct Problem {
@@ -187,17 +217,25 @@ struct Problem {
   template <class Item>
   auto& pool_of() {
     if constexpr (requires { Item::rows; })
-      return std::get<ConstraintPool<Item>>(constraints_);
+      return std::get<LazyConstraintPool<Item>>(constraints_).get();
     else
-      return std::get<ForcePool<Item>>(forces_);
+      return std::get<LazyForcePool<Item>>(forces_).get();
   }
   template <class Item>
   const auto& pool_of() const {
-    return const_cast<Problem*>(this)->pool_of<Item>();
+    if constexpr (requires { Item::rows; })
+      return std::get<LazyConstraintPool<Item>>(constraints_).get();
+    else
+      return std::get<LazyForcePool<Item>>(forces_).get();
   }
-  /// The items of a type; unlike those of its pool without a look at that if there never was one.
+  /// The items of a type; unlike those of its pool without making that or a look at it if there never was one.
   template <class Item>
   std::span<const Item> items_of() const {
+    if (!has_used<Item>()) return {};
+    return pool_of<Item>().items;
+  }
+  template <class Item>
+  std::span<Item> items_of() {
     if (!has_used<Item>()) return {};
     return pool_of<Item>().items;
   }
@@ -341,7 +379,7 @@ struct Problem {
   static void visit_used(Pools& pools, std::uint32_t used, Visit& visit) {
     [&]<std::size_t... i>(std::index_sequence<i...>) {
       // The common types come first, so that most problems end the walk after a few of them.
-      ((used >> i != 0 && ((used >> i & 1u ? static_cast<void>(visit(std::get<i>(pools))) : void()), true)) && ...);
+      ((used >> i != 0 && ((used >> i & 1u ? static_cast<void>(visit(*std::get<i>(pools))) : void()), true)) && ...);
     }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
   }
 
@@ -349,8 +387,8 @@ struct Problem {
   GraphChange changes_;
   std::uint64_t acting_version_ = 0;
   std::vector<std::uint8_t> is_open_;  // of each node, while the structure changes; else empty
-  ConstraintPools<ConstraintPool> constraints_;
-  ForcePools<ForcePool> forces_;
+  ConstraintPools<LazyConstraintPool> constraints_;
+  ForcePools<LazyForcePool> forces_;
 };
 
 template <class Item>

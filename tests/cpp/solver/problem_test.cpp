@@ -51,5 +51,24 @@ TEST(Problem, folds_visit_only_pools_that_were_used_in_the_order_of_the_lists_wh
   EXPECT_TRUE(problem.items_of<GripForce>().empty());
 }
 
+/// Two points and a rod, maybe with a nail and coupled masses.
+void build(Problem& problem, double mass, bool is_nailed = false, bool is_coupled = false) {
+  problem.add_nodes(2);
+  for (const std::uint32_t node : {0u, 1u}) problem.add_mass(node, mass);
+  if (is_coupled) problem.couple_masses(0, 1, 0.1 * mass);
+  problem.add(DistanceConstraint{{0, 1}, mass, mass}, {});
+  if (is_nailed) problem.add(AffineConstraint{.nodes = {0}, .weights = {1}, .count = 1}, {});
+}
+
+TEST(Problem, copies_have_pools_of_their_own) {
+  Problem problem;
+  build(problem, 1);
+  Problem copy = problem;
+  copy.pool_of<DistanceConstraint>().items[0].length = 5;
+  EXPECT_EQ(problem.items_of<DistanceConstraint>()[0].length, 1);
+  problem = copy;
+  EXPECT_EQ(problem.items_of<DistanceConstraint>()[0].length, 5);
+}
+
 }  // namespace
 }  // namespace iota::solver
