@@ -36,7 +36,8 @@ enum class Hessian { exact, clamped, none };
 class Assembly {
  public:
   /// Analyzes the structure of the problem; call again after nodes, constraints or forces were added or removed ...
-  void compile(Problem&);
+  /// Returns whether it was like the latest one, whose places in the matrix are then kept.
+  bool compile(Problem&);
   /// ... or, if they were added and removed by the problem's own functions, follow the change: removes marked nodes and
   /// finds new places near the changes, in a fraction of the time.
   void follow(Problem&);
@@ -131,6 +132,7 @@ class Assembly {
   StepTimes* times_ = nullptr;
   std::shared_ptr<const BlockPattern> pattern_;  // its own, or one that small problems share: see PatternCache
   std::shared_ptr<BlockPattern> own_pattern_;    // with room for the next one; null if there never was one
+  std::uint64_t structure_ = 0;                  // of the problem when it was compiled: see Problem::structure
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;

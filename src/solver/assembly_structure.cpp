@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace iota::solver {
 
@@ -152,8 +153,17 @@ double set_reference_lengths(Problem& problem) {
 
 }  // namespace
 
-void Assembly::compile(Problem& problem) {
+bool Assembly::compile(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
+  if (const std::uint64_t before = std::exchange(structure_, problem.structure());
+      before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() && pattern_ != own_pattern_) {
+    for (auto& c : problem.mass_couplings) c.slot = pattern_->pair_slot(c.a, c.b);
+    forget_factors();
+    problem.fit_pools();
+    weigh(problem);
+    problem.note_compiled();
+    return true;
+  }
   ThreadGraph room(problem);
   CouplingGraph& graph = room.get();
   fill(graph, problem);
@@ -170,6 +180,7 @@ void Assembly::compile(Problem& problem) {
   place_nodes(problem);
   weigh(problem);
   problem.note_compiled();
+  return false;
 }
 
 // A row yields by its compliance times its force, and a light link may carry the weight of all others: above a ratio of
@@ -198,7 +209,10 @@ void Assembly::follow(Problem& problem) {
       if (is_near(pool.nodes_of(pool.items[i]))) pool.slots[i].unknown = constraint++->unknown;
   });
   problem.remove_nodes(problem.changes().removed);
-  if (!order_suits) return compile(problem);
+  if (!order_suits) {
+    compile(problem);
+    return;
+  }
   reference_length_ = set_reference_lengths(problem);
   factor_.grow(*pattern_);
   forget_factors();
@@ -217,6 +231,7 @@ void Assembly::follow(Problem& problem) {
 
 bool Assembly::place_forces(Problem& problem) const {
   bool are_coupled = true;
+  problem.forget_slots();
   problem.for_each_force_pool([&](auto& pool) {
     const std::size_t placed = pool.slots.size();
     resize_with_slack(pool.slots, pool.items.size());

@@ -37,20 +37,21 @@ bool is_free_body(const Problem& problem) {
 
 void Integrator::compile(Problem& problem) {
   may_be_in_pieces_ = false, pieces_.clear();
-  newton_.compile(problem);
+  const bool is_alike = newton_.compile(problem);
+  if (spin_) is_alike ? spin_->forget_masses() : spin_->forget();
   make_room(problem);
 }
 
 void Integrator::follow(Problem& problem) {
   may_be_in_pieces_ = true;
   newton_.follow(problem);
+  if (spin_) spin_->forget();
   make_room(problem);
 }
 
 void Integrator::make_room(const Problem& problem) {
   has_advanced_ = is_taken_back_ = false;
   if (local_) local_->forget();
-  if (spin_) spin_->forget();
   lumped_mass_.clear();
   multipliers_saved_.resize(problem.multiplier_count());
 }

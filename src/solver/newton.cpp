@@ -19,9 +19,10 @@ using Set = NewtonSettings;
 
 }  // namespace
 
-void Newton::compile(Problem& problem) {
-  assembly_.compile(problem);
+bool Newton::compile(Problem& problem) {
+  const bool is_alike = assembly_.compile(problem);
   make_room(problem);
+  return is_alike;
 }
 
 void Newton::follow(Problem& problem) {

@@ -32,7 +32,7 @@ struct [[nodiscard]] NewtonReport {
 class Newton {
  public:
   /// Allocates and analyzes the structure of the problem, or follows it: see Assembly.
-  void compile(Problem& problem);
+  bool compile(Problem& problem);
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
   void add_times_to(StepTimes* times) { assembly_.add_times_to(times); }                 ///< see Assembly

@@ -29,10 +29,13 @@ void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size
 void Problem::clear() {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
   clear(position, velocity, force, mass, damping, mass_couplings);
-  for_each_constraint_pool(
-      [&](auto& p) { clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held, p.slots); });
-  for_each_force_pool([&](auto& p) { clear(p.items, p.keys, p.slots); });
-  note_compiled();
+  for_each_constraint_pool([&](auto& p) {
+    acting_version_ += !p.acting.empty();  // the next ones may have no laws, and all act
+    clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held);
+  });
+  for_each_force_pool([&](auto& p) { clear(p.items, p.keys); });
+  changes_.clear(), is_open_.clear();
+  structure_ = no_structure;
   gravity = origin = {};
   has_new_rows = false;
   standing_gap = 0, standing_steps = unsolved_steps = 0;
@@ -41,6 +44,7 @@ void Problem::clear() {
 
 void Problem::add_nodes(std::size_t count) {
   const std::size_t n = size() + count;
+  note_structure(count);
   resize_with_slack(position, n), resize_with_slack(velocity, n), resize_with_slack(mass, n);
   if (!damping.empty()) damping.resize(n);
   force.clear();
@@ -59,6 +63,7 @@ void Problem::couple_masses(std::uint32_t a, std::uint32_t b, double m) {
     touch(std::array{a, b});
     reserve_with_slack(mass_couplings, mass_couplings.size() + 1);
   }
+  note_structure(std::uint64_t{a} << 32 | b);
   mass_couplings.push_back({a, b, m});
 }
 

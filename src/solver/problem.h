@@ -82,8 +82,8 @@ struct ConstraintPool {
   RowStates states;                  ///< beside laws
   std::vector<std::uint8_t> acting;  ///< of each item, if there were laws at the last Problem::note_acting
   std::vector<std::uint32_t>
-      held;  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
-  std::vector<Slots> slots;
+      held;                  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
+  std::vector<Slots> slots;  ///< `clear` keeps them: a problem with the same structure has the same ones
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
   const double* multiplier(std::size_t i) const { return multipliers.data() + i * C::rows; }
@@ -211,7 +211,16 @@ struct Problem {
   void remove_nodes(std::span<const std::uint32_t> removed);
   /// Resizes all lists of the pools to their items.
   void fit_pools();
-  void note_compiled() { changes_.clear(), is_open_.clear(); }
+  void note_compiled() {
+    changes_.clear(), is_open_.clear();
+    structure_of_slots_ = std::exchange(structure_, 0);
+  }
+  /// A hash of what was added since `clear` until it is compiled; then 0. Problems with the same structure have the same
+  /// places in the matrix: only their numbers differ.
+  std::uint64_t structure() const { return structure_; }
+  /// Whether the pools still have the slots of this structure.
+  bool has_slots() const { return structure_ != 0 && structure_ == structure_of_slots_; }
+  void forget_slots() { structure_of_slots_ = 0; }
   ///@}
 
   template <class Item>
@@ -363,6 +372,18 @@ struct Problem {
     changes_.touched.insert(changes_.touched.end(), nodes.begin(), nodes.end());
   }
 
+  void note_structure(std::uint64_t word) {
+    if (structure_ == 0) return;
+    structure_ = (structure_ ^ word) * 0x9e3779b97f4a7c15u;
+    structure_ ^= structure_ >> 32;
+  }
+  template <class Item>
+  void note_structure(const Item& item, std::span<const std::uint32_t> nodes) {
+    note_structure(place_of<Item>() << 32 | nodes.size());
+    for (const std::uint32_t node : nodes) note_structure(node);
+    if constexpr (GeneralConstraint<Item>) note_structure(static_cast<std::uint64_t>(item.first_side));
+  }
+
   static constexpr std::size_t constraint_types = std::tuple_size_v<ConstraintPools<ConstraintPool>>;
 
   /// The place of a type in the lists, constraints first.
@@ -385,6 +406,8 @@ struct Problem {
 
   std::uint32_t used_ = 0;  // a bit for each pool that ever had an item
   GraphChange changes_;
+  static constexpr std::uint64_t no_structure = 1;  // is not 0
+  std::uint64_t structure_ = no_structure, structure_of_slots_ = 0;
   std::uint64_t acting_version_ = 0;
   std::vector<std::uint8_t> is_open_;  // of each node, while the structure changes; else empty
   ConstraintPools<LazyConstraintPool> constraints_;
@@ -395,12 +418,14 @@ template <class Item>
 void Problem::add(const Item& item, ItemKey key) {
   auto& pool = pool_of<Item>();
   const auto nodes = pool.nodes_of(item);
+  note_structure(item, nodes);
   if (is_changing()) {
     if (!is_any_open(nodes)) return;
     touch(nodes);
     reserve_with_slack(pool.items, pool.items.size() + 1);
     reserve_with_slack(pool.keys, pool.items.size() + 1);
   }
+  if (structure_ == 0 && !has_used<Item>()) pool.slots.clear();  // of an earlier structure
   used_ |= std::uint32_t{1} << place_of<Item>();
   pool.items.push_back(item);
   pool.keys.push_back(key);

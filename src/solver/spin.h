@@ -27,6 +27,8 @@ class Spin {
     pieces_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear();
     wheels_.forget();
   }
+  /// After a change of masses alone.
+  void forget_masses() { wheels_.forget_masses(); }
 
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act

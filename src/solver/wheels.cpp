@@ -64,7 +64,8 @@ bool Wheels::may_have_wheels(const Problem& problem) {
     for (const std::uint32_t i : pool.nodes_of(pool.items[item])) rows[i] = std::min(rows[i] + 1, 3);
   });
   if (std::any_of(rows.begin(), rows.end(), [](std::uint8_t count) { return count >= 3; })) return true;
-  if (problem.mass_couplings.empty()) return false;
+  depends_on_masses_ = !problem.mass_couplings.empty();
+  if (!depends_on_masses_) return false;
   std::vector<double>& sum = row_masses_;
   sum_row_masses(problem, sum);
   for (std::size_t i = 0; i < sum.size(); ++i)
@@ -81,7 +82,7 @@ double largest_share(double first, double second, double limit) {
 // The nodes of a body that shares two are all neighbors of any own one that carries it.
 void Wheels::find(const Problem& problem) {
   wheels_.clear(), couplings_.clear();
-  is_known_ = true;
+  is_known_ = true, depends_on_masses_ = false;
   if (!may_have_wheels(problem)) return;
   if (!neighbors_) neighbors_ = std::make_unique<Neighbors>();
   Neighbors& neighbors = *neighbors_;

@@ -25,6 +25,8 @@ class Wheels {
 
   /// After a change of structure, or of what acts.
   void forget() { is_known_ = false; }
+  /// After a change of masses.
+  void forget_masses() { is_known_ = is_known_ && !depends_on_masses_; }
 
   /// Calculates how much of p a step of the end-point rule has lost, for Spin::give_back. The rule evaluates moments at the
   /// end of the step, sum M_ij (v1 - v0)_j . e1_i = h moment, and so loses sum M_ij (v1 - v0)_j . (e1 - e0)_i. Velocities
@@ -61,6 +63,7 @@ class Wheels {
   static void for_each_mass(const Problem&, const Wheel&, Visit);
 
   bool is_known_ = false;
+  bool depends_on_masses_ = false;  // whether there are any
   std::vector<Wheel> wheels_;
   std::vector<std::uint32_t> couplings_;  // of the wheels, one after the other
   // Room to find them.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace iota::solver {
@@ -185,6 +186,51 @@ TEST(FollowingProblem, steps_as_one_that_is_built_anew) {
           << "seed " << seed << " edit " << edit;
     }
   }
+}
+
+// A borrowed island: one body after another, which may have another structure.
+TEST(AssemblyStructure, of_problems_that_are_built_in_the_place_of_others_is_like_that_of_new_ones) {
+  std::mt19937 random(3);
+  const auto number = [&] { return std::uniform_real_distribution(0.5, 1.5)(random); };
+  Problem reused;
+  Integrator integrator;
+  int alike = 0;
+  std::uint64_t before = 0;
+  for (int round = 0; round < 60; ++round) {
+    Structure structure;
+    const std::uint32_t points = 2 + random() % 2;
+    for (std::uint32_t i = 0; i < points; ++i) {
+      structure.position.push_back({1.0 * i, number(), number()}), structure.velocity.push_back({number(), 0, 0});
+      structure.mass.push_back(number());
+      if (i > 0) structure.rods.push_back({i - 1, i});
+    }
+    if (random() % 6 == 0) structure.springs.push_back({0, points - 1});
+    if (random() % 6 == 0) structure.nails.push_back(0);
+    const auto step = [&](Problem& problem, Integrator& with) {
+      problem.add_nodes(points);
+      structure.add_to(problem);
+      problem.gravity = {0, -9.81, 0};
+      std::copy(structure.position.begin(), structure.position.end(), problem.position.begin());
+      std::copy(structure.velocity.begin(), structure.velocity.end(), problem.velocity.begin());
+      const std::uint64_t made = problem.structure();
+      with.compile(problem);
+      for (const auto& settings : {IntegratorSettings::energy_keeping(), IntegratorSettings::robust()})
+        (void)with.advance(problem, 0.01, settings);
+      return made;
+    };
+    reused.clear();
+    const std::uint64_t made = step(reused, integrator);
+    alike += std::exchange(before, made) == made;
+    Problem fresh;
+    Integrator own;
+    (void)step(fresh, own);
+    for (std::uint32_t i = 0; i < points; ++i) {
+      ASSERT_EQ(reused.position[i], fresh.position[i]) << "round " << round;
+      ASSERT_EQ(reused.velocity[i], fresh.velocity[i]) << "round " << round;
+    }
+  }
+  EXPECT_GT(alike, 5);
+  EXPECT_LT(alike, 55);
 }
 
 }  // namespace

@@ -60,6 +60,27 @@ void build(Problem& problem, double mass, bool is_nailed = false, bool is_couple
   if (is_nailed) problem.add(AffineConstraint{.nodes = {0}, .weights = {1}, .count = 1}, {});
 }
 
+TEST(Problem, has_the_structure_of_one_that_differs_in_numbers_alone) {
+  Problem problem;
+  build(problem, 1);
+  const std::uint64_t structure = problem.structure();
+  EXPECT_NE(structure, 0u);
+  problem.note_compiled();
+  EXPECT_EQ(problem.structure(), 0u) << "not known: its owner may have changed its lists since then";
+  const auto again = [&](double mass, bool is_nailed, bool is_coupled) {
+    problem.clear();
+    build(problem, mass, is_nailed, is_coupled);
+    return problem.structure();
+  };
+  EXPECT_EQ(again(2, false, false), structure);
+  EXPECT_NE(again(1, true, false), structure);
+  EXPECT_NE(again(1, false, true), structure);
+  problem.clear();
+  problem.add_nodes(2);
+  problem.add(DistanceConstraint{{1, 0}, 1, 1}, {});
+  EXPECT_NE(problem.structure(), structure);
+}
+
 TEST(Problem, copies_have_pools_of_their_own) {
   Problem problem;
   build(problem, 1);
