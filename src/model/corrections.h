@@ -5,8 +5,9 @@
 
 #include <iota/vec3.h>
 
-#include <atomic>
 #include <cstdint>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 namespace iota::model {
@@ -16,17 +17,21 @@ namespace iota::model {
 class Corrections {
  public:
   Vec3 operator[](std::uint32_t ring) const { return ring < values_.size() ? values_[ring] : Vec3{}; }
-  /// Many threads may set those of different rings at the same time. Without room only zeros can be set.
+  /// Many threads may set those of different rings at the same time. Without room, other values than zero wait for it.
   void set(std::uint32_t ring, const Vec3& value) {
     if (ring < values_.size())
       values_[ring] = value;
     else if (value != Vec3{})
-      std::atomic_ref(lacks_room_).store(true, std::memory_order_relaxed);
+      wait(ring, value);
   }
   bool are_none() const { return values_.empty(); }
-  /// Whether some could not be set since there was last room for all.
-  bool lacks_room() const { return lacks_room_; }
-  void make_room(std::uint32_t rings) { values_.resize(rings), lacks_room_ = false; }
+  /// Whether some wait.
+  bool lacks_room() const { return !waiting_.empty(); }
+  void make_room(std::uint32_t rings) {
+    values_.resize(rings);
+    for (const auto& [ring, value] : waiting_) values_[ring] = value;
+    std::vector<Waiting>().swap(waiting_);  // gives its memory back
+  }
 
   template <class Archive>
   void archive(Archive& ar, std::uint32_t rings) {
@@ -35,8 +40,15 @@ class Corrections {
   }
 
  private:
+  using Waiting = std::pair<std::uint32_t, Vec3>;
+  void wait(std::uint32_t ring, const Vec3& value) {
+    static std::mutex mutex;  // of all systems, so that this is copied: only the first correction of a scene waits
+    const std::lock_guard lock(mutex);
+    waiting_.push_back({ring, value});
+  }
+
   std::vector<Vec3> values_;
-  bool lacks_room_ = false;
+  std::vector<Waiting> waiting_;
 };
 
 }  // namespace iota::model
