@@ -192,7 +192,7 @@ void apply(Editor& e, const SetKind& c) {
       if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
       model.wake(model.bodies[b].articulate);
     }
-    e.islands.free_particles().note_woken();
+    e.islands.free_bodies().note_change();
     if (c.kind == BodyKind::dynamic) return;
   }
   const auto change = [&] {

@@ -73,14 +73,10 @@ Conserved calc_change(model::Model& model, island::MovedRings& moved) {
 /// Whether all islands of the bodies have positions that satisfy their rows.
 bool project(Editor& e, std::span<const std::uint32_t> bodies, bool positions, island::MovedRings& moved) {
   bool met = true;
-  std::vector<island::Island*> done;
-  for (const std::uint32_t body : bodies) {
-    island::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
-    if (!island) continue;  // a free particle needs no projection
-    if (std::find(done.begin(), done.end(), island) != done.end()) continue;
-    done.push_back(island);
-    met = island->settle(e.model, bodies, positions, moved) && met;
-  }
+  std::vector<std::uint32_t> articulates;
+  for (const std::uint32_t body : bodies) articulates.push_back(e.model.bodies[body].articulate);
+  e.islands.for_each_of(e.model, articulates,
+                        [&](island::Island& island) { met = island.settle(e.model, bodies, positions, moved) && met; });
   return met;
 }
 

@@ -69,7 +69,7 @@ struct NoAnswers {
   static double worst_gap(const Scope&) { return 0; }
   /// Its forces on the points of a body in the last step.
   static void add_loads(const LastStep&, std::uint32_t /*body*/, LoadReader&) {}
-  /// Whether it acts on a body of a single particle, which is then not free.
+  /// Whether it holds a particle or ties it to others: its body is then not free.
   static bool holds(const Model&, std::uint32_t /*particle*/) { return false; }
 
   /// Whether it refers to a particle.

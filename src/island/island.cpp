@@ -328,18 +328,18 @@ void Island::commit_motion(Model& model, double h) {
 
 void Island::forget_factors() { integrator_->forget_factors(); }
 
-IslandReport Island::report(const Model& model) const {
+IslandReport Island::report(const Model& model, const solver::AdvanceReport& last) const {
   IslandReport report{.points = static_cast<std::uint32_t>(nodes_.size()),
                       .resting = is_asleep(model),
-                      .iterations = last_.iterations,
-                      .substeps = last_.substeps,
-                      .fallbacks = last_.fallbacks,
-                      .converged = last_.converged,
-                      .cut_short = last_.cut_short,
+                      .iterations = last.iterations,
+                      .substeps = last.substeps,
+                      .fallbacks = last.fallbacks,
+                      .converged = last.converged,
+                      .cut_short = last.cut_short,
                       .gap = problem_.worst_gap(problem_.position.data()),
-                      .error = last_.error,
-                      .lost = last_.lost,
-                      .made = last_.made};
+                      .error = last.error,
+                      .lost = last.lost,
+                      .made = last.made};
   for (const std::uint32_t body : nodes_.bodies)
     if (model.bodies.is_alive(body)) report.bodies.push_back(model.bodies.id(body));
   return report;

@@ -93,12 +93,10 @@ class Island {
   /// Stores the latest try, of h seconds, in the model. Without a try since the last commit it stores nothing.
   const solver::AdvanceReport& commit(model::Model&, double h);
 
-  /// Stores the corrections of the step that it has just made, if the model had no room for them: see
-  /// model::Corrections.
-  void store_corrections(model::Model&) const;
-
-  /// Of its last step.
-  IslandReport report(const model::Model&) const;
+  /// Of the latest try, or of the last step.
+  const solver::AdvanceReport& latest() const { return last_; }
+  /// `last`: of its last step; of a loose body, for whose state it is loaded, that of the body.
+  IslandReport report(const model::Model&, const solver::AdvanceReport& last) const;
   bool has_stepped() const { return has_stepped_; }
 
   /// See System::diagnose; after `load(model, 0)`.
@@ -171,6 +169,7 @@ class Island {
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
   void store_step(model::Model&, double h, bool is_instant) const;
+  void store_corrections(model::Model&) const;
   bool project_all(model::Model&, bool positions);
   std::vector<std::uint32_t> nodes_of(const model::Model&, std::span<const std::uint32_t> bodies) const;
   void store_projection(model::Model&, bool moved, MovedRings&, std::span<const std::uint32_t> only = {}) const;

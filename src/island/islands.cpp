@@ -3,6 +3,8 @@
 
 #include "ingredient/followers.h"
 
+#include <iota/reports.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -13,7 +15,7 @@ using model::none;
 
 void Islands::forget() {
   places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
-  free_particles_.forget();
+  free_bodies_.forget();
   knows_all_ = false, order_is_old_ = true;
 }
 
@@ -83,7 +85,7 @@ void Islands::set_leader(Home& home) {
 void Islands::set_members(Home& home, std::span<const std::uint32_t> articulates) {
   home.articulates.assign(articulates.begin(), articulates.end());
   for (const std::uint32_t a : articulates) {
-    free_particles_.set(a, false);
+    free_bodies_.set(a, false);
     places_[a].home = &home, places_[a].is_waiting = false;
   }
 }
@@ -103,7 +105,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
     touched_.only_locally.assign(touched_.articulates.size(), 0);
     knows_all_ = true;
   }
-  waiting_.clear(), changed_.clear(), fresh_.clear();
+  waiting_.clear(), changed_.clear(), fresh_.clear(), fresh_loose_.clear();
   if (renews)
     for (const auto& home : home_of_leader_)
       if (home && home->has_followed) drop(*home);
@@ -114,7 +116,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
   node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
 
-  drop_touched(renews);
+  drop_touched(model, renews);
   find_changed(model);
   take_parts_out(model);
   find_groups(model);
@@ -125,12 +127,12 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   if (!waiting_.empty()) find_groups(model), settle_groups(model, moved);  // of homes that could not follow
   build_fresh(model, parallel, moved);
   note_suspects(model);
-  return any || !fresh_.empty();
+  return any || !fresh_.empty() || !fresh_loose_.empty();
 }
 
 // 1. Homes with other than local changes are dropped. After a snapshot all changed ones are, as a restored system has
 // none of them.
-void Islands::drop_touched(bool all) {
+void Islands::drop_touched(const Model& model, bool all) {
   for (std::size_t i = 0; i < touched_.articulates.size(); ++i) {
     if (touched_.only_locally[i] && !all) continue;
     const std::uint32_t a = touched_.articulates[i];
@@ -138,6 +140,12 @@ void Islands::drop_touched(bool all) {
       drop(*home);
     else
       wait(a);
+  }
+  for (const std::uint32_t body : touched_.local.pulled) {  // a grip may be all that holds a body
+    if (!model.bodies.is_alive(body)) continue;
+    const std::uint32_t a = model.bodies[body].articulate;
+    Home* const home = places_[a].home;
+    if (model.articulates[a].count == 1 && (!home || home->articulates.size() == 1)) home ? drop(*home) : wait(a);
   }
 }
 
@@ -270,8 +278,9 @@ void Islands::find_groups(const Model& model) {
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
     const std::uint32_t a = waiting_[i];
     Place& place = places_[a];
-    const bool is_alive = model.articulates.is_alive(a), is_free = is_alive && FreeParticles::is_free(model, a);
-    free_particles_.set(a, is_free);
+    const bool is_alive = model.articulates.is_alive(a), is_free = is_alive && FreeBodies::is_free(model, a);
+    free_bodies_.set(a, is_free);
+    if (is_free && !FreeBodies::is_particle(model, a)) fresh_loose_.push_back(a);
     if (!is_alive || is_free) {
       place.is_waiting = false;
       continue;
@@ -436,13 +445,18 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
   for (const Home* const home : fresh_)
     for (const std::uint32_t a : home->articulates)
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
-  if (moved_by_.size() < fresh_.size()) moved_by_.resize(fresh_.size());
-  parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
+  ingredient::sort_unique(fresh_loose_);
+  for (const std::uint32_t a : fresh_loose_) make_ready(model, model.articulates[a].first);
+  const std::size_t count = fresh_.size() + fresh_loose_.size();
+  if (moved_by_.size() < count) moved_by_.resize(count);
+  parallel.for_each(count, 8, [&](std::size_t i) {
     moved_by_[i].before.clear(), moved_by_[i].is_asked_for = moved.is_asked_for;
+    const auto carry_along = [&](Island& island) { island.carry_along(model, moved_by_[i]); };
+    if (i >= fresh_.size()) return borrow(model, fresh_loose_[i - fresh_.size()], carry_along);
     fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_);
-    fresh_[i]->island.carry_along(model, moved_by_[i]);
+    carry_along(fresh_[i]->island);
   });
-  for (std::size_t i = 0; i < fresh_.size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     moved.before.insert(moved.before.end(), moved_by_[i].before.begin(), moved_by_[i].before.end());
 }
 
@@ -450,7 +464,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
   if (!knows_all_ || model.is_touched()) return;
   model.articulates.for_each([&](std::uint32_t a, const model::Articulate& articulate) {
     const Home* const home = places_[a].home;
-    audit.require((home != nullptr) != free_particles_.contains(a), "articulate ", a, " is not in one island");
+    audit.require((home != nullptr) != free_bodies_.contains(a), "articulate ", a, " is not in one island");
     if (!home) return;
     audit.require(std::binary_search(home->articulates.begin(), home->articulates.end(), a),
                   "the island of articulate ", a, " does not know it");
@@ -483,10 +497,11 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
 }
 
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
-  for (std::uint32_t& a : articulates) a = places_[a].home ? places_[a].home->leader : none;
+  for (std::uint32_t& a : articulates)
+    a = places_[a].home ? places_[a].home->leader : (free_bodies_.contains(a) ? a : none);
   std::sort(articulates.begin(), articulates.end());
   articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
-  if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // free particles have no island
+  if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // destroyed ones
 }
 
 std::span<Island* const> Islands::all() {
@@ -527,7 +542,7 @@ void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
   for (const std::uint32_t articulate : articulates) {
     Island* const island = of_articulate(articulate);
     if (!island)
-      free_particles_.wake(model, articulate);
+      free_bodies_.wake(model, articulate);
     else
       awake_is_old_ = awake_is_old_ || island->is_still(), island->wake();
   }
@@ -539,7 +554,7 @@ void Islands::wake_stirred(Model& model) {
       model.for_each_in_ring(ring, [&](std::uint32_t p) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
         const Island* const island = of_articulate(articulate);
-        if (island ? island->is_still() : free_particles_.is_resting(model, articulate)) wake(model, {&articulate, 1});
+        if (island ? island->is_still() : free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
       });
     });
   });
@@ -548,12 +563,43 @@ void Islands::wake_stirred(Model& model) {
 void Islands::put_to_rest(Model& model, std::uint32_t articulate) {
   if (Island* const island = of_articulate(articulate))
     island->put_to_rest(model);
+  else if (FreeBodies::is_particle(model, articulate))
+    free_bodies_.put_to_rest(model, articulate);
   else
-    free_particles_.put_to_rest(model, articulate);
+    borrow(model, articulate, [&](Island& loose) { loose.put_to_rest(model); }), free_bodies_.note_change();
+}
+
+void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
+  const auto step = [&](Island& island) -> const solver::AdvanceReport& {
+    island.try_step(model, h, deadline);
+    return island.commit(model, h);
+  };
+  if (index < awake_.size()) return (void)step(*awake_[index]);
+  FreeBodies::Loose& loose = free_bodies_.loose()[index - awake_.size()];
+  borrow(model, loose.articulate,
+         [&](Island& island) { loose.report = step(island), loose.rests = island.is_still(); });
+}
+
+std::vector<IslandReport> Islands::reports(const Model& model) {
+  std::vector<std::pair<std::uint32_t, IslandReport>> found;  // by leader
+  for (const auto& home : home_of_leader_)
+    if (home && home->island.has_stepped())
+      found.push_back({home->leader, home->island.report(model, home->island.latest())});
+  node_of_ring_.resize(model.rings.slot_count(), none);
+  const auto add = [&](std::uint32_t a, const solver::AdvanceReport& last) {
+    if (!model.articulates.is_alive(a) || !FreeBodies::is_free(model, a) || FreeBodies::is_particle(model, a)) return;
+    borrow(model, a, [&](Island& island) { island.load(model, 0), found.push_back({a, island.report(model, last)}); });
+  };
+  for (const FreeBodies::Loose& loose : free_bodies_.loose()) add(loose.articulate, loose.report);
+  free_bodies_.for_each_still([&](std::uint32_t body) { add(model.bodies[body].articulate, {}); });
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::vector<IslandReport> reports;
+  for (auto& [leader, report] : found) reports.push_back(std::move(report));
+  return reports;
 }
 
 std::uint32_t Islands::resting(const Model& model) const {
-  std::uint32_t count = asleep_ + free_particles_.resting();
+  std::uint32_t count = asleep_ + free_bodies_.resting();
   for (const Island* const island : awake_)  // fell asleep in this step
     if (island->is_still() && island->is_asleep(model)) count += static_cast<std::uint32_t>(island->body_count());
   return count;
@@ -563,10 +609,10 @@ ingredient::Book Islands::book(const Model& model) {
   if (model.has_edits) ++book_epoch_, still_book_.reset();
   // Body by body takes several times as long as table by table.
   constexpr std::uint32_t share = 4;
-  const std::uint32_t still = still_bodies_ + free_particles_.still();
+  const std::uint32_t still = still_bodies_ + free_bodies_.still();
   if (model.has_edits || order_is_old_ || awake_is_old_ || still < model.bodies.size() - model.bodies.size() / share)
     return ingredient::calc_book(model);
-  if (!still_book_ || book_version_ != free_particles_.version()) {
+  if (!still_book_ || book_version_ != free_bodies_.version()) {
     still_book_.emplace();
     auto awake = awake_.begin();
     for (Island* const island : in_order_)
@@ -574,22 +620,24 @@ ingredient::Book Islands::book(const Model& model) {
         ++awake;
       else
         still_book_->add(island->still_book(model, book_epoch_));
-    free_particles_.for_each_still(
+    free_bodies_.for_each_still(
         [&](std::uint32_t body) { still_book_->add(ingredient::calc_book(model, {&body, 1})); });
-    book_version_ = free_particles_.version();
+    book_version_ = free_bodies_.version();
   }
   ingredient::Book book = *still_book_;
   for (const Island* const island : awake_) book.add(ingredient::calc_book(model, island->bodies()));
-  free_particles_.for_each_awake([&](std::uint32_t body) { book.add(ingredient::calc_book(model, {&body, 1})); });
+  free_bodies_.for_each_awake([&](std::uint32_t body) { book.add(ingredient::calc_book(model, {&body, 1})); });
   return book;
 }
 
 std::size_t Islands::grain(const Parallel& parallel) const {
   // A second thread takes about 20 us to start; a point takes about a quarter of a microsecond. If one island is most
   // of the work, threads do not help.
-  constexpr std::size_t worthwhile = 400;  // points
-  if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return awake_.size();
-  return std::max<std::size_t>(1, awake_.size() * 64 / total_size_);
+  constexpr std::size_t worthwhile = 400, of_loose = 4;  // points
+  const std::size_t loose = free_bodies_.loose().size(), count = awake_.size() + loose;
+  const std::size_t points = total_size_ + of_loose * loose;
+  if (parallel.threads() == 1 || points - largest_size_ < worthwhile) return count;
+  return std::max<std::size_t>(1, count * 64 / points);
 }
 
 }  // namespace iota::island

@@ -59,24 +59,21 @@ void Stepper::update_islands() {
   }
   islands.wake(model, woken_);
   islands.wake_stirred(model);
-  islands.replace_by_leaders(dirty_);
-  for (const std::uint32_t leader : dirty_) (void)islands.of_articulate(leader)->project(model, false);
+  islands.for_each_of(model, dirty_, [&](island::Island& island) { (void)island.project(model, false); });
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
 
 namespace {
 
 /// Which islands the budget left undone.
-void tell_cut_short(const model::Model& model, std::span<island::Island* const> islands,
-                    std::span<const solver::AdvanceReport> advanced, StepReport& report) {
+void tell_cut_short(island::Islands& islands, StepReport& report) {
   constexpr int most = 3;
   int count = 0;
-  for (std::size_t i = 0; i < islands.size(); ++i) {
-    if (!advanced[i].cut_short || ++count > most) continue;
-    report.warnings.push_back(text("the budget of a step ended before the solution of the island of body ",
-                                   model.bodies.id(islands[i]->bodies().front()).slot, ": its worst gap is ",
-                                   advanced[i].gap, " m"));
-  }
+  islands.for_each_advanced([&](std::uint32_t body, const solver::AdvanceReport& advanced) {
+    if (!advanced.cut_short || ++count > most) return;
+    report.warnings.push_back(text("the budget of a step ended before the solution of the island of body ", body,
+                                   ": its worst gap is ", advanced.gap, " m"));
+  });
   if (count > most) report.warnings.push_back(text("the budget of a step ended too early for ", count, " islands"));
 }
 
@@ -106,27 +103,18 @@ void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t gra
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
-  const auto awake = islands.awake(model);
-  advanced_.resize(awake.size());
-  const auto advance = [&](std::size_t i) {
-    awake[i]->try_step(model, report.dt, deadline_);
-    advanced_[i] = awake[i]->commit(model, report.dt);
-  };
+  const std::size_t count = islands.awake(model).size() + islands.loose(model).size();
+  const auto advance = [&](std::size_t i) { islands.advance(model, i, report.dt, deadline_); };
   if (StepTimes* const times = times_of_thread())
-    for_each_timed(editor_.parallel, awake.size(), islands.grain(editor_.parallel), *times, advance);
+    for_each_timed(editor_.parallel, count, islands.grain(editor_.parallel), *times, advance);
   else
-    editor_.parallel.for_each(awake.size(), islands.grain(editor_.parallel), advance);
-  if (model.corrections.lacks_room()) {
-    model.corrections.make_room(model.rings.slot_count());
-    for (const island::Island* const island : awake)
-      if (!island->is_asleep(model)) island->store_corrections(model);
-  }
-  tell_cut_short(model, awake, advanced_, report);
+    editor_.parallel.for_each(count, islands.grain(editor_.parallel), advance);
+  if (model.corrections.lacks_room()) model.corrections.make_room(model.rings.slot_count());
+  tell_cut_short(islands, report);
   int solves = 0, iterations = 0, handed_back = 0;
   double spin_lost = 0;
-  advanced_.push_back(islands.free_particles().advance(model, report.dt, editor_.parallel));
-  report.resting = islands.resting(model);
-  for (const solver::AdvanceReport& r : advanced_) {
+  made_ = 0;
+  const auto add = [&](std::uint32_t, const solver::AdvanceReport& r) {
     solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
     report.iterations_max = std::max(report.iterations_max, r.iterations_max);
     report.substeps_max = std::max(report.substeps_max, r.substeps);
@@ -136,11 +124,14 @@ void Stepper::advance_islands(StepReport& report) {
     report.error = std::max(report.error, r.error);
     model.dissipated += r.dissipated;
     model.lost += r.lost;
-    model.made += r.made;
+    model.made += r.made, made_ += r.made;
     model.external_work += r.external_work;
     model.edit_energy += r.closing_energy;
     spin_lost = std::max(spin_lost, r.spin_lost);
-  }
+  };
+  islands.for_each_advanced(add);
+  add(model::none, islands.free_bodies().advance(model, report.dt, editor_.parallel));
+  report.resting = islands.resting(model);
   if (spin_lost > 0)
     report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost,
                                    " kg m^2/s of their angular momentum"));
@@ -168,9 +159,7 @@ void Stepper::fill(StepReport& report) {
   model::Model& model = editor_.model;
   constexpr double worth_telling = 1e-4;  // of the kinetic energy
   const auto [energies, worst_gap] = editor_.islands.book(model);
-  double made = 0;
-  for (const solver::AdvanceReport& r : advanced_) made += r.made;
-  if (made > worth_telling * energies.kinetic)
+  if (made_ > worth_telling * energies.kinetic)
     report.warnings.emplace_back("the integration made energy that no force explains (energy.made); try shorter steps");
   report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
   model.notes.clear();

@@ -25,7 +25,7 @@ class Stepper {
   edit::Editor& editor_;
   edit::Door& door_;
   // Scratch of the present step, kept for its capacity.
-  std::vector<solver::AdvanceReport> advanced_;  // of each island that is awake
+  double made_ = 0;  // by the islands in this step, J
   island::Island::Clock::time_point deadline_;
   ingredient::Outcome outcome_;
   std::vector<std::uint32_t> flagged_, dirty_, woken_;  // articulates: both, velocities to project, sleepers to wake

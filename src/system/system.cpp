@@ -110,12 +110,7 @@ double System::tolerance() const { return core_->model.tolerance; }
 
 StepBudget System::budget() const { return {core_->model.budget_iterations, core_->model.budget_seconds}; }
 
-std::vector<IslandReport> System::islands() const {
-  std::vector<IslandReport> reports;
-  for (const island::Island* island : core_->islands.all())
-    if (island->has_stepped()) reports.push_back(island->report(core_->model));
-  return reports;
-}
+std::vector<IslandReport> System::islands() const { return core_->islands.reports(core_->model); }
 
 double System::damping() const { return core_->model.damping; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "island/free_particles.h"
+#include "island/free_bodies.h"
 
+#include "base/slack.h"
 #include "ingredient/ingredient_list.h"
 
 #include <algorithm>
@@ -11,20 +12,21 @@ namespace iota::island {
 
 using model::Model;
 
-bool FreeParticles::is_free(const Model& model, std::uint32_t articulate) {
+bool FreeBodies::is_free(const Model& model, std::uint32_t articulate) {
   const model::Articulate& a = model.articulates[articulate];
   if (a.count != 1) return false;
   const model::Body& body = model.bodies[a.first];
-  if (body.count != 1 || !model::is_free(body.kind)) return false;
-  const model::Particle& p = model.particles[body.first];
-  const model::Ring& ring = model.rings[p.ring];
-  if (ring.count != 1 || ring.nailed || !(p.mass > 0)) return false;
-  bool held = false;
-  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { held = held || I::holds(model, body.first); });
-  return !held;
+  if (body.count == 0 || !model::is_free(body.kind)) return false;
+  bool is_held = body.count == 1 && !(model.particles[body.first].mass > 0);
+  model.for_each_particle_of(a.first, [&](std::uint32_t p) {
+    const model::Ring& ring = model.rings[model.particles[p].ring];
+    is_held = is_held || ring.count != 1 || ring.nailed;
+    ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { is_held = is_held || I::holds(model, p); });
+  });
+  return !is_held;
 }
 
-void FreeParticles::set(std::uint32_t articulate, bool free) {
+void FreeBodies::set(std::uint32_t articulate, bool free) {
   if (articulates_.size() <= articulate) {
     if (!free) return;
     articulates_.resize(articulate + 1, 0);
@@ -33,33 +35,36 @@ void FreeParticles::set(std::uint32_t articulate, bool free) {
   articulates_[articulate] = free;
 }
 
-void FreeParticles::refresh(const Model& model) {
+void FreeBodies::refresh(const Model& model) {
   if (!is_old_) return;
   is_old_ = false;
   ++version_;
   awake_.clear(), still_.clear();
+  loose_.clear();
   for (std::uint32_t a = 0; a < articulates_.size(); ++a) {
     if (!articulates_[a]) continue;
     const std::uint32_t body = model.articulates[a].first, particle = model.bodies[body].first;
     if (is_resting(model, a))
       still_.push_back(body);
-    else
+    else if (is_particle(model, a))
       awake_.push_back({a, body, particle, model.particles[particle].ring});
+    else
+      reserve_a_quarter(loose_), loose_.push_back({a, body});
   }
 }
 
-void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
+void FreeBodies::put_to_rest(Model& model, std::uint32_t articulate) {
   rest(model, articulate);
   is_old_ = true;
 }
 
-void FreeParticles::rest(Model& model, std::uint32_t articulate) {
+void FreeBodies::rest(Model& model, std::uint32_t articulate) {
   model::Body& body = model.bodies[model.articulates[articulate].first];
   body.kind = BodyKind::resting;
   model.stop_ring(model.particles[body.first].ring);
 }
 
-void FreeParticles::wake(Model& model, std::uint32_t articulate) {
+void FreeBodies::wake(Model& model, std::uint32_t articulate) {
   model::Articulate& a = model.articulates[articulate];
   a.slow_time = 0;
   if (model.bodies[a.first].kind != BodyKind::resting) return;
@@ -67,12 +72,12 @@ void FreeParticles::wake(Model& model, std::uint32_t articulate) {
   is_old_ = true;
 }
 
-std::size_t FreeParticles::size(const Model& model) {
+std::size_t FreeBodies::size(const Model& model) {
   refresh(model);
-  return awake_.size() + still_.size();
+  return awake_.size() + loose_.size() + still_.size();
 }
 
-solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Parallel& parallel) {
+solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel& parallel) {
   refresh(model);
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
   const std::size_t chunks = (awake_.size() + chunk - 1) / chunk;
@@ -125,6 +130,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
   });
   solver::AdvanceReport report;
   resting_ = still();
+  for (const Loose& loose : loose_) resting_ += loose.rests, is_old_ = is_old_ || loose.rests;
   for (const Share& share : shares_) {
     resting_ += share.resting, is_old_ = is_old_ || share.resting > 0;
     report.dissipated += share.dissipated, report.lost += share.lost, report.external_work += share.work;

@@ -5,29 +5,36 @@
 #include "ingredient/model.h"
 #include "solver/advance_report.h"
 
+#include <span>
 #include <vector>
 
 namespace iota::island {
 
-/// Particles that nothing holds: no hinge, nail, grip, constraint or implicit bond. They are integrated in closed form.
-/// The results are those of an island, up to round-off.
-class FreeParticles {
+/// Bodies that nothing holds and nothing ties to others: no hinge, nail, grip, constraint or implicit bond. They have no
+/// islands. Single particles are integrated here, in closed form, with the results of an island up to round-off. The
+/// others, the *loose* ones, borrow an island for each step: see Islands::advance.
+class FreeBodies {
  public:
   static bool is_free(const model::Model&, std::uint32_t articulate);
 
-  void forget() { articulates_.clear(), awake_.clear(), still_.clear(), is_old_ = false; }
+  static bool is_particle(const model::Model& model, std::uint32_t articulate) {
+    return model.bodies[model.articulates[articulate].first].count == 1;
+  }
+
+  void forget() { articulates_.clear(), awake_.clear(), loose_.clear(), still_.clear(), is_old_ = false; }
   void set(std::uint32_t articulate, bool free);
   bool contains(std::uint32_t articulate) const { return articulate < articulates_.size() && articulates_[articulate]; }
 
-  /// Stops a free particle until a force acts on it, or wakes it; see System::set_rest.
+  /// Stops a particle until a force acts on it; see System::set_rest.
   void put_to_rest(model::Model&, std::uint32_t articulate);
   void wake(model::Model&, std::uint32_t articulate);
   static bool is_resting(const model::Model& model, std::uint32_t articulate) {
     return model.bodies[model.articulates[articulate].first].kind == BodyKind::resting;
   }
-  std::uint32_t resting() const { return resting_; }  ///< number of resting ones in the last step
+  /// Number of resting ones in the last step.
+  std::uint32_t resting() const { return resting_; }
 
-  /// visit(body): of the particles that rested when the last step began; it did not look at them.
+  /// visit(body): of those that rested when the last step began; it did not look at them.
   std::uint32_t still() const { return static_cast<std::uint32_t>(still_.size()); }
   template <class Visit>
   void for_each_still(Visit visit) const {
@@ -36,15 +43,29 @@ class FreeParticles {
   template <class Visit>
   void for_each_awake(Visit visit) const {
     for (const Place& place : awake_) visit(place.body);
+    for (const Loose& loose : loose_) visit(loose.body);
   }
   /// Another number whenever the still ones are others.
   std::uint64_t version() const { return version_; }
-  /// An edit has woken some.
-  void note_woken() { is_old_ = true; }
+  /// Some were woken or put to rest.
+  void note_change() { is_old_ = true; }
 
-  /// One step of h seconds for all of them.
+  /// One step of h seconds for all particles, after that of the loose bodies.
   solver::AdvanceReport advance(model::Model&, double h, const Parallel&);
 
+  struct Loose {
+    std::uint32_t articulate, body;
+    bool rests = false;                 ///< it fell asleep in the last step
+    solver::AdvanceReport report = {};  ///< of the last step
+  };
+  /// The loose bodies that were awake when the last step began, in order ...
+  std::span<Loose> loose() { return loose_; }
+  std::span<const Loose> loose() const { return loose_; }
+  /// ... or that are now, at the begin of a step.
+  std::span<Loose> loose(const model::Model& model) {
+    refresh(model);
+    return loose_;
+  }
   std::size_t size(const model::Model&);
 
  private:
@@ -55,7 +76,8 @@ class FreeParticles {
   static void rest(model::Model&, std::uint32_t articulate);
 
   std::vector<std::uint8_t> articulates_;  // 1 where free, by slot
-  std::vector<Place> awake_;               // in order
+  std::vector<Place> awake_;               // particles, in order
+  std::vector<Loose> loose_;               // in order
   std::vector<std::uint32_t> still_;       // bodies, in order
   std::uint64_t version_ = 0;
   struct Share {
