@@ -16,6 +16,7 @@ using model::none;
 void Islands::forget() {
   places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
   free_bodies_.forget();
+  ++epoch_;
   knows_all_ = false, order_is_old_ = true;
 }
 
@@ -112,6 +113,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   const bool any_is_due =
       std::any_of(suspected_.begin(), suspected_.end(), [&](const Home* home) { return is_due(*home, model); });
   if (touched_.articulates.empty() && touched_.local.pulled.empty() && waiting_.empty() && !any_is_due) return false;
+  ++epoch_;
   order_is_old_ = awake_is_old_ = true;
   places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
   node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
@@ -586,6 +588,7 @@ std::vector<IslandReport> Islands::reports(const Model& model) {
     if (home && home->island.has_stepped())
       found.push_back({home->leader, home->island.report(model, home->island.latest())});
   node_of_ring_.resize(model.rings.slot_count(), none);
+  ++epoch_;  // edits may not have been followed yet
   const auto add = [&](std::uint32_t a, const solver::AdvanceReport& last) {
     if (!model.articulates.is_alive(a) || !FreeBodies::is_free(model, a) || FreeBodies::is_particle(model, a)) return;
     borrow(model, a, [&](Island& island) { island.load(model, 0), found.push_back({a, island.report(model, last)}); });

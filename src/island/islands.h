@@ -18,21 +18,26 @@ namespace iota::island {
 /// Islands that no body owns, for as many as borrow one at the same time.
 class Lenders {
  public:
-  std::unique_ptr<Island> take() {
+  struct Loan {
+    std::unique_ptr<Island> island = std::make_unique<Island>();
+    std::uint32_t articulate = model::none;  ///< of the latest borrower
+    std::uint64_t epoch = 0;                 ///< of the structure for which it was assembled
+  };
+  Loan take() {
     const std::lock_guard lock(mutex_);
-    if (islands_.empty()) return std::make_unique<Island>();
-    std::unique_ptr<Island> island = std::move(islands_.back());
-    islands_.pop_back();
-    return island;
+    if (loans_.empty()) return {};
+    Loan loan = std::move(loans_.back());
+    loans_.pop_back();
+    return loan;
   }
-  void give(std::unique_ptr<Island> island) {
+  void give(Loan loan) {
     const std::lock_guard lock(mutex_);
-    islands_.push_back(std::move(island));
+    loans_.push_back(std::move(loan));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Island>> islands_;
+  std::vector<Loan> loans_;
 };
 
 /// All islands of a model. They follow edits, and an edit costs what it touches: an island that is tied to others takes
@@ -148,10 +153,13 @@ class Islands {
   /// visit(island): one of the loose body's, for the moment. Others may borrow theirs at the same time.
   template <class Visit>
   void borrow(const model::Model& model, std::uint32_t articulate, Visit visit) {
-    std::unique_ptr<Island> island = lenders_.take();
-    island->assemble(model, {&articulate, 1}, node_of_ring_);
-    visit(*island);
-    lenders_.give(std::move(island));
+    Lenders::Loan loan = lenders_.take();
+    if (loan.articulate != articulate || loan.epoch != epoch_ || loan.island->is_still()) {
+      loan.island->assemble(model, {&articulate, 1}, node_of_ring_);
+      loan.articulate = articulate, loan.epoch = epoch_;
+    }
+    visit(*loan.island);
+    lenders_.give(std::move(loan));
   }
 
   Home& new_home(std::uint32_t leader, std::size_t points);
@@ -218,6 +226,7 @@ class Islands {
   std::vector<std::uint32_t> node_of_ring_;
   FreeBodies free_bodies_;
   Lenders lenders_;
+  std::uint64_t epoch_ = 1;  // another one after each change of structure
   bool knows_all_ = false, order_is_old_ = true, awake_is_old_ = true;
 };
 

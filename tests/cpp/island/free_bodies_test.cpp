@@ -191,7 +191,7 @@ TEST(LooseBodies, move_as_if_each_had_an_island_of_its_own_to_the_bit) {
     }
 }
 
-TEST(LooseBodies, fall_asleep_as_if_each_had_an_island_of_its_own) {
+TEST(LooseBodies, fall_asleep_and_wake_as_if_each_had_an_island_of_its_own) {
   for (const IntegrationMode mode : all_modes) {
     System system({.gravity = {}, .mode = mode, .damping = 1, .rest = {.after = 0.1, .speed = 0.1}});
     std::mt19937 random(3);
@@ -211,6 +211,31 @@ TEST(LooseBodies, fall_asleep_as_if_each_had_an_island_of_its_own) {
     EXPECT_GT(resting[10], 0u);
     EXPECT_LT(resting[10], 20u);
     EXPECT_EQ(resting.back(), 20u);
+  }
+}
+
+// The only loose body finds the island that it had in the last step.
+TEST(LooseBodies, of_which_there_is_one_fall_asleep_and_wake_as_if_it_had_an_island_of_its_own) {
+  for (const IntegrationMode mode : all_modes) {
+    System system({.gravity = {}, .mode = mode, .damping = 3, .rest = {.after = 0.1, .speed = 0.1}});
+    const BodyId box = system.bodies().create(Box{{1, 2, 3}});
+    system.bodies().set_angular_velocity(box, {0, 0.1, 0.2});
+    const auto own = std::make_unique<Flight>(system.snapshot(), true),
+               lent = std::make_unique<Flight>(system.snapshot(), false);
+    int falls = 0;
+    for (int i = 0; i < 240; ++i) {
+      for (Flight* const flight : {own.get(), lent.get()}) {
+        model::Model& model = flight->core.model;
+        if (i % 90 == 70) model.pushes.make(model.particles[model.bodies[box.slot].first].ring).force = {0, 3e5, 0};
+        flight->step(0.02);
+      }
+      ASSERT_EQ(lent->bits(), own->bits()) << "step " << i;
+      const bool rests = lent->core.model.bodies[box.slot].kind == BodyKind::resting;
+      const auto loose = lent->core.islands.free_bodies().loose();
+      falls += !loose.empty() && loose[0].rests;
+      EXPECT_EQ(rests, loose.empty() || loose[0].rests);
+    }
+    EXPECT_EQ(falls, 3);
   }
 }
 
