@@ -67,8 +67,8 @@ float two_digits(double value) {
   return static_cast<float>(std::round(value / step) * step);
 }
 
-void set_state(RoomObject& self, bool paused, double speed, double step_ms, double dt,
-               const std::vector<std::pair<std::string, double>>& costs) {
+void set_room_state(RoomObject& self, bool paused, double speed, double step_ms, double dt,
+                    const std::vector<std::pair<std::string, double>>& costs) {
   protocol::WorldState state{paused, static_cast<float>(speed), two_digits(step_ms), dt, {}};
   for (const auto& [part, ms] : costs) state.costs.push_back({part, two_digits(ms)});
   if (self.state == state) return;
@@ -299,7 +299,7 @@ void bind_room(nb::module_& module) {
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "styles"_a, "style"_a, "camera"_a.none(),
            "ground"_a.none(), "modules"_a, "client"_a = 0,
            "client: for this one alone, until the next settings for all (client 0).")
-      .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
+      .def("set_state", &set_room_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")
       .def(
