@@ -65,12 +65,6 @@ void refuse_without_shape(const std::optional<double>& density, const std::optio
       "particles with body.particle(position, mass, velocity)");
 }
 
-System& between_steps(const BodyHandle& self, const char* what) {
-  System& engine = self.use();
-  self.system->use_between_steps(what);
-  return engine;
-}
-
 void set_pose(const BodyHandle& self, const Vec3& position, const Quaternion& orientation) {
   between_steps(self, "moving a body").bodies().set_pose(self.id, position, orientation);
 }

@@ -418,11 +418,6 @@ nb::object body_or_none(const ConstraintHandle& self, BodyId id) {
   return id ? nb::cast(sibling(self, id)) : nb::none();
 }
 
-System& between_steps(const ConstraintHandle& self, const char* what) {
-  self.use();
-  return self.system->use_between_steps(what);
-}
-
 std::string repr_constraint(const ConstraintHandle& self) {
   if (!self.is_alive()) return stale_repr("Constraint", self);
   const ConstraintState state = self.system->engine.joints().state(self.id);

@@ -126,12 +126,6 @@ void bind_emitter(nb::module_& module) {
       });
 }
 
-System& between_steps(const ParticleHandle& self, const char* what) {
-  System& engine = self.use();
-  self.system->use_between_steps(what);
-  return engine;
-}
-
 void bind_attributes(nb::class_<ParticleHandle>& type) {
   type.def_prop_ro(
           "has_attributes", [](const ParticleHandle& self) { return self.use().particles().has_attributes(self.id); },

@@ -28,12 +28,6 @@ std::string repr_particle(const ParticleHandle& self) {
          describe(engine.particles().position(self.id)) + ">";
 }
 
-System& between_steps(const ParticleHandle& self, const char* what) {
-  System& engine = self.use();
-  self.system->use_between_steps(what);
-  return engine;
-}
-
 using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 

@@ -214,7 +214,7 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
 
 // ------------------------------------------------------------------------------------------------------------- input
 
-using Ids = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using NamedIds = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Client and record of each input.
 nb::list records_of(const std::vector<net::ClientInput>& inputs) {
@@ -228,7 +228,7 @@ nb::list records_of(const std::vector<net::ClientInput>& inputs) {
 }
 
 /// The bodies that still exist, each once, in this order.
-std::vector<BodyId> existing(RoomObject& self, const Ids& named) {
+std::vector<BodyId> existing(RoomObject& self, const NamedIds& named) {
   std::vector<BodyId> ids;
   std::set<std::uint32_t> seen;
   for (const auto& [slot, generation] : named) {
@@ -238,7 +238,7 @@ std::vector<BodyId> existing(RoomObject& self, const Ids& named) {
   return ids;
 }
 
-nb::list bodies_of(RoomObject& self, const Ids& ids, const nb::object& system) {
+nb::list bodies_of(RoomObject& self, const NamedIds& ids, const nb::object& system) {
   SystemObject* const object = to_system(system);
   nb::list bodies;
   for (const BodyId id : existing(self, ids))
@@ -247,7 +247,7 @@ nb::list bodies_of(RoomObject& self, const Ids& ids, const nb::object& system) {
 }
 
 /// The same of a simulator: slots.
-std::vector<std::uint32_t> slots_of(RoomObject& self, const Ids& ids) {
+std::vector<std::uint32_t> slots_of(RoomObject& self, const NamedIds& ids) {
   std::vector<std::uint32_t> slots;
   for (const BodyId id : existing(self, ids)) slots.push_back(id.slot);
   return slots;

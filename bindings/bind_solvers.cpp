@@ -17,7 +17,7 @@ namespace iota::bindings {
 
 namespace {
 
-using Numbers = nb::ndarray<nb::numpy, double, nb::c_contig>;
+using DenseArray = nb::ndarray<nb::numpy, double, nb::c_contig>;
 
 /// A copy owned by Python.
 template <class... Sizes>
@@ -25,7 +25,7 @@ nb::object make_array(std::span<const double> values, Sizes... sizes) {
   auto* const copy = new double[std::max<std::size_t>(values.size(), 1)];
   std::copy(values.begin(), values.end(), copy);
   const nb::capsule owner(copy, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::cast(Numbers(copy, {static_cast<std::size_t>(sizes)...}, owner));
+  return nb::cast(DenseArray(copy, {static_cast<std::size_t>(sizes)...}, owner));
 }
 
 /// Copies the script's numbers; ValueError if their shape is wrong. `what`: "evaluate(x)".

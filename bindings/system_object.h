@@ -147,6 +147,13 @@ nb::object take_solver_failure();
 /// Throws TypeError for anything but a System.
 SystemObject* to_system(nb::handle system);
 
+/// The system of a living object, for a call that is refused during a step.
+template <class IdType>
+System& between_steps(const Handle<IdType>& self, const char* what) {
+  self.use();
+  return self.system->use_between_steps(what);
+}
+
 /// Another object of the same system.
 template <class Other, class IdType>
 Handle<IdType> sibling(const Other& handle, IdType id) {
