@@ -71,7 +71,7 @@ class Islands {
     for (const Island* const island : awake_) visit(island->bodies().front(), island->latest());
     for (const FreeBodies::Loose& loose : free_bodies_.loose()) visit(loose.body, loose.report);
   }
-  /// Of the islands and loose bodies in the last step.
+  /// How the last step was for each island and loose body.
   std::vector<IslandReport> reports(const model::Model&);
   /// The islands of these articulates are awake in the next step.
   void wake(model::Model&, std::span<const std::uint32_t> articulates);

@@ -144,7 +144,7 @@ class Lazy {
     return *pool_;
   }
   const Pool& get() const { return pool_ ? *pool_ : none; }
-  /// That has been made.
+  /// The pool, which has been made.
   Pool& operator*() { return *pool_; }
   const Pool& operator*() const { return *pool_; }
 
