@@ -75,7 +75,9 @@ class SlotTable {
     ar.vector(generations_);
     ar.vector(free_);
     ar.value(alive_count_);
-    if (!is_consistent()) ar.fail();
+    if (is_consistent()) return;
+    ar.fail();
+    *this = {};
   }
 
  private:
