@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from random import Random
 from typing import Any
@@ -29,8 +28,8 @@ TEXTS = [
     "\x1b[31m",
     "\U0001f600" * 8,
 ]
-# A hello ends nothing but is refused, and a picture that nobody asked for, too: neither reaches the script.
-KINDS = [name for name in TO_SERVER if name not in ("hello", "ping", "presence", "picture")]
+# Only those that reach the script. A picture does where one was asked for.
+KINDS = [name for name, message in TO_SERVER.items() if message.get("for") != "server" and name != "picture"]
 
 
 class Sender:
@@ -107,6 +106,3 @@ class Sender:
             text = text[:-1]
         return text
 
-
-def is_finite(values: tuple[float, ...]) -> bool:
-    return all(map(math.isfinite, values))

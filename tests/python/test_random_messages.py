@@ -25,15 +25,20 @@ COUNT = sampled(4000)
 AT_ONCE = 20  # messages, between two looks at the world
 
 
+def hear_back(page: PageClient) -> None:
+    """Waits until the server has read all that the page has sent."""
+    echoed = page.messages["pong"]
+    page.send("ping", client_time=0.0)
+    page.wait_for(lambda: page.messages["pong"] > echoed or page.closed.is_set())
+
+
 def send_at_random(page: PageClient, seed: int) -> int:
     """How many were sent."""
     sender, sent, end = Sender(page, seed), 0, time.monotonic() + SECONDS
     while sent < COUNT if not SECONDS else time.monotonic() < end:
         sender.send(AT_ONCE)
         sent += AT_ONCE
-        echoed = page.messages["pong"]
-        page.send("ping", client_time=0.0)
-        page.wait_for(lambda echoed=echoed: page.messages["pong"] > echoed or page.closed.is_set())
+        hear_back(page)
         assert not page.closed.is_set(), f"after {sent} messages of seed {seed}"
         time.sleep(0.2 if SECONDS else 0.0)
     return sent
@@ -47,12 +52,20 @@ def test_no_message_ends_a_study_and_none_is_an_error(
     if not SECONDS:
         monkeypatch.setattr(Pace, "allows", lambda *_: True)
     world = studies.module(name).build()
+
+    def world_steps() -> int:
+        return world.system.step_count
+
     url = run_world(world)
     with PageClient(url) as page, PageClient(url) as other:
         send_at_random(page, SEED)
+        for _ in range(2):  # a call comes before the input of its round, so that all is handled after the second one
+            world.call(lambda: None)
         other.send("control", command=0, value=0.0)
-        other.wait_for(lambda: other.last["world_state"]["paused"])
-        other.single_step()
+        other.wait_for(lambda: world.call(lambda: world.clock.paused))
+        before = world.call(world_steps)
+        other.send("control", command=2, value=0.0)
+        other.wait_for(lambda: world.call(world_steps) == before + 1)
         failed = [card for card in [*page.notices, *other.notices] if card["title"].endswith("failed")]
         # What a study asks of bodies that are 1e9 m away, the engine may refuse in words.
         assert [card for card in failed if not card["text"].startswith("ValueError: ")] == []
