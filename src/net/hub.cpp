@@ -32,7 +32,7 @@ constexpr std::string_view clients_key = "clients";
 constexpr std::string_view people_key = "people";
 constexpr std::size_t max_picture_bytes = 64 << 20;
 constexpr std::size_t max_kept_notices = 8;
-// Of a world: one reset a second, and at length one in five, so that it gets somewhere in between.
+// A world has one reset a second, and at length one in five, so that it gets somewhere in between.
 constexpr double reset_pause = 1, reset_every = 5, most_resets = 10;
 
 /// Coordinates of one place or several.

@@ -37,7 +37,7 @@ class ClientLink {
   virtual void drop(std::string_view reason) = 0;
   /// Sends the reason, after which a page does not come back by itself.
   virtual void refuse(std::string_view reason) { drop(reason); }
-  /// Of the machine, if it is another one.
+  /// The address of the machine, if it is another one.
   virtual std::string address() const { return {}; }
   /// The world has ended: sends the queue, then closes.
   virtual void world_ended() = 0;

@@ -33,7 +33,7 @@ struct ServerOptions {
   std::uint16_t port = 8080;          ///< 0: any free one
   std::filesystem::path page_folder;  ///< the built page: index.html and its files
   std::string token;                  ///< of the host; every WebSocket needs this or another one; not empty
-  /// What clients with other tokens may do.
+  /// The roles of clients with other tokens.
   std::vector<std::pair<std::string, protocol::Role>> other_tokens = {};
   std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client
   std::size_t max_clients = 64;           ///< of each world

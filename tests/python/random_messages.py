@@ -105,4 +105,3 @@ class Sender:
         while len(text.encode()) > most:
             text = text[:-1]
         return text
-

@@ -45,7 +45,7 @@ def handles(message: type, share: float = 0.0) -> Callable[[Handler], Handler]:
 
 
 def share_of(message: protocol.Input) -> float:
-    """Of an action that it counts as. Each further body counts as a tenth, up to all that a page can do at once."""
+    """Returns the share of an action that a message counts as. Each further body counts as a tenth, up to all that a page can do at once."""
     others = len(message.others) if isinstance(message, protocol.Action) else 0
     return min(SHARES[type(message)] + 0.1 * others, ACTIONS)
 

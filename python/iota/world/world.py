@@ -470,7 +470,7 @@ class World:
             )
 
     def _limit_steps(self) -> None:
-        """What users build must not hold the world for them all, so a search for a solution is given up at some time."""
+        """A search for a solution is given up at some time, since things that users build must not hold the world for all."""
         system = self.system
         if isinstance(system, System) and not (system.budget_seconds or system.budget_iterations):
             system.budget_seconds = SLOW_STEP
