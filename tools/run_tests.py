@@ -45,8 +45,8 @@ STAMPS = ROOT / "build" / "stamps"
 CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
 SHOWN_SLOWEST = 10
-#: Patterns of tests that may be skipped here; all others run, or fail.
-EXPECTED_SKIPS: tuple[str, ...] = ()
+#: Patterns of tests that may be skipped here; all others run, or fail. Pictures to look at are taken by make test-all.
+EXPECTED_SKIPS: tuple[str, ...] = ("pictures.test.ts: pictures *", "xr.test.ts: pictures for people to look at *")
 
 
 @dataclass

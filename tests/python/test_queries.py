@@ -178,7 +178,7 @@ def test_the_ground_a_wall_and_a_room_from_a_file_are_static_bodies(tmp_path: Pa
     side = surface.at
     ball = world.system.body(shape=iota.Sphere(0.2), position=(0, 1, 0))
     ground = world.scene.ground_body
-    assert world.system.obstacles == [ground, wall, beam, side] and world.system.bodies == [ball]
+    assert world.system.obstacles == [wall, beam, side, ground] and world.system.bodies == [ball]
     assert {body.kind for body in world.system.obstacles} == {"static"}
     for along, body, distance in (((1, 0, 0), wall, 1.9), ((0, 0, 1), None, None), ((-1, 0, 0), side, 3)):
         hit = world.queries.ray((0, 0.5, 0), along)

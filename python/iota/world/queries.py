@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from iota._core import Body, Places, Shape, System, Vec3
 from iota.world.parts import Part
+from iota.world.scene import Scene
 from iota.world.things import unit_quaternion
 
 Place = Sequence[float] | Vec3
@@ -32,8 +33,8 @@ class Queries(Part):
     room of 300 000 triangles, the first one after a step up to 1 ms if all of them move, and after bodies came or went 0.5
     ms. They raise TypeError for a World of another Simulator."""
 
-    def __init__(self, system: System) -> None:
-        self._system = system
+    def __init__(self, system: System, scene: Scene) -> None:
+        self._system, self._scene = system, scene
         self._places: Places | None = None
 
     def ray(
@@ -79,6 +80,7 @@ class Queries(Part):
             if not isinstance(self._system, System):
                 raise TypeError("questions about places need a System; this world has a simulator of its own")
             self._places = Places(self._system)
+        self._scene.keep_ground()
         return self._places
 
 

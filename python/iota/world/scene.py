@@ -64,7 +64,6 @@ class Scene(Part):
         self._ground: Body | None = None
         self._camera: Camera | None = None
         self._shows_edits = True
-        self.keep_ground()
 
     @property
     def camera(self) -> Camera | None:
@@ -104,23 +103,22 @@ class Scene(Part):
 
     @property
     def ground_body(self) -> Body | None:
-        """The obstacle that is the ground, a HalfSpace named "ground"; None without one, and for another Simulator. One that the
-        system has already is taken as it is."""
-        if not isinstance(self._system, System):
-            return None
-        if self._ground is None or not _is_ground(self._ground):
-            self._ground = next(filter(_is_ground, self._system.obstacles), None)
+        """The obstacle that is the ground, a HalfSpace named "ground"; None without one, and for another Simulator. It is made
+        when the world begins, or is asked for it. One that the system has already is taken as it is."""
+        self.keep_ground()
         return self._ground
 
     def keep_ground(self, height: float | None = None) -> None:
         """Makes the ground, if there is none: the script may have restored a state of before it. height: m; None: the former."""
-        if height is not None:
+        if not isinstance(self._system, System):
+            self._height = self._height if height is None else height
+            return
+        if self._ground is not None and self._ground.alive and self._ground.name == GROUND:  # as in nearly each step
+            return
+        self._ground = next(filter(_is_ground, self._system.obstacles), None)
+        if self._ground is None and height is not None:
             self._height = height
-        if self._height is None or not isinstance(self._system, System):
-            return
-        if self._ground is not None and self._ground.alive and self._ground.name == GROUND:  # in each step
-            return
-        if self.ground_body is None:
+        if self._ground is None and self._height is not None:
             self._ground = self._fix("ground", UP, [], (0, self._height, 0))
             self._ground.name = GROUND
 

@@ -47,6 +47,7 @@ class Stepper:
         """Starts a run; `reset` returns to this state. kept: a file of `keep`, which the run goes on from as far as it fits."""
         state = self._state
         self._tally = Tally(state.system)
+        state.scene.keep_ground()
         if state.scene.ground is not None and isinstance(state.system, System):
             self._floor = Floor(state.system, state.scene.ground)
         self._start, self._camera = state.system.snapshot(), state.scene.camera

@@ -132,7 +132,7 @@ class World:
             state.history,
             state.clients,
         )
-        self._queries = Queries(state.system)
+        self._queries = Queries(state.system, state.scene)
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
         self.camera = camera
@@ -480,8 +480,7 @@ class World:
         self._runner = threading.get_ident()
         if self._finds_ground:
             self._finds_ground = False
-            if self.scene.ground_body is None:
-                self.scene.keep_ground(level_below(self.system))
+            self.scene.keep_ground(level_below(self.system))
         self._stepper.begin(run_options.current().kept)
         self._real_time.restart()
 
