@@ -28,7 +28,6 @@ class Ids {
   std::vector<BodyId> ids_;
 };
 
-
 nb::object to_tuple(PlacesObject& self, const std::optional<Hit>& hit) {
   if (!hit) return nb::none();
   return nb::make_tuple(BodyHandle{self.system_object, self.system, hit->body}, hit->point, hit->distance);
@@ -39,10 +38,8 @@ constexpr const char* hit_type = "tuple[Body, Vec3, float] | None";
 }  // namespace
 
 void bind_places(nb::module_& module) {
-  nb::class_<PlacesObject>(
-      module, "Places",
-      "Questions about the places of bodies; a World asks them.",
-      nb::type_slots(handle_slots<PlacesObject>))
+  nb::class_<PlacesObject>(module, "Places", "Questions about the places of bodies; a World asks them.",
+                           nb::type_slots(handle_slots<PlacesObject>))
       .def(
           "__init__", [](PlacesObject* self, nb::object system) { new (self) PlacesObject(std::move(system)); },
           "system"_a)

@@ -181,8 +181,9 @@ void def_mesh(nb::class_<Mesh>& type) {
             new (self) Mesh(std::move(made));
           },
           "vertices"_a, "triangles"_a, nb::kw_only(), "closed"_a = true,
-          nb::sig("def __init__(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, closed: bool = "
-                  "True) -> None"))
+          nb::sig(
+              "def __init__(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike, *, closed: bool = "
+              "True) -> None"))
       .def_prop_ro(
           "closed", [](const Mesh& mesh) { return shape::Traits<Mesh>::has_volume(mesh); },
           "Whether it encloses a volume. If not, only static bodies can have it, see `System.obstacle`.")

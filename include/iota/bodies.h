@@ -80,7 +80,7 @@ class Bodies : public View {
   std::vector<BodyId> ids() const;        ///< in order of slots, without obstacles
   std::vector<BodyId> obstacles() const;  ///< in order of slots
   bool is_obstacle(BodyId) const;
-  std::string name(BodyId) const;   ///< empty unless it was given one
+  std::string name(BodyId) const;  ///< empty unless it was given one
   /// At most 63 bytes; need not be unique. A survivor keeps its own name.
   void set_name(BodyId, std::string_view);
   ///@}

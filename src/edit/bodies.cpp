@@ -95,8 +95,8 @@ BodyId apply(Editor& e, const CreateObstacle& c) {
 
 void refuse_obstacle(const model::Model& model, std::uint32_t body, const char* what) {
   if (model.obstacles.has(body))
-    throw std::invalid_argument(text("body ", body, " is an obstacle, which cannot ", what,
-                                     ": make it a static body given by shape instead"));
+    throw std::invalid_argument(
+        text("body ", body, " is an obstacle, which cannot ", what, ": make it a static body given by shape instead"));
 }
 
 ParticleId apply(Editor& e, const CreateAttachment& c) {

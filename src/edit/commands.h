@@ -153,7 +153,7 @@ struct AllCommands<std::variant<C...>, std::tuple<I...>> {
 };
 }  // namespace detail
 
-/// Those above, then those of the ingredients. Recordings name a command by its place, and have the length of the list in
+/// All commands: those above, then those of the ingredients. Recordings name a command by its place, and have the length of the list in
 /// the version of their format (door.cpp).
 using Command = detail::AllCommands<OfNouns, ingredient::Ingredients>::type;
 

@@ -130,9 +130,10 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
   const BodyKind kind = kind_of_union(kind_a, kind_b);
   for (const std::uint32_t body : {a, b})
     if (lacks_volume(model, body) && kind != BodyKind::static_ && kind != BodyKind::scripted)
-      throw std::invalid_argument("combine: body " + std::to_string(body) +
-                                  " is a half-space or an open mesh, which has no mass, so that what is combined with it cannot move; "
-                                  "make it static or scripted first");
+      throw std::invalid_argument(
+          "combine: body " + std::to_string(body) +
+          " is a half-space or an open mesh, which has no mass, so that what is combined with it cannot move; "
+          "make it static or scripted first");
   const double damping = damping_of_union(model, a, b);
   const BodyKind kind_before = kind_of_union(model.bodies[a].kind_before, model.bodies[b].kind_before);
   // Inertia pairs and solids move with their particles, so the lists are detached before the particles leave.

@@ -66,7 +66,8 @@ std::string measure(const Mesh& mesh, MassProperties& out) {
   if (volume < -1e-9 * extent * extent * extent)
     return text("the mesh is inside out (its volume is ", volume, " m^3): turn all triangles round");
   if (!(volume > 1e-9 * extent * extent * extent))
-    return text("the mesh encloses no volume (", volume, " m^3 at ", extent, " m): it is flat, or folds back on itself");
+    return text("the mesh encloses no volume (", volume, " m^3 at ", extent,
+                " m): it is flat, or folds back on itself");
   const Vec3 center = (1 / volume) * first;
   const Mat3 about_center = (1 / volume) * second + -1.0 * Mat3::outer(center, center);
   out = {volume, mean + center, {}};

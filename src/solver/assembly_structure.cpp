@@ -156,7 +156,8 @@ double set_reference_lengths(Problem& problem) {
 bool Assembly::compile(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
   if (const std::uint64_t before = std::exchange(structure_, problem.structure());
-      before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() && pattern_ != own_pattern_) {
+      before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() &&
+      pattern_ != own_pattern_) {
     for (auto& c : problem.mass_couplings) c.slot = pattern_->pair_slot(c.a, c.b);
     forget_factors();
     problem.fit_pools();

@@ -84,7 +84,8 @@ std::vector<BodyId> Places::within(const Vec3& place, double radius, Only only) 
   return found;
 }
 
-std::vector<BodyId> Places::overlap(const Shape& shape, const Vec3& position, const Quaternion& orientation, Only only) {
+std::vector<BodyId> Places::overlap(const Shape& shape, const Vec3& position, const Quaternion& orientation,
+                                    Only only) {
   require_place(position);
   shape::check(shape);
   if (!contact::is_convex(shape) || !shape::is_solid(shape))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where things are in the drawn picture, by counting pixels.
 
-import type { DirectionalLight } from "three";
+import type { DirectionalLight, Object3D } from "three";
 import type { Tab } from "./browser.ts";
 
 export interface Drawn {
@@ -17,7 +17,8 @@ export interface Drawn {
   readonly covered: number;
 }
 
-const everything = ["body", "tie", "particleSet"] as const;
+/** Bodies that are of an articulate, and obstacles, which are of none. */
+const everything = ["body", "obstacle", "tie", "particleSet"] as const;
 
 /** The pixels of these kinds of things, or of shadows: those that change when they are hidden. */
 export async function drawn(tab: Tab, what: readonly (typeof everything)[number][] | "shadows" = everything): Promise<Drawn> {
@@ -32,8 +33,18 @@ export async function drawn(tab: Tab, what: readonly (typeof everything)[number]
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
       return pixels;
     };
+    const showKind = (kind: (typeof hiding)[number], on: boolean) => {
+      if (kind === "tie" || kind === "particleSet") {
+        entities[kind].root.visible = on;
+        return;
+      }
+      const { bodies_: bodies } = entities.body as unknown as { bodies_: Map<number, { instances: readonly { mesh: Object3D }[] }> };
+      for (const [slot, { instances }] of bodies) {
+        if ((entities.membership.articulateOf(slot) >= 0) === (kind === "body")) for (const { mesh } of instances) mesh.visible = on;
+      }
+    };
     const show = (on: boolean) => {
-      if (hiding !== "shadows") for (const kind of hiding) entities[kind].root.visible = on;
+      if (hiding !== "shadows") for (const kind of hiding) showKind(kind, on);
       else viewer.scene.traverse((light) => { if ("isDirectionalLight" in light) (light as DirectionalLight).shadow.intensity = on ? 1 : 0; });
     };
     renderer.shadowMap.autoUpdate = false;

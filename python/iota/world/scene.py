@@ -182,7 +182,9 @@ class Scene(Part):
     ) -> Body:
         """An obstacle that is drawn with a look. caller: for the error of a World of another Simulator."""
         if not isinstance(self._system, System):
-            raise TypeError(f"{caller} needs a System; this world has a simulator of its own: give it a body of kind static")
+            raise TypeError(
+                f"{caller} needs a System; this world has a simulator of its own: give it a body of kind static"
+            )
         body = self._system.obstacle(shape, position, unit_quaternion(rotation))
         self.draw(body, look)
         return body
