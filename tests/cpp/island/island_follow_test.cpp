@@ -136,7 +136,7 @@ TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_dampin
   using enum MixedChain::Edit;
   const std::vector<MixedChain::Edit> choices[] = {{cut, grab, let_go, damp},
                                                    {close, call_off, grab, let_go, damp, nail}};
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= sampled(60u); ++seed) {
     const auto mode = seed % 2 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
     MixedChain followed(seed, mode), renewed(seed, mode);
     for (int step = 0; step < 30; ++step) {
@@ -340,7 +340,8 @@ struct RandomScene {
     const ParticleId p = now.knots[now.random() % now.knots.size()], q = now.knots[now.random() % now.knots.size()];
     const double apart = norm(system.particles().position(p) - system.particles().position(q));
     const std::size_t link = 1 + now.random() % 59, choice = now.random() % (cuts ? 12 : 10);
-    const bool may_tie = system.particles().body(p) != system.particles().body(q) && apart > 0.1 && apart < 1.6;
+    // Ends of a straight chain are multiples of 0.1 m apart: round-off must not decide.
+    const bool may_tie = system.particles().body(p) != system.particles().body(q) && apart > 0.15 && apart < 1.65;
     if (choice < 3 && may_tie)
       now.ropes.push_back(system.joints().create(
           DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = (1 + 0.02 * (link % 3)) * apart}));
@@ -389,7 +390,7 @@ TEST(FollowingIsland, of_random_scenes_continues_to_the_same_bits_from_a_snapsho
 }
 
 TEST(FollowingIsland, of_random_scenes_gives_what_islands_that_are_built_anew_give) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= sampled(60u); ++seed) {
     const auto mode = seed % 3 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
     RandomScene followed(mode), renewed(mode);
     followed.build(seed), renewed.build(seed);
