@@ -33,7 +33,7 @@ OCTAHEDRON = """struct Octahedron {
 """
 WAVE = """    {
       "name": "wave",
-      "type": 15,
+      "type": 16,
       "doc": "A greeting.",
       "fields": [{ "name": "hand", "type": "string", "max": 32 }, { "name": "times", "type": "u8" }]
     },

@@ -7,7 +7,7 @@ import iota
 
 
 def test_a_balloon_lifts_what_it_is_tied_to_until_it_is_destroyed() -> None:
-    system = iota.System(gravity=0)
+    system = iota.System(gravity=(0, 0, 0))
     body = system.body()
     low = body.particle((0, 0, 0), mass=1)
     body.particle((0, 1, 0), mass=1)
