@@ -40,8 +40,6 @@ void make_secret_folder(const fs::path& folder) {
   if (fs::create_directories(folder)) fs::permissions(folder, fs::perms::owner_all);
 }
 
-fs::path temporary_beside(const fs::path& file) { return name_beside(file); }
-
 void replace_secret(const fs::path& file, const std::string& text) {
   make_secret_folder(file.parent_path());
   replace_file(file, std::as_bytes(std::span(text)), Readers::owner);

@@ -20,9 +20,6 @@ void write_secret(const std::filesystem::path& file, const std::string& text);
 /// Makes the folder of a secret, for its owner only, if it does not exist.
 void make_secret_folder(const std::filesystem::path& folder);
 
-/// A name beside `file` that no other process uses.
-std::filesystem::path temporary_beside(const std::filesystem::path& file);
-
 /// Replaces a file by a secret atomically. Throws std::system_error.
 void replace_secret(const std::filesystem::path& file, const std::string& text);
 

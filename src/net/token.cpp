@@ -48,7 +48,7 @@ std::string load_or_make_token(const fs::path& folder) {
   }
   make_secret_folder(folder);
   std::string token = make_token();
-  const fs::path temporary = temporary_beside(file);
+  const fs::path temporary = name_beside(file);
   write_secret(temporary, token + "\n");
   // A link fails if another process was faster, so that both use that one's token; a rename would not fail.
   std::error_code no_link;
