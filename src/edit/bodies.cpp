@@ -34,6 +34,18 @@ Mat3 to_mat3(const Matrix3& rows) {
 /// For a body whose shape has no volume: the four points of a cube of 1 m give it a frame.
 constexpr MassProperties frame_only{1, {}, {{{1.0 / 12, 0, 0}, {0, 1.0 / 12, 0}, {0, 0, 1.0 / 12}}}};
 
+void require_shape(const Shape& shape) {
+  shape::check(shape);
+  if (const Mesh* const mesh = std::get_if<Mesh>(&shape)) shape::Traits<Mesh>::check_triangles(*mesh);
+}
+
+/// A shape as the model keeps it, for one more solid. is_open: a mesh without a volume.
+shape::Data stored(model::Model& model, const Shape& shape, bool is_open) {
+  const shape::Data data = shape::to_data(shape);
+  if (const Mesh* const mesh = std::get_if<Mesh>(&shape)) model.meshes.add_use(data.key, *mesh, is_open);
+  return data;
+}
+
 }  // namespace
 
 BodyId apply(Editor& e, const CreateBody& c) {
@@ -47,11 +59,10 @@ BodyId apply(Editor& e, const CreateBody& c) {
 BodyId apply(Editor& e, const CreateSolid& c) {
   model::Model& model = e.model;
   const SolidOptions& o = c.options;
-  shape::check(c.shape);
-  const Mesh* const mesh = std::get_if<Mesh>(&c.shape);
-  if (mesh) shape::Traits<Mesh>::check_triangles(*mesh);
+  require_shape(c.shape);
   const bool can_move = o.kind != BodyKind::static_ && o.kind != BodyKind::scripted;
-  const MassProperties properties = can_move || shape::is_solid(c.shape) ? mass_properties(c.shape) : frame_only;
+  const bool has_volume = can_move || shape::is_solid(c.shape);
+  const MassProperties properties = has_volume ? mass_properties(c.shape) : frame_only;
   if (std::isnan(o.mass)) require_positive("density", o.density);
   const double mass = std::isnan(o.mass) ? o.density * properties.volume : o.mass;
   require_not_negative("damping", o.damping);
@@ -64,8 +75,7 @@ BodyId apply(Editor& e, const CreateSolid& c) {
 
   const std::uint32_t body = model.make_body(o.kind, o.damping);
   model::Solid solid;
-  solid.shape = shape::to_data(c.shape);
-  if (mesh) model.meshes.add_use(solid.shape.key, *mesh);
+  solid.shape = stored(model, c.shape, !has_volume);
   add_solid(model, body, solid, mass, properties.center, to_mat3(properties.mean_squares), pose);
   const Vec3 center = model.center_of_mass(body);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -80,15 +90,11 @@ BodyId apply(Editor& e, const CreateSolid& c) {
 
 BodyId apply(Editor& e, const CreateObstacle& c) {
   model::Model& model = e.model;
-  shape::check(c.shape);
-  const Mesh* const mesh = std::get_if<Mesh>(&c.shape);
-  if (mesh) shape::Traits<Mesh>::check_triangles(*mesh);
+  require_shape(c.shape);
   require_finite("position", c.position);
   const model::SolidPose pose{c.position, require_quaternion("orientation", c.orientation)};
   const std::uint32_t body = model.make_body(BodyKind::static_, 0);
-  const shape::Data shape = shape::to_data(c.shape);
-  if (mesh) model.meshes.add_use(shape.key, *mesh);
-  make_obstacle(model, body, shape, pose);
+  make_obstacle(model, body, stored(model, c.shape, !shape::is_solid(c.shape)), pose);
   e.structure_changed();
   return model.bodies.id(body);
 }

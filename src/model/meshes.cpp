@@ -3,16 +3,15 @@
 
 #include "base/text.h"
 #include "shape/mesh.h"
-#include "shape/shape.h"
 
 #include <stdexcept>
 #include <utility>
 
 namespace iota::model {
 
-void Meshes::add_use(std::uint64_t key, const Mesh& mesh) {
+void Meshes::add_use(std::uint64_t key, const Mesh& mesh, bool is_open) {
   Used& used = by_key_[key];
-  if (!used.mesh) used.mesh = std::make_shared<const Mesh>(mesh), used.is_open = !shape::is_solid(mesh);
+  if (!used.mesh) used.mesh = std::make_shared<const Mesh>(mesh), used.is_open = is_open;
   ++used.uses;
 }
 

@@ -18,8 +18,8 @@ namespace iota::model {
 /// has it, and saved with the tables. Copies of a model share the triangles, which never change.
 class Meshes {
  public:
-  /// One more solid has the mesh. It may be open: that of a body that cannot move.
-  void add_use(std::uint64_t key, const Mesh& mesh);
+  /// One more solid has the mesh. is_open: it encloses no volume, so that it is of a body that cannot move.
+  void add_use(std::uint64_t key, const Mesh& mesh, bool is_open);
   void remove_use(std::uint64_t key);
   /// Null for an unknown key; 0 is that of shapes that are no mesh.
   std::shared_ptr<const Mesh> find(std::uint64_t key) const;

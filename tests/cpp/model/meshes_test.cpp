@@ -31,8 +31,8 @@ std::vector<std::byte> saved(Meshes& meshes) {
 TEST(Meshes, a_mesh_is_kept_once_and_as_long_as_a_solid_has_it) {
   Meshes meshes;
   const Mesh mesh = box(1);
-  meshes.add_use(key_of(mesh), mesh);
-  meshes.add_use(key_of(mesh), mesh);
+  meshes.add_use(key_of(mesh), mesh, false);
+  meshes.add_use(key_of(mesh), mesh, false);
   meshes.remove_use(key_of(mesh));
   ASSERT_TRUE(meshes.find(key_of(mesh)));
   EXPECT_EQ(*meshes.find(key_of(mesh)), mesh);
@@ -42,7 +42,7 @@ TEST(Meshes, a_mesh_is_kept_once_and_as_long_as_a_solid_has_it) {
 
 TEST(Meshes, saved_ones_are_read_again_and_cut_ones_refused) {
   Meshes meshes;
-  for (const double size : {1.0, 2.0}) meshes.add_use(key_of(box(size)), box(size));
+  for (const double size : {1.0, 2.0}) meshes.add_use(key_of(box(size)), box(size), false);
   const std::vector<std::byte> bytes = saved(meshes);
   Meshes read;
   Reader reader(bytes);
@@ -88,7 +88,7 @@ TEST(Meshes, a_snapshot_takes_them_to_another_system_and_undo_brings_them_back) 
 TEST(Meshes, tables_with_a_mesh_too_few_or_too_many_are_told) {
   Model model;
   const Mesh mesh = box(1);
-  model.meshes.add_use(key_of(mesh), mesh);
+  model.meshes.add_use(key_of(mesh), mesh, false);
   EXPECT_FALSE(ingredient::validate(model).empty());
   model.meshes.remove_use(key_of(mesh));
   EXPECT_TRUE(ingredient::validate(model).empty());
