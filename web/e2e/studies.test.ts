@@ -243,7 +243,7 @@ class Study {
       const eyes = iota.page.viewer.renderer.xr.getCamera().cameras;
       const places: { x: number; y: number; z: number }[][] = [];
       const corners = { add: (...at: [number, number, number]) => places.push(eyes.map((eye) => eye.position.clone().set(...at).project(eye))) };
-      iota.page.world.entities.body.addPoints(corners as never, true);
+      iota.page.world.entities.body.addPoints(corners as never);
       for (const body of iota.bodies()) corners.add(...iota.bodyPosition(body));
       // 1 is the edge of the view; what is behind the eyes has z > 1.
       const seen = places.map((of) => of.find(({ x, y, z }) => Math.max(Math.abs(x), Math.abs(y)) < 0.98 && z < 1)).filter((place) => place !== undefined);

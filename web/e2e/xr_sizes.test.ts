@@ -75,7 +75,7 @@ describe("a headset", () => {
         const corners = {
           add: (...corner: [number, number, number]) => places.push(eyes.map((eye) => eye.position.clone().set(...corner).project(eye))),
         };
-        iota.page.world.entities.body.addPoints(corners as never, true);
+        iota.page.world.entities.body.addPoints(corners as never);
         const along = (axis: "x" | "y") => places.map(([left]) => left[axis]);
         return {
           // In the eye that sees more of it.

@@ -233,9 +233,9 @@ export class Framing implements FramePart, PageListener {
     const { points_: points, setting_: setting, world_: { entities, ground } } = this;
     const every = Math.ceil(entities.body.count / mostBodies);
     points.clear();
-    entities.body.addPoints(points, true, every);
+    entities.body.addPoints(points, every);
     if (points.count === 0) entities.particleSet.addPoints(points);
-    if (points.count === 0) entities.body.addPoints(points, false, every);
+    if (points.count === 0) entities.body.forEachSetting(setting, (corners) => { points.addAll(corners); }, every);
     for (const view of Object.values<EntityView<never>>(entities)) view.addMoving?.(points);
     if (points.count === 0) this.addDrawn_(points);
     let bounds = points.bounds();
@@ -258,7 +258,7 @@ export class Framing implements FramePart, PageListener {
       const z = setting.xyz[at + 2];
       if (Math.hypot(x - middleX, y - middleY, z - middleZ) < most) points.add(x, y, z);
     }
-    entities.body.forEachHeld(setting, take, every);
+    entities.body.forEachSetting(setting, take, every);
     bounds = points.bounds()!;
     // The place of the shadow below.
     if (ground !== null && ground < bounds.lowest && bounds.lowest - ground < 1.5 * bounds.radius) {
@@ -271,7 +271,7 @@ export class Framing implements FramePart, PageListener {
   /** From a place to the farthest corner of what is fixed, m. */
   private calcReach_([x, y, z]: readonly [number, number, number]): number {
     let reach = 0;
-    this.world_.entities.body.forEachHeld(this.setting_, ({ xyz, count }) => {
+    this.world_.entities.body.forEachSetting(this.setting_, ({ xyz, count }) => {
       for (let at = 0; at < 3 * count; at += 3) reach = Math.max(reach, Math.hypot(xyz[at] - x, xyz[at + 1] - y, xyz[at + 2] - z));
     });
     return reach;

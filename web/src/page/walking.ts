@@ -27,6 +27,8 @@ class FixedBody implements Solid {
   }
 }
 
+const isMesh = ({ shape }: PlacedShape): boolean => shape.mesh !== null;
+
 /** The static bodies: their shapes, and the surfaces that are drawn on them. */
 export function wallsOf(world: World): Walls {
   // One object for all, as they are looked at one after the other.
@@ -35,8 +37,10 @@ export function wallsOf(world: World): Walls {
   function* solids(): Iterable<Solid> {
     for (const slot of body.slots()) {
       if (!body.isFixed(slot) || !body.has(slot)) continue;
-      solid.shapes = body.shapesOf(slot).filter(({ shape }) => shape.mesh === null);
-      if (solid.shapes.length === 0) continue;
+      const shapes = body.shapesOf(slot);
+      if (shapes.every(isMesh)) continue;
+      // A walk asks often: no new list for a body without meshes.
+      solid.shapes = shapes.some(isMesh) ? shapes.filter((shape) => !isMesh(shape)) : shapes;
       solid.slot = slot;
       solid.reach = body.reach[slot];
       solid.middle.fromArray(body.position, 3 * slot);

@@ -307,14 +307,14 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return this.bodies_.keys();
   }
 
-  /** Adds the corners of all drawn bodies, or of every n-th one: of the movable ones, or of the others. */
-  addPoints(points: Points, moving: boolean, every = 1): void {
+  /** Adds the corners of all drawn bodies that can be held, or of every n-th one. */
+  addPoints(points: Points, every = 1): void {
     for (const batches of this.batches_.values()) {
       for (const { pool, placements } of batches) {
         for (let index = 0; index < pool.count; index += every) {
           const slot = pool.members[index];
           if (this.poses.known[slot] !== 1 || !Number.isFinite(this.reach[slot])) continue;
-          if ((this.bodies_.get(slot)?.entity.kind === BodyKind.dynamic) !== moving) continue;
+          if (this.bodies_.get(slot)?.entity.kind !== BodyKind.dynamic) continue;
           writeMatrix(this.position, this.rotation, slot, placements, placementSize * index, 1, this.matrix_.elements, 0);
           addCorners(points, pool.mesh.geometry, this.matrix_);
         }
@@ -324,7 +324,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
 
   /** Calls `take` with the corners of each drawn body that cannot be held, or of every n-th; the points are only valid during the
    * call. */
-  forEachHeld(points: Points, take: (points: Points) => void, every = 1): void {
+  forEachSetting(points: Points, take: (points: Points) => void, every = 1): void {
     let number = 0;
     for (const { entity: { id: { slot }, kind }, instances } of this.bodies_.values()) {
       if (kind === BodyKind.dynamic || instances.length === 0 || number++ % every !== 0) continue;
@@ -335,7 +335,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     }
   }
 
-  /** The meshes of triangles of bodies that stay where they are. The result is reused. */
+  /** The meshes of triangles of bodies that stay where they are; a place is only valid until the next one. */
   *fixedMeshes(): Iterable<Wall> {
     const wall = { position: new Vector3(), quaternion: new Quaternion(), size: new Vector3() };
     for (const { entity: { id: { slot } }, shapes, instances } of this.bodies_.values()) {
