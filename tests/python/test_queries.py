@@ -203,6 +203,8 @@ def test_the_ground_a_wall_and_a_room_from_a_file_are_static_bodies(tmp_path: Pa
     assert world.queries.ray((0, 0.5, 0), (-1, 0, 0)) is None
     with pytest.raises(ValueError, match="convex"):
         world.queries.overlap(iota.Torus(1, 0.1), (0, 0, 0))
+    with pytest.raises(ValueError, match="without surfaces"):
+        world.drawings.model([], solid=True)
     with pytest.raises(ValueError, match="place of the world"):
         world.drawings.model(read_model(tmp_path / "side.glb"), at=ball, solid=True)
 

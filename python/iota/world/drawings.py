@@ -66,6 +66,8 @@ def _triangles_of(surface: Any) -> tuple[Any, Any]:
 
 def _joined(parts: Sequence[tuple[Any, Any]]) -> Mesh:
     """One mesh of surfaces, without triangles that are only a line."""
+    if not parts:
+        raise ValueError("a model without surfaces cannot be solid")
     starts = np.cumsum([0, *(len(points) for points, _ in parts)])
     rows = np.concatenate([np.reshape(own, (-1, 3)) + start for (_, own), start in zip(parts, starts, strict=False)])
     a, b, c = rows.T

@@ -18,9 +18,8 @@ def listed(drawn: Look | list[Look]) -> list[Look]:
     return drawn if isinstance(drawn, list) else [drawn]
 
 
-def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnPart:
-    """Encodes a result of `Look.describe` for pages. place: replaces its offset and rotation."""
-    where = described | place
+def part_of(described: dict[str, Any], style: str) -> DrawnPart:
+    """Encodes a result of `Look.describe` for pages."""
     color = described.get("color")
     return DrawnPart(
         described.get("kind", "solid"),
@@ -28,8 +27,8 @@ def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnP
         style=style,
         material=described["material"],
         color=None if color is None else color_number(color),
-        offset=tuple(where["offset"]),
-        rotation=tuple(where["rotation"]),
+        offset=tuple(described["offset"]),
+        rotation=tuple(described["rotation"]),
         turn=described.get("turn", 0.0),
         vertices=described.get("vertices", []),
         triangles=described.get("triangles", []),
