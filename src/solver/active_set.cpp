@@ -39,10 +39,13 @@ bool is_off_speed(const Problem& problem, const C& c, int row, double rate, cons
 
 }  // namespace
 
-void ActiveSet::set_cone(RowStates& states, std::size_t first, ConeState state) {
+template <class C>
+void ActiveSet::set_cone(ConstraintPool<C>& pool, std::size_t k, ConeState state) {
   const bool is_open = state.mode == ConeState::Mode::open;
-  for (std::size_t r = 0; r < 2; ++r) states.rows_[first + r].side = is_open;
-  states.rows_[first + 2].side = static_cast<std::int8_t>(is_open ? 1 : state.direction);
+  for (int r = 0; r < C::rows; ++r) {
+    const int side = is_open ? 1 : C::is_tangent(r) ? state.direction : 0;
+    pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)].side = static_cast<std::int8_t>(side);
+  }
 }
 
 template <class C>
@@ -51,12 +54,16 @@ void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem
   double g[C::rows];
   pool.value(k, problem.position.data(), stage.fraction_start, g);
   double* const lambda = pool.multiplier(k);
-  const bool has_friction = !stage.is_projection();
-  if (!has_friction) lambda[2] = 0;
-  set_cone(pool.states, k * C::rows, has_friction ? c.state_of(lambda) : ConeState{ConeState::Mode::slips, 1});
+  if (stage.is_projection())
+    for (int r = 0; r < C::rows; ++r)
+      if (C::is_tangent(r)) lambda[r] = 0;
+  ConeState state_before = c.state_of(lambda);
+  if (stage.is_projection() && state_before.mode != ConeState::Mode::open) state_before = {ConeState::Mode::slips, 1};
+  if (state_before.mode == ConeState::Mode::open) std::fill_n(lambda, C::rows, 0.0);
+  set_cone(pool, k, state_before);
   for (int r = 0; r < C::rows; ++r) {
     RowStates::Row& state = pool.states.rows_[k * C::rows + r];
-    state.start = g[r], state.side_before = state.side;
+    state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side;
     state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, 0, stage);
   }
 }
@@ -65,17 +72,20 @@ template <class C>
 ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, const Problem& problem,
                                   const Stage& stage, const Vec3* x) {
   const C& c = pool.items[k];
-  double g[C::rows], mobility = 0;
+  double g[C::rows], natural[C::rows] = {};
   pool.value(k, x, stage.fraction, g);
-  g[2] -= pool.states.start(k * C::rows + 2);
+  for (int r = 0; r < C::rows; ++r)
+    if (C::is_tangent(r)) g[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r));
   const Gradients<C> gradients(c, x, stage.fraction);
   for (int i = 0; i < c.node_count(); ++i) {
     Vec3 rows[C::rows];
     gradients.of_node(i, rows);
-    mobility += dot(rows[2], rows[2]) / problem.mass[c.nodes[i]];
+    for (int r = 0; r < C::rows; ++r) natural[r] += dot(rows[r], rows[r]) / (stage.inertia * problem.mass[c.nodes[i]]);
   }
-  return c.switch_state(pool.states.cone(k * C::rows), pool.multiplier(k), g, mobility / stage.inertia,
-                        stage.tolerance * c.reference_length());
+  const ConeState now = pool.states.cone(k * C::rows);
+  const ConeState next = c.switch_state(now, pool.multiplier(k), g, natural, stage.tolerance * c.reference_length());
+  // Positions and impulses have no friction.
+  return stage.is_projection() && next.mode != ConeState::Mode::open ? ConeState{ConeState::Mode::slips, 1} : next;
 }
 
 void ActiveSet::begin(Problem& problem, const Stage& stage) {
@@ -123,11 +133,12 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       if constexpr (ConeConstraint<C>) {
-        if (stage.is_projection()) continue;
         const ConeState now = pool.states.cone(k * C::rows), next = choose_state(pool, k, problem, stage, x);
         if (now == next) continue;
         ++wrong;
-        if (!(one_only && changed)) set_cone(pool.states, k * C::rows, next), changed = true;
+        if (one_only && changed) continue;
+        set_cone(pool, k, next), changed = true;
+        if (next.mode == ConeState::Mode::open) std::fill_n(pool.multiplier(k), C::rows, 0.0);
         continue;
       }
       const C& c = pool.items[k];
@@ -217,6 +228,7 @@ bool ActiveSet::release_impulses(Problem& problem, std::span<const double> impul
       RowStates::Row& state = pool.states.rows_[row];
       if (state.side != 0 || (impulse >= law.lower_impulse() && impulse <= law.upper_impulse())) continue;
       state.side = 1, released = true;
+      if constexpr (ConeConstraint<C>) set_cone(pool, row / C::rows, {ConeState::Mode::open});
     }
   });
   return released;

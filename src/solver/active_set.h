@@ -36,7 +36,8 @@ class ActiveSet {
   template <class C>
   static ConeState choose_state(const ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&,
                                 const Vec3* x);
-  static void set_cone(RowStates&, std::size_t first, ConeState);
+  template <class C>
+  static void set_cone(ConstraintPool<C>&, std::size_t item, ConeState);
 
   int fewest_wrong_ = 0, stalled_ = 0;
 };

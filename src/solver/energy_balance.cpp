@@ -48,9 +48,9 @@ struct Solved {
 
   double external_work() const;
   double work_of_drives() const;
-  void add_dissipation(StepEnergy&) const;
+  void add_dissipation(StepEnergy&, std::span<const double> multipliers_before) const;
   template <class C>
-  void add_dissipation_of_rows(const ConstraintPool<C>&, StepEnergy&) const;
+  void add_dissipation_of_rows(const ConstraintPool<C>&, const double* multipliers_before, StepEnergy&) const;
   template <class C>
   double mean_speed_across(const C&, int row) const;
   double work_of_gaps() const;
@@ -100,9 +100,11 @@ double Solved::work_of_drives() const {
   return work;
 }
 
-void Solved::add_dissipation(StepEnergy& energy) const {
+void Solved::add_dissipation(StepEnergy& energy, std::span<const double> multipliers_before) const {
+  const double* before = multipliers_before.data();
   problem.for_each_constraint_pool([&](const auto& pool) {
-    if (pool.has_laws() && pool.held.empty()) add_dissipation_of_rows(pool, energy);
+    if (pool.has_laws() && pool.held.empty()) add_dissipation_of_rows(pool, before, energy);
+    before += pool.multipliers.size();
   });
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items)
@@ -114,8 +116,12 @@ void Solved::add_dissipation(StepEnergy& energy) const {
 // friction and slipping clutches. The impact of a row that has just met: in the mid-point rule lambda dg is its first half, a
 // projection takes the other; the end-point rule takes all at once, the impulse times the mean speed across the row.
 template <class C>
-void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, StepEnergy& energy) const {
+void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, const double* multipliers_before,
+                                     StepEnergy& energy) const {
   for_each_row(pool, [&](std::size_t k, const double* before, const double* after) {
+    if constexpr (ConeConstraint<C>)  // of what the rows have taken, their compliance stores a part
+      energy.dissipated -= strain_energy(pool.items[k], pool.multiplier(k)) -
+                           strain_energy(pool.items[k], multipliers_before + k * C::rows);
     for (int r = 0; r < C::rows; ++r) {
       const RowLaw& law = pool.law(k)[r];
       const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
@@ -128,6 +134,8 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, StepEnergy& 
                                      : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
       else if (pool.states.has_been_met(k * C::rows + static_cast<std::size_t>(r)))
         energy.impact += lambda * (stage.is_mid_point() ? moved : stage.h * mean_speed_across(pool.items[k], r));
+      else if (ConeConstraint<C>)
+        energy.dissipated += lambda * moved;
     }
   });
 }
@@ -193,7 +201,7 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   const Solved step{problem, newton, stage};
   StepEnergy energy{.kinetic_before = kinetic, .total_before = total};
   energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
-  step.add_dissipation(energy);
+  step.add_dissipation(energy, multipliers_before);
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();

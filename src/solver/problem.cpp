@@ -103,7 +103,10 @@ void Problem::fit_pools() {
     resize_with_slack(pool.slots, pool.items.size());
     if constexpr (ConeConstraint<C>)
       for (std::size_t i = 0; i < pool.items.size(); ++i)
-        for (int r = 0; r < C::rows; ++r) pool.law(i)[r].hold = C::is_tangent(r);
+        for (int r = 0; r < C::rows; ++r) {
+          pool.law(i)[r].hold = C::is_tangent(r);
+          if (C::is_one_sided(r)) pool.law(i)[r].upper = 0;
+        }
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.reset(pool.laws.size());
     pool.acting.clear();
@@ -175,6 +178,7 @@ double Problem::row_energy(const Vec3* x, double fraction) const {
   for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
+      if constexpr (ConeConstraint<C>) energy += strain_energy(pool.items[i], pool.multiplier(i));
       const RowLaw* const law = pool.law(i);
       if (std::none_of(law, law + C::rows, [](const RowLaw& l) { return l.is_compliant(); })) continue;
       double g[C::rows];

@@ -358,7 +358,7 @@ struct Problem {
   }
   /// Gravity and implicit forces; external ones (grips) are not in the world's energy, only in Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
-  /// Stored in spring rows, with targets as at `fraction` of the step.
+  /// Stored in spring rows, with targets as at `fraction` of the step, and in the compliance of cones.
   double row_energy(const Vec3* x, double fraction) const;
   /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;

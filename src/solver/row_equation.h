@@ -31,12 +31,14 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
 template <ConeConstraint C>
 ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const double* g, const double* mobilities,
                            const Stage& stage) {
-  double values[C::rows];
-  for (int r = 0; r < C::rows; ++r)
+  double values[C::rows], natural[C::rows];
+  for (int r = 0; r < C::rows; ++r) {
     values[r] = g[r] - (C::is_tangent(r) ? pool.states.start(i * C::rows + static_cast<std::size_t>(r)) : 0);
+    natural[r] = mobilities[r] / stage.inertia;
+  }
   ConeState state = pool.states.cone(i * C::rows);
   if (stage.is_projection()) state.direction = 0;
-  return pool.items[i].equations(state, pool.multiplier(i), values, mobilities[2] / stage.inertia);
+  return pool.items[i].equations(state, pool.multiplier(i), values, natural);
 }
 
 /// Whether all rows of an item are at a bound of zero, so that it has no effect.

@@ -5,6 +5,7 @@
 #include "solver/constraints/angle.h"
 #include "solver/constraints/bilinear.h"
 #include "solver/constraints/cone.h"
+#include "solver/constraints/contact.h"
 #include "solver/constraints/coupling.h"
 #include "solver/constraints/curve.h"
 #include "solver/constraints/distance.h"
@@ -52,15 +53,25 @@ template <class C>
 concept TrackingConstraint = requires(C& c, const Vec3* x) { c.track(x, 1.0); };
 
 /// Three rows whose bounds depend on each other's multipliers: pure mathematics on a state that the solver keeps. Values
-/// along tangents are measured from the start of the (sub-)step. See ConeState, ConeEquations.
+/// along tangents are slips, measured from the start of the (sub-)step. The first row is a reaction, the last one is along
+/// a tangent. See ConeState, ConeEquations.
 template <class C>
-concept ConeConstraint = GeneralConstraint<C> && C::rows == 3 &&
+concept ConeConstraint = GeneralConstraint<C> && C::rows == 3 && C::is_tangent(2) && !C::is_tangent(0) &&
                          requires(const C& c, ConeState state, const double* multipliers, const double* g) {
-                           { C::is_tangent(0) } -> std::same_as<bool>;
+                           { C::is_one_sided(0) } -> std::same_as<bool>;  ///< g >= 0, its multiplier is never positive
+                           { c.compliance_of(0) } -> std::same_as<double>;
                            { c.state_of(multipliers) } -> std::same_as<ConeState>;
-                           { c.switch_state(state, multipliers, g, 1.0, 1.0) } -> std::same_as<ConeState>;
-                           { c.equations(state, multipliers, g, 1.0) } -> std::same_as<ConeEquations>;
+                           { c.switch_state(state, multipliers, g, g, 1.0) } -> std::same_as<ConeState>;
+                           { c.equations(state, multipliers, g, g) } -> std::same_as<ConeEquations>;
                          };
+
+/// The energy that the compliance of a cone's rows stores, J.
+template <ConeConstraint C>
+double strain_energy(const C& c, const double* multipliers) {
+  double energy = 0;
+  for (int r = 0; r < C::rows; ++r) energy += 0.5 * c.compliance_of(r) * multipliers[r] * multipliers[r];
+  return energy;
+}
 
 /// Gradients of a constraint at x, node by node. Those of the general ones and of distances are evaluated before the
 /// visits: otherwise the compiler must assume that the caller's writes change their inputs.
@@ -124,7 +135,7 @@ template <template <class> class Pool>
 using ConstraintPools =
     std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,
                Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>,
-               Pool<SpanConstraint>, Pool<CouplingConstraint>, Pool<FrictionLineConstraint>>;
+               Pool<SpanConstraint>, Pool<CouplingConstraint>, Pool<FrictionLineConstraint>, Pool<ContactConstraint>>;
 
 template <class C>
 struct CheckConstraint {

@@ -31,6 +31,8 @@ struct FrictionLineConstraint : PlaceConstraint<FrictionLineConstraint, 3> {
 
   /// Row r is along a tangent: it keeps its value of the start of the (sub-)step while it sticks.
   static constexpr bool is_tangent(int r) { return r == 2; }
+  static constexpr bool is_one_sided(int) { return false; }
+  static double compliance_of(int) { return 0; }
   /// The state in which multipliers would be a solution.
   ConeState state_of(const double* multipliers) const {
     constexpr double at_edge = 1 - 1e-6;
@@ -39,16 +41,18 @@ struct FrictionLineConstraint : PlaceConstraint<FrictionLineConstraint, 3> {
     return {ConeState::Mode::slips, multipliers[2] > 0 ? 1 : -1};
   }
   /// Another state, if the multipliers and values do not fit the present one. g[2] is measured from the start of the
-  /// (sub-)step; `softness`: natural compliance of the tangent, m/N; gaps up to `tolerance` change nothing.
-  ConeState switch_state(ConeState now, const double* multipliers, const double* g, double softness,
+  /// (sub-)step; `natural`: compliance of each row at the points, m/N; gaps up to `tolerance` change nothing.
+  ConeState switch_state(ConeState now, const double* multipliers, const double* g, const double* natural,
                          double tolerance) const {
+    const double softness = natural[2];
     if (now.slips()) return now.direction * g[2] < -tolerance ? ConeState{} : now;
     const double edge = largest_friction(multipliers);
     if (g[2] + softness * (multipliers[2] - edge) > tolerance) return {ConeState::Mode::slips, 1};
     if (g[2] + softness * (multipliers[2] + edge) < -tolerance) return {ConeState::Mode::slips, -1};
     return now;
   }
-  ConeEquations equations(ConeState state, const double* multipliers, const double* g, double softness) const {
+  ConeEquations equations(ConeState state, const double* multipliers, const double* g, const double* natural) const {
+    const double softness = natural[2];
     ConeEquations e{.value = {g[0], g[1], g[2]}, .by_value = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
     if (!state.slips()) return e;
     const double size = std::hypot(multipliers[0], multipliers[1]), edge = state.direction * friction;

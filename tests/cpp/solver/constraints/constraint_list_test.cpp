@@ -192,6 +192,14 @@ Example<FrictionLineConstraint> example(Random& random, FrictionLineConstraint c
   return {c, two_bodies(random)};
 }
 
+Example<ContactConstraint> example(Random& random, ContactConstraint c) {
+  c.radius = random.number(0, 0.3);
+  add_point(c, 0, 0, random.vec()), add_point(c, 0, 1, random.vec(), -1);
+  add_point(c, 1, 0, random.vec()), add_point(c, 1, 1, random.vec(), -1);
+  for (int arm = 2; arm < 5; ++arm) add_direction(c, arm, 1, random.vec());
+  return {c, two_bodies(random)};
+}
+
 /// Coordinates of all kinds between bodies, some of which are in several of them.
 Example<CouplingConstraint> example(Random& random, CouplingConstraint c) {
   std::vector<Vec3> x;

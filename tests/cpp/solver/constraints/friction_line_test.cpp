@@ -272,6 +272,7 @@ TEST_P(Beads, allocate_nothing_when_they_begin_to_slip) {
 TEST(FrictionLine, has_equations_with_the_derivatives_that_finite_differences_say) {
   std::mt19937 random(5);
   const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const double natural[3] = {0.4, 0.5, 0.7};
   for (int round = 0; round < 50; ++round) {
     FrictionLineConstraint c;
     c.friction = 0.5 + 0.4 * number();
@@ -280,13 +281,13 @@ TEST(FrictionLine, has_equations_with_the_derivatives_that_finite_differences_sa
          {ConeState{}, ConeState{Mode::slips, 1}, ConeState{Mode::slips, -1}, ConeState{Mode::slips, 0}}) {
       double at[6];
       for (double& value : at) value = number();
-      const ConeEquations e = c.equations(state, at, at + 3, 0.7);
+      const ConeEquations e = c.equations(state, at, at + 3, natural);
       for (std::size_t k = 0; k < 6; ++k) {
         constexpr double small = 1e-6;
         double moved[6];
         std::copy(at, at + 6, moved);
         moved[k] += small;
-        const ConeEquations after = c.equations(state, moved, moved + 3, 0.7);
+        const ConeEquations after = c.equations(state, moved, moved + 3, natural);
         for (std::size_t r = 0; r < 3; ++r)
           EXPECT_NEAR((after.value[r] - e.value[r]) / small, k < 3 ? e.by_multiplier[r][k] : e.by_value[r][k - 3],
                       1e-5);

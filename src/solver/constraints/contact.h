@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/constraints/arms.h"
+#include "solver/constraints/cone.h"
+
+#include <algorithm>
+
+namespace iota::solver {
+
+/// A place of a body against a plane fixed in another body or in the world, with Coulomb friction.
+///   arms        0: center of what touches - origin of the plane;  1: point that touches - origin;  2: normal, towards the
+///               body;  3, 4: tangents
+///   constraint  g_0 = normal . arm 0 - radius;   g_k = tangent_k . arm 1, k = 1, 2   (m)
+///   cone        N = -lambda_0 >= 0,  |(lambda_1, lambda_2)| <= mu N   (N)
+///     open      all multipliers are zero, g_0 >= 0
+///     sticks    g_0 = c_n lambda_0,  s_k = c_t lambda_k,  s_k the slip since it began to stick
+///     slips     (lambda_1, lambda_2) = mu N z / |z|,  z = lambda + s / k the trial force, k its natural compliance
+/// The center and the point differ for what is round: the ball's center keeps its height while the point turns under it.
+/// All rows are quadratic in the points, so that the mid-point rule counts the work of friction exactly.
+/// Newton's matrix has the column of mu N, and the curvature of the circle |z|: Alart and Curnier, A mixed formulation for
+/// frictional contact problems, 1991. c_n makes the forces of a box on four corners unique, c_t keeps Newton's method from
+/// cycling between them. The solver measures the slip from the start of the (sub-)step less the strain c_t lambda with which
+/// that began, so that a contact that sticks does not creep.
+struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
+  double radius = 0;                             ///< m
+  double friction = 0;                           ///< mu
+  double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
+  double softening = 1;                          ///< of c_n, while a solution is searched
+  double reference = 1;
+
+  void set_world_plane(const Vec3& origin, const Vec3& normal, const Vec3& first, const Vec3& second) {
+    set_constant(0, -1.0 * origin), set_constant(1, -1.0 * origin);
+    set_constant(2, normal), set_constant(3, first), set_constant(4, second);
+  }
+
+  double reference_length() const { return reference; }
+  void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
+    g[0] = dot(e[2], e[0]) - radius, g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
+  }
+  void calc_gradient(const Vec3* e, Vec3 (*d)[5]) const {
+    d[0][0] = e[2], d[0][2] = e[0];
+    d[1][1] = e[3], d[1][3] = e[1];
+    d[2][1] = e[4], d[2][4] = e[1];
+  }
+  void calc_hessian(const Vec3*, const double* lambda, bool clamp, Mat3 (*h)[5]) const {
+    for (int a = 0; a < 5; ++a)
+      for (int b = a; b < 5; ++b) h[a][b] = {};
+    if (clamp) return;
+    h[0][2] = Mat3::diagonal(lambda[0]), h[1][3] = Mat3::diagonal(lambda[1]), h[1][4] = Mat3::diagonal(lambda[2]);
+  }
+
+  static constexpr bool is_tangent(int r) { return r > 0; }
+  static constexpr bool is_one_sided(int r) { return r == 0; }
+  double compliance_of(int r) const { return r == 0 ? softening * normal_compliance : compliance; }
+  /// The friction that the normal force allows, N.
+  double largest_friction(const double* multipliers) const { return friction * std::max(0.0, -multipliers[0]); }
+
+  /// The state in which multipliers would be a solution.
+  ConeState state_of(const double* multipliers) const;
+  /// Another state, if the multipliers and values do not fit the present one. Tangential values are slips; `natural`:
+  /// compliance of each row at the points, m/N; gaps up to `tolerance` change nothing.
+  ConeState switch_state(ConeState now, const double* multipliers, const double* g, const double* natural,
+                         double tolerance) const;
+  /// A state with direction 0 slips without friction.
+  ConeEquations equations(ConeState, const double* multipliers, const double* g, const double* natural) const;
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points, boxes and balls on a plane: against closed forms, and against Coulomb's conditions in every step.
+#include "solver/constraints/contact.h"
+
+#include "solver/integrator.h"
+#include "tests/cpp/allocations.h"
+#include "tests/cpp/solver/small_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace iota::solver {
+namespace {
+
+/// A rigid body of four equal points; gravity is (0, -g, 0) turned by a slope.
+class Contacts : public testing::TestWithParam<Scheme> {
+ protected:
+  Problem problem;
+  Integrator integrator;
+  AdvanceReport total;
+  std::vector<AdvanceReport> reports;
+  double mass = 0;
+
+  bool is_mid_point() const { return GetParam() == Scheme::mid_point; }
+  void tilt(double angle, double direction = 0) {
+    problem.gravity = {g * std::sin(angle) * std::cos(direction), -g * std::cos(angle),
+                       g * std::sin(angle) * std::sin(direction)};
+  }
+  /// Four points at the corners of a regular tetrahedron in a sphere of radius r around the center.
+  void add_body(const Vec3& center, double r, double of_mass, const Vec3& v = {}, const Vec3& spin = {}) {
+    const auto first = static_cast<std::uint32_t>(problem.size());
+    const Vec3 corners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    for (const Vec3& c : corners) {
+      const Vec3 arm = (r / std::sqrt(3.0)) * c;
+      (void)add_point(problem, center + arm, of_mass / 4, v + cross(spin, arm));
+    }
+    for (std::uint32_t a = 0; a < 4; ++a)
+      for (std::uint32_t b = a + 1; b < 4; ++b)
+        add_rod(problem, first + a, first + b, norm(problem.position[first + a] - problem.position[first + b]));
+    mass = of_mass;
+  }
+  /// The weights of a place in the body of the first four points, where they are now.
+  std::array<double, 4> weights(const Vec3& place) const {
+    Mat3 m;
+    const Vec3& o = problem.position[0];
+    Vec3 e[3];
+    for (int k = 0; k < 3; ++k) e[k] = problem.position[static_cast<std::size_t>(k) + 1] - o;
+    const double volume = dot(e[0], cross(e[1], e[2]));
+    const Vec3 d = place - o;
+    const double w[3] = {dot(d, cross(e[1], e[2])) / volume, dot(d, cross(e[2], e[0])) / volume,
+                         dot(d, cross(e[0], e[1])) / volume};
+    return {1 - w[0] - w[1] - w[2], w[0], w[1], w[2]};
+  }
+  Vec3 center() const {
+    Vec3 sum;
+    for (const Vec3& x : problem.position) sum += (1.0 / static_cast<double>(problem.size())) * x;
+    return sum;
+  }
+  ContactConstraint make(double friction, double step, double radius = 0) const {
+    ContactConstraint c;
+    c.set_world_plane({}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
+    c.friction = friction, c.radius = radius, c.reference = 0.1;
+    const double natural = step * step / mass;
+    c.normal_compliance = 1e-8 * natural, c.compliance = 1e-2 * natural;
+    return c;
+  }
+  static void place(ContactConstraint& c, int arm, const std::array<double, 4>& weights) {
+    for (std::uint32_t i = 0; i < 4; ++i) c.add(arm, i, weights[i]);
+  }
+  void add_corner(const Vec3& corner, double friction, double step) {
+    ContactConstraint c = make(friction, step);
+    place(c, 0, weights(corner)), place(c, 1, weights(corner));
+    add(problem, c);
+  }
+  void step(double h) {
+    const AdvanceReport report = integrator.advance(problem, h, IntegratorSettings{.scheme = GetParam()});
+    EXPECT_TRUE(report.converged);
+    EXPECT_EQ(report.fallbacks, 0);
+    total.dissipated += report.dissipated, total.lost += report.lost, total.made += report.made;
+    total.iterations += report.iterations, total.substeps += report.substeps;
+    total.iterations_max = std::max(total.iterations_max, report.iterations_max);
+  }
+  /// With that of the strain.
+  double energy() const {
+    return problem.kinetic_energy() + problem.potential_energy(problem.position.data()) +
+           problem.row_energy(problem.position.data(), 1);
+  }
+  const ConstraintPool<ContactConstraint>& contacts() { return pool<ContactConstraint>(problem); }
+  Vec3 force() {
+    Vec3 sum;
+    for (std::size_t i = 0; i < contacts().items.size(); ++i) {
+      const double* const l = contacts().multiplier(i);
+      sum -= Vec3{l[1], l[0], l[2]};
+    }
+    return sum;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Both, Contacts, testing::Values(Scheme::end_point, Scheme::mid_point),
+                         [](const auto& info) { return info.param == Scheme::mid_point ? "mid_point" : "end_point"; });
+
+TEST_P(Contacts, of_a_box_stick_to_a_slope_or_slide_as_the_coefficient_says) {
+  constexpr double angle = 0.4, h = 1.0 / 120;
+  for (const double direction : {0.0, 0.7, 2.5})
+    for (const double friction : {0.0, 0.2, 0.999 * std::tan(angle), 1.001 * std::tan(angle), 1.5}) {
+      SCOPED_TRACE(friction);
+      problem = Problem{}, total = {};
+      tilt(angle, direction);
+      add_body({0, 0.05, 0}, 0.2, 3);
+      for (const double x : {-0.1, 0.1})
+        for (const double z : {-0.1, 0.1}) add_corner({x, 0, z}, friction, h);
+      integrator.compile(problem);
+      const Vec3 start = center();
+      const int steps = 120;
+      const double before = energy();
+      for (int i = 0; i < steps; ++i) step(h);
+      const Vec3 way = center() - start, down{std::cos(direction), 0, std::sin(direction)};
+      EXPECT_NEAR(way.y, 0, 1e-9);
+      EXPECT_NEAR(norm(way - dot(way, down) * down), 0, 1e-7) << "straight down the slope";
+      if (friction > std::tan(angle)) {
+        EXPECT_LT(norm(way), 2e-5) << "the strain of c_t";
+        const Vec3 there = center();
+        for (int i = 0; i < 600; ++i) step(h);
+        EXPECT_LT(norm(center() - there), 1e-9) << "it does not creep";
+        EXPECT_LT(norm(force() + mass * problem.gravity), 1e-6);
+      } else {
+        const double a = g * (std::sin(angle) - friction * std::cos(angle));
+        const double expected = a * h * h * steps * (is_mid_point() ? steps : steps + 1) / 2;
+        EXPECT_NEAR(dot(way, down), expected, friction > 0.3 ? 2e-4 : 1e-6) << "it swings a little before it slips";
+        EXPECT_NEAR(before - energy(), total.dissipated + total.lost - total.made, 1e-8);
+      }
+      EXPECT_LE(total.iterations, 4 * 720);
+    }
+}
+
+TEST_P(Contacts, of_a_ball_that_slides_make_it_roll_as_its_inertia_says) {
+  constexpr double h = 1.0 / 120, radius = 0.1, friction = 0.3, speed = 1;
+  add_body({0, radius, 0}, 0.08, 2, {speed, 0, 0});
+  tilt(0);
+  ContactConstraint c = make(friction, h, radius);
+  add(problem, c);
+  const auto turn_along = [&] {
+    auto& ball = pool<ContactConstraint>(problem).items[0];
+    const Vec3 below = center() - Vec3{0, radius, 0};
+    ContactConstraint now = make(friction, h, radius);
+    place(now, 0, weights(center())), place(now, 1, weights(below));
+    ball = now;
+  };
+  turn_along();
+  integrator.compile(problem);
+  for (int i = 0; i < 240; ++i) {
+    turn_along();
+    step(h);
+  }
+  // Four points at r: I = 2/3 m r^2; v (1 + I / m R^2) = v0.
+  const double inertia = 2.0 / 3 * 0.08 * 0.08, rolling = speed / (1 + inertia / (radius * radius));
+  Vec3 v;
+  for (const Vec3& each : problem.velocity) v += 0.25 * each;
+  EXPECT_NEAR(v.x, rolling, is_mid_point() ? 2e-2 : 0.2) << "backward Euler takes spin";
+  EXPECT_NEAR(v.y, 0, 1e-6);
+  EXPECT_NEAR(center().y, radius, 1e-8);
+}
+
+TEST_P(Contacts, of_a_falling_box_stop_it_and_make_no_energy) {
+  constexpr double h = 1.0 / 120;
+  tilt(0);
+  add_body({0, 0.45, 0}, 0.2, 3, {0.4, 0, 0.1}, {0.5, 1, -0.8});
+  const double half = 0.1;
+  for (const double x : {-half, half})
+    for (const double y : {-half, half})
+      for (const double z : {-half, half}) add_corner(center() + Vec3{x, y, z}, 0.5, h);
+  integrator.compile(problem);
+  double before = energy();
+  for (int i = 0; i < 480; ++i) {
+    step(h);
+    EXPECT_LE(energy(), before + 1e-9) << i;
+    before = energy();
+  }
+  EXPECT_LT(norm(problem.velocity[0]), 1e-6);
+  EXPECT_LT(norm(force() + mass * problem.gravity), 1e-5);
+}
+
+TEST(Contact, has_equations_with_the_derivatives_that_finite_differences_say) {
+  std::mt19937 random(5);
+  const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const double natural[3] = {0.4, 0.7, 0.7};
+  for (int round = 0; round < 50; ++round) {
+    ContactConstraint c;
+    c.friction = 0.1 + 0.05 * number(), c.normal_compliance = 0.01, c.compliance = 0.02;
+    using Mode = ConeState::Mode;
+    for (const ConeState state : {ConeState{}, ConeState{Mode::slips, 1}, ConeState{Mode::slips, 0}}) {
+      double at[6];
+      for (double& value : at) value = number();
+      at[0] = -std::abs(at[0]), at[1] += 1;
+      const ConeEquations e = c.equations(state, at, at + 3, natural);
+      for (std::size_t k = 0; k < 6; ++k) {
+        constexpr double small = 1e-6;
+        double moved[6];
+        std::copy(at, at + 6, moved);
+        moved[k] += small;
+        const ConeEquations after = c.equations(state, moved, moved + 3, natural);
+        for (std::size_t r = 0; r < 3; ++r)
+          EXPECT_NEAR((after.value[r] - e.value[r]) / small, k < 3 ? e.by_multiplier[r][k] : e.by_value[r][k - 3],
+                      1e-5);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace iota::solver
