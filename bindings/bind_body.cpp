@@ -18,6 +18,7 @@ constexpr const char* make_body_doc =
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses represent it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
+    "material: with which it touches, see `Body.material`.\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
     "stepped nor drawn) or 'resting' (dynamic but asleep, see `rest_after`). damping: 1/s, adds to the system's.\n\n"
     "Raises ValueError for numbers that are out of range, TypeError for mass, position, ... without a shape.\n\n"
@@ -32,7 +33,8 @@ constexpr const char* make_obstacle_doc =
     "can be tied to it, and `bodies`, masses, energies and articulates do not count it. `World.add_static` makes one with a\n"
     "look.\n\n"
     "shape: any; a Mesh need not be closed, and has then two sides and no inside. position: of its origin, m.\n"
-    "orientation: quaternion x y z w. Assigning `Body.position` moves it.\n\n"
+    "orientation: quaternion x y z w. Assigning `Body.position` moves it. material: bodies with one touch it, None: nothing\n"
+    "does.\n\n"
     "    wall = system.obstacle(iota.Box((4, 2, 0.1)), position=(0, 1, -2))\n"
     "    ground = system.obstacle(iota.HalfSpace((0, 1, 0)))";
 
@@ -75,12 +77,17 @@ void bind_making(nb::class_<SystemObject>& system) {
       "body",
       [](nb::handle_t<SystemObject> self, const KindWord& kind, double damping, nb::object shape,
          std::optional<double> density, std::optional<double> mass, VectorArgument position, nb::object orientation,
-         VectorArgument velocity, VectorArgument spin, nb::iterable attachments) {
+         VectorArgument velocity, VectorArgument spin, nb::iterable attachments,
+         const std::optional<Material>& material) {
         System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("body(...)");
         finite_not_negative(damping, "damping", "1/s");
+        const auto made = [&](BodyId body) {
+          if (material) engine.bodies().set_material(body, material);
+          return handle_of(self, body);
+        };
         if (shape.is_none()) {
           refuse_without_shape(density, mass, position, orientation, velocity, spin, attachments);
-          return handle_of(self, engine.bodies().create({to_kind(kind), damping}));
+          return made(engine.bodies().create({to_kind(kind), damping}));
         }
         SolidOptions options;
         options.kind = to_kind(kind), options.damping = damping;
@@ -92,12 +99,12 @@ void bind_making(nb::class_<SystemObject>& system) {
         options.orientation = to_quaternion(orientation, "orientation");
         options.velocity = to_vec3(velocity, "velocity"), options.spin = to_vec3(spin, "spin");
         for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
-        return handle_of(self, engine.bodies().create(to_shape(shape), options));
+        return made(engine.bodies().create(to_shape(shape), options));
       },
       "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
       "density"_a = nb::none(), "mass"_a = nb::none(), "position"_a = zero,
       "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
-      "attachments"_a = nb::tuple(),
+      "attachments"_a = nb::tuple(), "material"_a.none() = nb::none(),
       nb::sig(
           "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Shape | None = None, "
@@ -106,18 +113,25 @@ void bind_making(nb::class_<SystemObject>& system) {
           "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "
           "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
-          "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> Body"),
+          "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = (), "
+          "material: Material | None = None) -> Body"),
       make_body_doc);
   system.def(
       "obstacle",
-      [](nb::handle_t<SystemObject> self, nb::handle shape, VectorArgument position, nb::object orientation) {
+      [](nb::handle_t<SystemObject> self, nb::handle shape, VectorArgument position, nb::object orientation,
+         const std::optional<Material>& material) {
         System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("obstacle(...)");
-        return handle_of(self, engine.bodies().create_obstacle(to_shape(shape), to_vec3(position, "position"),
-                                                               to_quaternion(orientation, "orientation")));
+        const BodyId body = engine.bodies().create_obstacle(to_shape(shape), to_vec3(position, "position"),
+                                                            to_quaternion(orientation, "orientation"));
+        if (material) engine.bodies().set_material(body, material);
+        return handle_of(self, body);
       },
-      "shape"_a, "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
-      nb::sig("def obstacle(self, shape: Shape, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
-              "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0)) -> Body"),
+      "shape"_a, "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), nb::kw_only(),
+      "material"_a.none() = nb::none(),
+      nb::sig(
+          "def obstacle(self, shape: Shape, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+          "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), *, material: Material | None = None) "
+          "-> Body"),
       make_obstacle_doc);
 }
 

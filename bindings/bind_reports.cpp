@@ -132,6 +132,7 @@ void bind_step_report(nb::module_& module) {
                         &StepReport::articulates,
                         &StepReport::resting,
                         &StepReport::structure_version,
+                        &StepReport::impact,
                         &StepReport::warnings};
   type.def(
           "__getstate__",
@@ -180,6 +181,7 @@ void bind_step_report(nb::module_& module) {
       .def_prop_ro(
           "deaths", [](const StepReport& r) { return r.died.size(); }, "Particles whose lifetime ended.")
       .def_ro("resting", &StepReport::resting, "Bodies asleep.")
+      .def_ro("impact", &StepReport::impact, "The hardest touch that began; its speed is 0 if none did.")
       .def_ro("structure_version", &StepReport::structure_version)
       .def_ro("warnings", &StepReport::warnings, "Plain sentences.")
       .def("__repr__", [](const StepReport& r) {

@@ -19,7 +19,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 # What records of the model have as members, and vectors: docs/why.md says why.
-EVERYWHERE = {f"iota/{name}.h" for name in ("vec3", "ids", "kinds", "attributes", "joint_options", "view_event")}
+EVERYWHERE = {
+    f"iota/{name}.h" for name in ("vec3", "ids", "kinds", "attributes", "joint_options", "materials", "view_event")
+}
 LARGEST_SHARE = 1 / 3
 
 

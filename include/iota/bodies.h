@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iota/ids.h>
+#include <iota/materials.h>
 #include <iota/options.h>
 #include <iota/shapes.h>
 #include <iota/vec3.h>
@@ -114,6 +115,12 @@ class Bodies : public View {
   double radius(BodyId) const;
   /// Throws std::invalid_argument for a body given by shape.
   void set_radius(BodyId, double meters);
+  /// Its own. With a material its outline touches the outlines of static bodies that have one: it rests, slides and rolls on them.
+  /// None: System::usual_material counts, but for static bodies, which touch nothing then.
+  std::optional<Material> material(BodyId) const;
+  void set_material(BodyId, const std::optional<Material>&);
+  /// Where it touched obstacles in the last step.
+  std::vector<ContactPoint> contacts(BodyId) const;
   double damping(BodyId) const;
   void set_damping(BodyId, double per_second);
   ///@}

@@ -3,6 +3,7 @@
 
 #include <iota/ids.h>
 #include <iota/kinds.h>
+#include <iota/materials.h>
 #include <iota/vec3.h>
 #include <iota/view_event.h>
 
@@ -95,6 +96,7 @@ struct [[nodiscard]] StepReport {
   std::vector<ConstraintId> switched_off_constraints;  ///< the same of the functions of their surfaces
   std::vector<Broken> broken;
   std::vector<StopEvent> stops;
+  Impact impact;
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< requested during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...

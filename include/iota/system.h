@@ -44,7 +44,7 @@ using Views = std::tuple<Bodies, Particles, Bonds, CosmeticBonds, AngleSprings, 
 ///
 /// During a step, functions of the script may read everything, and request the edits that `queued_edits` lists:
 /// combine, destroy, nail, release, separate, set_active, set_compliance, set_coordinate, set_kind, set_length,
-/// set_radius. These are made right after the step; all others throw std::logic_error.
+/// set_material, set_radius. These are made right after the step; all others throw std::logic_error.
 class System {
  public:
   explicit System(const SystemOptions& options = {});
@@ -134,6 +134,9 @@ class System {
   /// first step that finds a body, by usual_radius_of (iota/scene.h); before, as it would be chosen now.
   double usual_radius() const;
   void set_usual_radius(double meters);
+  /// With which bodies touch that can move and have no material of their own; none at first: they touch nothing.
+  std::optional<Material> usual_material() const;
+  void set_usual_material(const std::optional<Material>&);
   ///@}
 
   /// @name The whole

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Grip, Mesh, Shape, Solid, Vec3
-from iota.world.floor import support_points
 from iota.world.frames import axes_of
 from iota.world.view import View
 from iota.world.world import World
@@ -196,6 +195,13 @@ def lines_of(body: Body) -> Iterator[Points]:
             yield from outline(solid)
     elif body.particles:
         yield np.array([list(particle.position) for particle in body.particles])
+
+
+def support_points(shape: Shape, directions: Points) -> Points:
+    """The points of a bounded shape, or of its convex hull, that are farthest in some directions, in its frame: (n, 3), m."""
+    # The point nearest to a far place is the farthest in its direction.
+    far = 1e3 * max(abs(number) for number in shape.numbers)
+    return np.array([tuple(shape.closest(tuple(far * direction))) for direction in directions])
 
 
 @lru_cache(maxsize=256)

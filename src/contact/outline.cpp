@@ -19,8 +19,6 @@ constexpr double close = 1e-6;  ///< of a line's radius: a ray that comes so nea
 constexpr int most_marches = 1000;
 constexpr std::uint32_t fineness = 24;  ///< of the triangles of a torus: 0.9 % of its wire, 0.03 % of its radius inside
 
-Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
-
 Vec3 nearest_of_segment(const Vec3& a, const Vec3& b, const Vec3& place) {
   const Vec3 along = b - a;
   const double squared = dot(along, along);
@@ -170,6 +168,18 @@ std::optional<double> meet(const Outline& outline, const Vec3& from, const Vec3&
 bool is_overlapped(const Outline& outline, const Solid& probe) {
   const auto is_met = [&](const auto& part) { return is_overlapped(part, probe); };
   return std::ranges::any_of(outline.solids, is_met) || std::ranges::any_of(outline.lines, is_met);
+}
+
+double reach(const Outline& outline, const Vec3& place) {
+  constexpr double digits = 1024;
+  double farthest = 0;
+  for (const Solid& solid : outline.solids)
+    farthest = std::max(farthest, norm(solid.position - place) + reach_of(solid.form->box));
+  for (const Line& line : outline.lines)
+    farthest = std::max({farthest, norm(line.a - place) + line.radius, norm(line.b - place) + line.radius});
+  int exponent = 0;
+  const double part = std::frexp(farthest, &exponent);
+  return std::ldexp(std::ceil(part * digits) / digits, exponent);
 }
 
 Bounds bounds(const Outline& outline) {

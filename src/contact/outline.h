@@ -62,6 +62,9 @@ Near near(const Outline&, const Vec3& place);
 std::optional<double> meet(const Outline&, const Vec3& from, const Vec3& unit, double farthest);
 /// Whether it has a point in common with a convex bounded shape.
 bool is_overlapped(const Outline&, const Solid& probe);
+/// All parts are at most so far from a place that is fixed on them, m. Bounds of the distances of the parts, rounded up to
+/// three digits, so that it is the same number wherever the body is and however it is turned.
+double reach(const Outline&, const Vec3& place);
 /// The box of all parts; infinite for an endless one.
 geometry::Bounds bounds(const Outline&);
 

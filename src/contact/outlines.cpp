@@ -22,10 +22,7 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
   // Births of sparks are edits of no outline.
   const std::uint32_t version = structure_.structure_version - structure_.spark_changes;
   is_edited_ = edits_ != structure_.edits || version_ != version;
-  const model::ChangedSlots& changed = structure_.changed_outlines;
-  const bool is_described =
-      changed.is_on && changed.slots().empty() && usual_radius_ == model::usual_radius(structure_);
-  if (!is_edited_ && steps == steps_ && is_described) return tree_;
+  if (!is_edited_ && steps == steps_ && is_described() && !is_stale_) return tree_;
   steps_ = steps, edits_ = structure_.edits, version_ = version;
   describe_changed();
   for (std::uint32_t body = 0; body < tree_.count(); ++body) {
@@ -40,7 +37,19 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
       tree_.show(body);
   }
   tree_.update();
+  is_stale_ = false;
   return tree_;
+}
+
+bool Outlines::is_described() const {
+  const model::ChangedSlots& changed = structure_.changed_outlines;
+  return changed.is_on && changed.slots().empty() && usual_radius_ == model::usual_radius(structure_);
+}
+
+void Outlines::describe() {
+  if (is_described() && aging_.empty()) return;
+  describe_changed();
+  is_stale_ = true;
 }
 
 void Outlines::describe_changed() {
@@ -64,13 +73,25 @@ void Outlines::describe_changed() {
 }
 
 void Outlines::describe(std::uint32_t body) {
-  if (!structure_.bodies.is_alive(body) || !structure_.is_visible(body)) return tree_.remove(body);
+  if (!structure_.bodies.is_alive(body) || !structure_.is_visible(body)) {
+    if (body < reaches_.size()) reaches_[body] = -1;
+    return tree_.remove(body);
+  }
   Outline& outline = tree_.make(body);
   if (kinds_.size() <= body) kinds_.resize(body + std::size_t{1}, BodyKind::dynamic);
   kinds_[body] = BodyKind::dynamic;  // not still: it will be placed
   structure_.for_each_solid_of(
       body, [&](std::uint32_t s) { outline.solids.push_back({form_of(structure_.solids[s].shape), s, {}, {}}); });
   if (outline.solids.empty()) add_lines(body, outline);
+  measure(body);
+}
+
+void Outlines::measure(std::uint32_t body) {
+  if (reaches_.size() <= body) reaches_.resize(body + std::size_t{1}, -1);
+  reaches_[body] = -1;
+  if (structure_.bodies[body].count == 0) return;
+  place(body);
+  reaches_[body] = contact::reach(tree_[body], structure_.position(structure_.bodies[body].first));
 }
 
 void Outlines::add_lines(std::uint32_t body, Outline& outline) {

@@ -26,11 +26,30 @@ class Outlines {
   /// looks where those are that may have moved: all after an edit; after a step those that are not asleep or static.
   const OutlineTree& refresh(std::uint64_t steps);
 
+  /// @name Some bodies, without the tree
+  ///@{
+  /// Call it before the following ones. Costs nothing if no body has changed.
+  void describe();
+  bool has(std::uint32_t body) const { return tree_.has(body); }
+  /// All of a body is at most so far from its first particle, m; negative: it has no outline, or no particle. See
+  /// contact::reach.
+  double reach(std::uint32_t body) const { return body < reaches_.size() ? reaches_[body] : -1; }
+  /// The outline where the body is now. The tree has it elsewhere until the next `refresh`.
+  const Outline& placed(std::uint32_t body) {
+    place(body);
+    return tree_[body];
+  }
+  /// Where it was placed last.
+  const Outline& described(std::uint32_t body) const { return tree_[body]; }
+  ///@}
+
  private:
   using FormKey = std::tuple<std::uint32_t, std::array<double, 4>, std::uint64_t>;
 
   void describe_changed();
+  bool is_described() const;
   void describe(std::uint32_t body);
+  void measure(std::uint32_t body);
   void add_lines(std::uint32_t body, Outline&);
   void place(std::uint32_t body);
   std::shared_ptr<const Form> form_of(const shape::Data&);
@@ -38,12 +57,14 @@ class Outlines {
   model::Structure& structure_;
   OutlineTree tree_;
   std::vector<BodyKind> kinds_;                         ///< by slot: when the body was placed last
+  std::vector<double> reaches_;                         ///< by slot
   std::vector<std::uint32_t> aging_;                    ///< bodies with balls whose radius changes by itself
   std::map<FormKey, std::weak_ptr<const Form>> forms_;  ///< with triangles: these are shared
   double usual_radius_ = 0;
   std::uint64_t steps_ = 0, edits_ = 0;
   std::uint32_t version_ = 0;
   bool is_edited_ = true;  ///< since the last call
+  bool is_stale_ = true;   ///< the tree lacks a description
 };
 
 }  // namespace iota::contact

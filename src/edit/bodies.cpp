@@ -238,6 +238,17 @@ void apply(Editor& e, const SetRadius& c) {
   set_radius(model, body, c.value);
 }
 
+void apply(Editor& e, const SetMaterial& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_not_negative("friction", c.value.friction);
+  if (c.touches)
+    model.materials.make(body) = c.value;
+  else
+    model.materials.erase(body), ingredient::Contacts::end(model, body);
+  if (model::is_free(model.bodies[body].kind)) model.wake(model.bodies[body].articulate);
+}
+
 // --- motion -----------------------------------------------------------------------------------------------------------
 
 void apply(Editor& e, const SetBodyDamping& c) {

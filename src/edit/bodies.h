@@ -43,6 +43,14 @@ struct SetRadius {
   BodyId body;
   double value;
 };
+/// A body without a material touches nothing.
+struct SetMaterial {
+  static constexpr std::string_view queued_as = "set_material";
+  static constexpr bool keeps_energy = true;
+  BodyId body;
+  bool touches;
+  Material value;
+};
 struct SetPose {
   BodyId body;
   Vec3 position;
@@ -65,6 +73,7 @@ void apply(Editor&, const SetRod&);
 void apply(Editor&, const SetKind&);
 void apply(Editor&, const SetBodyDamping&);
 void apply(Editor&, const SetRadius&);
+void apply(Editor&, const SetMaterial&);
 void apply(Editor&, const SetPose&);
 void apply(Editor&, const SetBodyVelocity&);
 void apply(Editor&, const SetAngularVelocity&);

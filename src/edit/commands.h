@@ -138,6 +138,8 @@ using OfNouns = std::variant<
     SetBudget,
     SetRadius,
     SetUsualRadius,
+    SetMaterial,
+    SetUsualMaterial,
     CreateObstacle,
     TakeSnapshot>;
 // clang-format on

@@ -54,6 +54,11 @@ void apply(Editor& e, const SetUsualRadius& c) {
   e.model.usual_radius = c.value;
 }
 
+void apply(Editor& e, const SetUsualMaterial& c) {
+  require_not_negative("friction", c.value.friction);
+  e.model.usual_material = c.value, e.model.has_usual_material = c.touches;
+}
+
 void apply(Editor& e, const SetRest& c) {
   model::Model& model = e.model;
   require_not_negative("rest.after", c.options.after);

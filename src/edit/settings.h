@@ -30,6 +30,12 @@ struct SetUsualRadius {
   static constexpr bool keeps_energy = true;
   double value;
 };
+/// Of all bodies that can move and have no material of their own.
+struct SetUsualMaterial {
+  static constexpr bool keeps_energy = true;
+  bool touches;
+  Material value;
+};
 struct SetRest {
   RestOptions options;
 };
@@ -41,6 +47,7 @@ void apply(Editor&, const SetBudget&);
 void apply(Editor&, const SetSolver&);
 void apply(Editor&, const SetDamping&);
 void apply(Editor&, const SetUsualRadius&);
+void apply(Editor&, const SetUsualMaterial&);
 void apply(Editor&, const SetRest&);
 
 }  // namespace iota::edit

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/body_table.h"
 #include "ingredient/ingredient.h"
 
-#include <algorithm>
-#include <compare>
 #include <vector>
 
 namespace iota::ingredient {
@@ -20,61 +19,11 @@ struct Grip {
   Vec3 force;  ///< in the last step, N
 };
 
-/// Grips, also by body.
-class GripTable : public SlotTable<Grip, GripId> {
-  using Items = SlotTable<Grip, GripId>;
-
- public:
-  GripId create(const Grip& grip) {
-    const GripId id = Items::create(grip);
-    by_body_.insert(place_of({grip.body, id.slot}), {grip.body, id.slot});
-    return id;
-  }
-  void destroy(std::uint32_t slot) {
-    by_body_.erase(place_of({(*this)[slot].body, slot}));
-    Items::destroy(slot);
-  }
-  void move(std::uint32_t slot, std::uint32_t body) {
-    by_body_.erase(place_of({(*this)[slot].body, slot}));
-    (*this)[slot].body = body;
-    by_body_.insert(place_of({body, slot}), {body, slot});
-  }
-  /// visit(slot, grip): in the order of slots.
-  template <class Visit>
-  void for_each_of(std::uint32_t body, Visit visit) const {
-    if (by_body_.empty()) return;
-    for (auto at = place_of({body, 0}); at != by_body_.end() && at->body == body; ++at)
-      visit(at->slot, (*this)[at->slot]);
-  }
-  bool has_any(std::uint32_t body) const {
-    const auto at = place_of({body, 0});
-    return at != by_body_.end() && at->body == body;
-  }
-  template <class Archive>
-  void archive(Archive& ar) {
-    Items::archive(ar);
-    by_body_.clear();
-    for_each([&](std::uint32_t slot, const Grip& grip) { by_body_.push_back({grip.body, slot}); });
-    std::sort(by_body_.begin(), by_body_.end());
-  }
-
- private:
-  struct Place {
-    std::uint32_t body, slot;
-    friend auto operator<=>(const Place&, const Place&) = default;
-  };
-  std::vector<Place>::const_iterator place_of(const Place& place) const {
-    return std::lower_bound(by_body_.begin(), by_body_.end(), place);
-  }
-
-  std::vector<Place> by_body_;  // in order; not saved
-};
-
 /// Grips of viewers: a damped spring of limited force from a point of a body to a target.
 class Grips : public NoAnswers {
  public:
   struct Tables {
-    GripTable grips;
+    BodyTable<Grip, GripId> grips;
 
     const auto& table_of(GripId) const { return grips; }
     template <class Archive>

@@ -4,6 +4,7 @@
 #include "ingredient/angle_springs.h"
 #include "ingredient/bonds.h"
 #include "ingredient/closings.h"
+#include "ingredient/contacts.h"
 #include "ingredient/cosmetic_bonds.h"
 #include "ingredient/emitters.h"
 #include "ingredient/fields.h"
@@ -44,7 +45,8 @@ using Ingredients = std::tuple<  //
     Grips,                       //
     Names,                       //
     CosmeticBonds,               //
-    AngleSprings>;
+    AngleSprings,                //
+    Contacts>;
 
 /// The ingredient with a command among its own; void if there is none.
 template <class C, class List = Ingredients>

@@ -91,6 +91,8 @@ Mat3 nearest_rotation(const Mat3& products) {
   return Mat3::outer(y1, x1) + Mat3::outer(y2, x2) + Mat3::outer(cross(y1, y2), cross(x1, x2));
 }
 
+Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
+
 Quaternion multiply(const Quaternion& a, const Quaternion& b) {
   return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
           a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};

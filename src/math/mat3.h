@@ -64,6 +64,7 @@ Mat3 nearest_rotation(const Mat3& products);
 // Quaternions.
 Quaternion multiply(const Quaternion& a, const Quaternion& b);
 Quaternion normalized(const Quaternion& q);
+Quaternion conjugate(const Quaternion& q);  ///< the turn back
 Vec3 rotate(const Quaternion& q, const Vec3& v);
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
 /// The rotation about a vector by its length, rad.

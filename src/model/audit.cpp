@@ -71,6 +71,13 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a radius");
     require(std::isfinite(radius) && radius > 0, "body ", slot, " has radius ", radius);
   });
+  require(std::isfinite(model_.usual_material.friction) && model_.usual_material.friction >= 0,
+          "the usual material has friction ", model_.usual_material.friction);
+  model_.materials.for_each([&](std::uint32_t slot, const Material& material) {
+    require(model_.bodies.is_alive(slot), "dead body ", slot, " has a material");
+    require(std::isfinite(material.friction) && material.friction >= 0, "body ", slot, " has friction ",
+            material.friction);
+  });
   require(std::isfinite(model_.usual_radius) && model_.usual_radius >= 0, "the usual radius is ", model_.usual_radius);
   model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {
     require(is_point(a.particle), "attributes ", slot, " are of no living particle");

@@ -135,6 +135,10 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
           " is a half-space or an open mesh, which has no mass, so that what is combined with it cannot move; "
           "make it static or scripted first");
   const double damping = damping_of_union(model, a, b);
+  if (!model.materials.has(a) && model.materials.has(b)) {
+    const Material material = model.materials.at(b);
+    model.materials.make(a) = material;
+  }
   const BodyKind kind_before = kind_of_union(model.bodies[a].kind_before, model.bodies[b].kind_before);
   // Inertia pairs and solids move with their particles, so the lists are detached before the particles leave.
   const std::uint32_t pairs = std::exchange(model.bodies[b].first_inertia, none);
@@ -333,7 +337,7 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     model.rebuild_basis(body);
     const std::vector<ParticleId> strays = stray_markers(model, body);
     const std::uint32_t own = model.make_body(model.bodies[body].kind, model.body_damping[body]);
-    model.radii.copy(body, own);
+    model.radii.copy(body, own), model.materials.copy(body, own);
     model.particles[q].part = model.bodies.id(own);
     Ring ring;
     ring.position = position, ring.velocity = velocity;

@@ -13,8 +13,6 @@ namespace {
 /// Corners of a cube with an even number of minus signs. Their sum is zero, the sum of t t' four times the identity.
 constexpr std::array<Vec3, 4> corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
 
-Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
-
 /// Places the four points so that they have these principal mean squares about their center; axes in the world frame.
 void place_points(Structure& model, Solid& solid, const Vec3& center, const SymmetricEigen& e, const SolidPose& pose) {
   const auto root = [](double value) { return std::sqrt(std::max(value, 0.0)); };

@@ -14,6 +14,7 @@
 
 #include <iota/ids.h>
 #include <iota/kinds.h>
+#include <iota/materials.h>
 
 #include <algorithm>
 #include <array>
@@ -174,12 +175,15 @@ class Structure {
   SideTable<double> fuses;  ///< breaking load of the hinge or nail of a particle, N
   SlotTable<Ring, Id<"ring">> rings;
   SlotTable<Body, BodyId> bodies;
-  SideTable<MoreRows> more_rows;   ///< of bodies
-  SideTable<double> body_damping;  ///< of bodies, 1/s
-  SideTable<Obstacle> obstacles;   ///< of bodies
-  SideTable<double> radii;         ///< of bodies that have one of their own, m; see outline.h
-  double usual_radius = 0;         ///< of all other bodies, m; 0: not chosen yet
-  Corrections corrections;         ///< of rings
+  SideTable<MoreRows> more_rows;        ///< of bodies
+  SideTable<double> body_damping;       ///< of bodies, 1/s
+  SideTable<Obstacle> obstacles;        ///< of bodies
+  SideTable<double> radii;              ///< of bodies that have one of their own, m; see outline.h
+  double usual_radius = 0;              ///< of all other bodies, m; 0: not chosen yet
+  SideTable<Material> materials;        ///< of bodies that touch others ...
+  Material usual_material;              ///< ... and of all other bodies that can move,
+  std::uint8_t has_usual_material = 0;  ///< if there is one
+  Corrections corrections;              ///< of rings
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
   Meshes meshes;  ///< of solids
@@ -318,6 +322,12 @@ class Structure {
   bool is_needed(const Particle& p) const {
     const Ring& r = rings[p.ring];
     return r.count > 1 || r.nailed || p.uses > 0;
+  }
+
+  /// With which it touches others; null: nothing.
+  const Material* material(std::uint32_t body) const {
+    if (const Material* const own = materials.find(body)) return own;
+    return has_usual_material && bodies[body].kind != BodyKind::static_ ? &usual_material : nullptr;
   }
 
   /// Whether it has an outline: an obstacle or a body with particles, but no spark.
@@ -502,6 +512,7 @@ void Structure::archive(Archive& ar) {
   more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
   obstacles.archive(ar, bodies.slot_count());
   radii.archive(ar, bodies.slot_count()), ar.value(usual_radius);
+  materials.archive(ar, bodies.slot_count()), ar.value(usual_material), ar.value(has_usual_material);
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);

@@ -27,6 +27,7 @@ StepReport Stepper::step(double dt) {
   door_.begin_step();
   model::choose_usual_radius(editor_.model);
   take_held_forces(report);
+  find_contacts(dt);
   update_islands();
   advance_islands(report);
   door_.end_step();
@@ -39,6 +40,12 @@ StepReport Stepper::step(double dt) {
 void Stepper::take_held_forces(StepReport& report) {
   const Timed timed(times_of_thread(), &StepTimes::forces);
   editor_.held.begin_step(report);
+}
+
+// 1b. Bodies with a material and the obstacles near them.
+void Stepper::find_contacts(double h) {
+  const Timed timed(times_of_thread(), &StepTimes::analyze);
+  contacts_.find(editor_.model, outlines_, h);
 }
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
@@ -163,6 +170,7 @@ void Stepper::fill(StepReport& report) {
     report.warnings.emplace_back("the integration made energy that no force explains (energy.made); try shorter steps");
   report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
   model.notes.clear();
+  report.impact = ingredient::Contacts::hardest_impact(model);
   report.step = model.step;
   report.time = model.time;
   report.worst_gap = worst_gap;

@@ -3,13 +3,15 @@
 
 #include "edit/door.h"
 #include "ingredient/outcome.h"
+#include "step/contacts.h"
 
 namespace iota::step {
 
 /// One step of the whole system.
 class Stepper {
  public:
-  Stepper(edit::Editor& editor, edit::Door& door) : editor_(editor), door_(door) {}
+  Stepper(edit::Editor& editor, edit::Door& door, contact::Outlines& outlines)
+      : editor_(editor), door_(door), outlines_(outlines) {}
 
   /// Advances by dt seconds. Throws std::invalid_argument for another dt than 0 < dt <= 1, and nothing else.
   StepReport step(double dt);
@@ -17,6 +19,7 @@ class Stepper {
  private:
   // The stages, in their order; described in stepper.cpp.
   void take_held_forces(StepReport&);
+  void find_contacts(double h);
   void update_islands();
   void advance_islands(StepReport&);
   void apply_edits(StepReport&);
@@ -24,6 +27,8 @@ class Stepper {
 
   edit::Editor& editor_;
   edit::Door& door_;
+  contact::Outlines& outlines_;
+  ContactFinder contacts_;
   // Scratch of the present step, kept for its capacity.
   double made_ = 0;  // by the islands in this step, J
   island::Island::Clock::time_point deadline_;

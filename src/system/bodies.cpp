@@ -207,6 +207,25 @@ double Bodies::radius(BodyId id) const { return model::radius_of(core_.model, co
 
 void Bodies::set_radius(BodyId body, double meters) { core_.execute(edit::SetRadius{body, meters}); }
 
+std::optional<Material> Bodies::material(BodyId id) const {
+  const Material* const material = core_.model.materials.find(core_.slot(id));
+  return material ? std::optional(*material) : std::nullopt;
+}
+
+void Bodies::set_material(BodyId body, const std::optional<Material>& material) {
+  core_.execute(edit::SetMaterial{body, material.has_value(), material.value_or(Material{})});
+}
+
+std::vector<ContactPoint> Bodies::contacts(BodyId id) const {
+  const model::Model& model = core_.model;
+  std::vector<ContactPoint> points;
+  model.contacts.for_each_of(core_.slot(id), [&](std::uint32_t, const ingredient::Contact& c) {
+    if (c.force == Vec3{}) return;
+    points.push_back({model.bodies.id(c.other), ingredient::Contacts::place(model, c), c.normal, c.force});
+  });
+  return points;
+}
+
 double Bodies::mass(BodyId id) const { return core_.model.body_mass(core_.slot(id)); }
 
 Vec3 Bodies::center_of_mass(BodyId id) const { return core_.model.center_of_mass(core_.slot(id)); }

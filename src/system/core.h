@@ -18,8 +18,8 @@ struct Core {
   read::Orientations orientations;
   edit::Editor editor{model, islands, held, orientations, parallel};
   edit::Door door{editor};
-  step::Stepper stepper{editor, door};
   contact::Outlines outlines{model};
+  step::Stepper stepper{editor, door, outlines};
 
   /// All changes go through it.
   template <class C>

@@ -32,6 +32,14 @@ double System::usual_radius() const { return model::usual_radius(core_->model); 
 
 void System::set_usual_radius(double meters) { core_->execute(edit::SetUsualRadius{meters}); }
 
+std::optional<Material> System::usual_material() const {
+  return core_->model.has_usual_material ? std::optional(core_->model.usual_material) : std::nullopt;
+}
+
+void System::set_usual_material(const std::optional<Material>& material) {
+  core_->execute(edit::SetUsualMaterial{material.has_value(), material.value_or(Material{})});
+}
+
 System::System(const SystemOptions& options) : core_(std::make_unique<Core>()) {
   set_threads(options.threads);
   set_gravity(options.gravity);

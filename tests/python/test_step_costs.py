@@ -42,10 +42,10 @@ def test_costs_of_other_parts_are_means_of_a_step() -> None:
     costs = Costs()
     shown = StepCosts(costs)
     for done in (1.0, 3.0):
-        costs.seconds = {"floor": 0.016 * done, "script: a": 0.016 * done, "script: b": 0.032 * done, "simulator": 9.0}
+        costs.seconds = {"pages": 0.016 * done, "script: a": 0.016 * done, "script: b": 0.032 * done, "simulator": 9.0}
         shown.take(StepTimes())
     assert {part: round(ms, 6) for part, ms in shown.ms.items() if part not in PARTS} == {
-        "floor": 1e3 * 0.032 / EVERY,
+        "pages": 1e3 * 0.032 / EVERY,
         "script": 1e3 * 0.096 / EVERY,
     }
 
@@ -69,7 +69,7 @@ def test_pages_get_the_parts_of_a_step_while_one_asks(chain: list[iota.Body], ru
             return {cost["part"]: cost["ms"] for cost in client.last["world_state"]["costs"]}
 
         found = page.wait_for(lambda: costs() if "script" in costs() else None)
-        assert found.keys() >= {*PARTS, "floor", "pages", "script"} and "simulator" not in found
+        assert found.keys() >= {*PARTS, "pages", "script"} and "simulator" not in found
         assert found["script"] > 2 and 0 < found["factor"] < found["script"]
         other.send("profile", on=True)
         page.send("profile", on=False)

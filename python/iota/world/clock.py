@@ -70,7 +70,7 @@ class Clock(Part):
 
     @property
     def costs(self) -> dict[str, float]:
-        """Seconds that each part of the world has taken since it was made: "simulator", "floor", "pages", "script: ..." for each
+        """Seconds that each part of the world has taken since it was made: "simulator", "pages", "script: ..." for each
         of the script's functions. `iota profile` prints them as a table, with the parts of the simulator."""
         return dict(self._costs.seconds)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The time that each part of a world takes: simulator, functions of the script, floor, pages."""
+"""The time that each part of a world takes: simulator, functions of the script, pages."""
 
 from __future__ import annotations
 

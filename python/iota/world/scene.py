@@ -13,6 +13,7 @@ from iota.arguments import SHORT
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody
 from iota.world.frames import turn_from_x
+from iota.world.ground import MATERIAL
 from iota.world.parts import Part
 from iota.world.things import unit_quaternion, vector
 from iota.world.visuals import TIES, Visuals, radius_of
@@ -121,6 +122,9 @@ class Scene(Part):
         if self._ground is None and self._height is not None:
             self._ground = self._fix("ground", UP, [], (0, self._height, 0))
             self._ground.name = GROUND
+        if self._ground is not None:
+            self._ground.material = self._ground.material or MATERIAL
+            self._system.usual_material = self._system.usual_material or MATERIAL
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between

@@ -14,7 +14,6 @@ from iota._core import Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
 from iota.world.event import Event
-from iota.world.floor import Floor
 from iota.world.keeping import Keeper
 from iota.world.scene import Camera
 from iota.world.state import State
@@ -32,7 +31,6 @@ class Stepper:
     def __init__(self, state: State, guard: Guard) -> None:
         self._state, self._guard = state, guard
         self._off: set[Hook] = set()  # functions that raised since the last reset
-        self._floor: Floor | None = None
         self._start: bytes | None = None
         self._camera: Camera | None = None  # at the start
         self._keeper: Keeper | None = None
@@ -48,8 +46,6 @@ class Stepper:
         state = self._state
         self._tally = Tally(state.system)
         state.scene.keep_ground()
-        if state.scene.ground is not None and isinstance(state.system, System):
-            self._floor = Floor(state.system, state.scene.ground)
         self._start, self._camera = state.system.snapshot(), state.scene.camera
         state.schedule.begin()
         if kept is None or not isinstance(state.system, System):
@@ -86,7 +82,7 @@ class Stepper:
         state.scene.keep_ground()
         dt, began = state.clock.dt, time.perf_counter()
         with self._guard.watching("A step of the world", SLOW_STEP, SMALLER):
-            report = self._step_on_floor(dt)
+            report = self._step_system(dt)
         state.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - state.step_ms)
         if self._tally is not None:
             self._tally.add(report, dt)
@@ -95,20 +91,18 @@ class Stepper:
         self._tell_what_happened()
         return report
 
-    def _step_on_floor(self, dt: float) -> StepReport:
-        state = self._state
-        if self._floor is not None:
-            with state.costs.of("floor"):
-                self._floor.push(dt)
-            self._tell_impact(self._floor)
+    def _step_system(self, dt: float) -> StepReport:
         try:
-            with state.costs.of("simulator"):
-                return self._step_system(dt)
+            with self._state.costs.of("simulator"):
+                report = self._take_step(dt)
         except ForceError as error:
             self._guard.failed("A force", error, "It is switched off. " + GO_ON)
-            return error.report
+            report = error.report
+        if isinstance(self._state.system, System):
+            self._tell_impact(report, dt)
+        return report
 
-    def _step_system(self, dt: float) -> StepReport:
+    def _take_step(self, dt: float) -> StepReport:
         """Times the step if its costs are shown."""
         state = self._state
         is_shown = state.clients.is_profiled
@@ -125,15 +119,19 @@ class Stepper:
             state.step_costs.take(times)
         return report
 
-    def _tell_impact(self, floor: Floor) -> None:
-        """The sound of what falls on the floor, as loud as it is fast; as many as ears tell apart."""
-        system, impact = self._state.system, floor.impact
-        if impact is None or not self._state.scene.shows_edits or 0 <= system.time - self._impact_at < IMPACTS_EVERY:
+    def _tell_impact(self, report: StepReport, dt: float) -> None:
+        """The sound of what falls on the ground, as loud as it is fast; as many as ears tell apart."""
+        system, impact = self._state.system, report.impact
+        gravity = abs(system.gravity)
+        # A body that only settles by the fall of a few steps makes no impact.
+        if not (impact.speed > 4 * gravity * dt and gravity > 0) or not self._state.scene.shows_edits:
+            return
+        if 0 <= system.time - self._impact_at < IMPACTS_EVERY:
             return
         self._impact_at = system.time
         # A fall from half the size of the scene or higher is as loud as usual.
         size = float(np.linalg.norm(np.ptp(system.positions, axis=0)))
-        usual = math.sqrt(-system.gravity.y * size)
+        usual = math.sqrt(gravity * size)
         self._state.things.play("impact", impact.position, impact.speed / max(usual, impact.speed))
 
     def _tell_what_happened(self) -> None:
@@ -163,8 +161,6 @@ class Stepper:
             return
         self._state.history.restore(self._start)
         self._state.scene.camera = self._camera
-        if self._floor is not None:
-            self._floor.forget()
         self._state.schedule.rewind()
         self._off.clear()
         self._state.notices.over()

@@ -22,7 +22,7 @@ from iota.world.clock import Clock
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.events import Events
-from iota.world.floor import level_below
+from iota.world.ground import level_below
 from iota.world.inputs import Inputs
 from iota.world.lan import Lan
 from iota.world.pages import Pages

@@ -24,7 +24,7 @@ std::uint32_t hold(model::Model& model, std::uint32_t body, const Vec3& place) {
 
 // Against a walk through all.
 TEST(Grips, are_found_by_their_body_in_the_order_of_slots) {
-  GripTable grips;
+  BodyTable<Grip, GripId> grips;
   std::mt19937 random(2);
   for (int round = 0; round < 500; ++round) {
     const std::uint32_t body = random() % 5, slot = grips.slot_count() > 0 ? random() % grips.slot_count() : 0;

@@ -11,7 +11,6 @@ import pytest
 
 import iota
 from iota.world import options
-from iota.world.floor import Floor, touching_points
 
 TILTED = (0.3, 0.5, 0.1, 0.8)
 SHAPES = {
@@ -39,34 +38,30 @@ def dropped(shape: iota.Shape, height: float, **more: object) -> tuple[iota.Worl
 
 
 def lowest(body: iota.Body, shape: iota.Shape) -> float:
-    """Of the shape's touching points where the body is now, m."""
-    x, y, z, w = body.orientation
-    up = (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # world y in the body's frame
-    places, radius = touching_points(shape)
-    return body.center_of_mass.y + min(sum(a * b for a, b in zip(up, p, strict=True)) for p in places) - radius
+    """Of the shape's surface where the body is now, m."""
+    (solid,) = body.solids
+    x, y, z, w = solid.orientation
+    up = iota.Vec3(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # world y in the shape's frame
+    farthest = shape.closest(tuple(-1e6 * up))  # the point nearest to a far place is the farthest in its direction
+    return solid.position.y + sum(a * b for a, b in zip(up, farthest, strict=True))
 
 
 @pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
 @pytest.mark.parametrize("kind", SHAPES)
-def test_dropped_bodies_come_to_rest_on_the_ground(kind: str, size: float) -> None:
+def test_dropped_bodies_come_to_lie_on_the_ground(kind: str, size: float) -> None:
     shape = SHAPES[kind](size)
     world, body = dropped(shape, 5 * size)
+    deepest = 0.0
+
+    @world.on_step
+    def watch() -> None:
+        nonlocal deepest
+        deepest = min(deepest, lowest(body, shape))
+
     run(world, 3 + 2 * math.sqrt(size))
-    assert body.center_of_mass.y < 3.3 * size
-    assert lowest(body, shape) > -0.05 * size
-    assert abs(body.velocity.y) < 0.3 * math.sqrt(9.81 * size)
-
-
-@pytest.mark.parametrize("rounding", [0, 0.15, 0.5])
-def test_a_cylinder_touches_the_ground_with_its_rounded_edges(rounding: float) -> None:
-    shape = iota.Cylinder(0.5, 2, rounding)
-    places, radius = touching_points(shape)
-    for tilt in np.linspace(-1.5, 1.5, 7):
-        down = np.array(
-            [math.sin(tilt), math.cos(tilt) * math.cos(math.pi / 8), math.cos(tilt) * math.sin(math.pi / 8)]
-        )
-        lowest_point = np.array(tuple(shape.closest(tuple(1e6 * down))))
-        assert max(places @ down) + radius == pytest.approx(lowest_point @ down, rel=1e-6)
+    assert deepest > -0.01 * size, "also while it falls on an edge"
+    assert -1e-4 * size < lowest(body, shape) < 1e-3 * size
+    assert kind == "ellipsoid" or abs(body.velocity.y) < 0.05 * math.sqrt(9.81 * size), "an egg rolls on"
 
 
 def test_a_body_that_is_thrown_down_fast_hardly_bounces() -> None:
@@ -89,12 +84,11 @@ def test_a_box_that_slides_is_stopped_by_friction_and_stays_where_it_is() -> Non
     box = system.body(shape=iota.Box((0.3, 0.2, 0.1)), density=1000, position=(0, 0.1, 0), velocity=(3, 0, 0))
     world = iota.World(system, ground=0.0)
     run(world, 2)
-    # v^2 / (2 mu g) with mu = 0.6; corners catch a little
-    assert box.center_of_mass.x == pytest.approx(0.76, rel=0.5)
+    assert box.center_of_mass.x == pytest.approx(3**2 / (2 * 0.6 * 9.81), rel=0.03)
     place = box.center_of_mass
     run(iota.World(system, ground=0.0), 2)
-    assert abs(box.center_of_mass - place) < 0.02
-    assert box.center_of_mass.y == pytest.approx(0.1, abs=0.002)
+    assert abs(box.center_of_mass - place) < 1e-8
+    assert box.center_of_mass.y == pytest.approx(0.1, abs=1e-8)
 
 
 def test_a_particle_slides_as_far_as_the_friction_of_the_ground_allows() -> None:
@@ -102,7 +96,7 @@ def test_a_particle_slides_as_far_as_the_friction_of_the_ground_allows() -> None
     point = system.body().particle((0, 0.05, 0), mass=1, velocity=(3, 0, 0))
     point.radius = 0.05
     run(iota.World(system, ground=0.0), 2)
-    assert point.position.x == pytest.approx(3**2 / (2 * 0.6 * 9.81), rel=0.05)
+    assert point.position.x == pytest.approx(3**2 / (2 * 0.6 * 9.81), rel=0.02)
 
 
 def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -> None:
@@ -113,8 +107,8 @@ def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -
     world.draw(chain.bodies, iota.looks.capsule(0.02, "rope"))
     run(world, 4)
     heights = system.positions[:, 1]
-    assert heights.min() > 0.012
-    assert heights.max() < 0.1
+    assert heights.min() > 0.0199
+    assert heights.max() < 0.2, "two links may stand on each other"
 
 
 FEET = [(0.3 * math.cos(turn), 0, 0.3 * math.sin(turn)) for turn in (0, 2.1, 4.2)]
@@ -136,12 +130,13 @@ def test_a_rigid_body_of_unequal_masses_falls_and_rests_on_its_points(name: str,
     body = system.body()
     for (x, y, z), mass in zip(places, masses, strict=True):
         body.particle((x, y + 0.1, z), mass)
-    floor, start = Floor(system, 0.0), system.energy.kinetic + system.energy.potential
-    for _ in range(round(1.5 / dt)):
-        floor.push(dt)
-        report = system.step(dt)
-        energy = report.energy.kinetic + report.energy.potential
-        assert energy < 1.001 * start  # a turn in a step is calculated as if it were small
+    world, start = iota.World(system, dt=dt, ground=0.0), system.energy.kinetic + system.energy.potential
+
+    @world.on_step
+    def watch() -> None:
+        assert system.energy.kinetic + system.energy.potential < 1.0001 * start
+
+    run(world, 1.5)
     heights = np.sort(system.positions[:, 1])
     assert np.abs(heights[: min(len(places), 3)]).max() < 0.005
     assert len(places) < 4 or heights[3] == pytest.approx(0.5, abs=0.005)
@@ -154,11 +149,8 @@ def test_a_body_of_many_particles_lies_on_the_outermost_ones() -> None:
     plate = system.body()
     for n in range(100):
         plate.particle((0.1 * (n % 10), 0.3, 0.1 * (n // 10)), 99 if n == 34 else 1)
-    floor = Floor(system, 0.0)
-    for _ in range(360):
-        floor.push(1 / 120)
-        system.step(1 / 120)
-    assert np.abs(system.positions[:, 1]).max() < 0.002
+    run(iota.World(system, ground=0.0), 3)
+    assert np.abs(system.positions[:, 1]).max() < 1e-5
 
 
 def test_the_ground_is_under_all_bodies_and_what_hangs_from_them() -> None:
@@ -196,71 +188,6 @@ def test_without_a_ground_things_fall_on() -> None:
     assert point.position.y == pytest.approx(1 - 9.81 * 2, rel=0.02)
 
 
-def test_the_kept_list_of_bodies_equals_a_new_list_after_edits() -> None:
-    """A floor that has followed random edits, and one that lists everything anew."""
-    random = np.random.default_rng(3)
-    system = iota.System(damping=1.0)
-    blocks = [system.body(shape=iota.Box((0.2, 0.1, 0.3)), mass=1, position=(0.5 * n, 0.4, 0)) for n in range(6)]
-    balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(0.5 * n, 0.4, 1)) for n in range(3)]
-    iota.builder.chain(6, 1.2, top=(0, 1.5, 2), direction=(1, 0, 0)).realize(system)
-    system.emitter(rate=300, position=(0, 0.2, 3), velocity=(0, 1, 0), lifetime=0.1)
-    floor = Floor(system, 0.0)
-    cluster = system.body()
-    for place in ((0, 0.5, -1), (0.3, 0.5, -1), (0, 0.8, -1), (0, 0.5, -0.7)):
-        cluster.particle(place, 0.2)
-    cluster.combine(blocks.pop())
-    hinges: list[tuple[iota.Particle, iota.Particle]] = []
-    added: list[iota.Body] = []
-
-    def some() -> iota.Body:
-        return random.choice([body for body in system.bodies if not body.is_spark])
-
-    def hinge() -> None:
-        place = tuple(random.uniform(0, 1, 3))
-        hinges.append((random.choice(blocks).particle(place), random.choice(balls).particle(place)))
-        iota.Particle.combine(*hinges[-1])
-
-    def add() -> None:
-        added.append(system.body(shape=iota.Capsule(0.05, 0.2), mass=1, position=tuple(random.uniform(0.3, 1, 3))))
-
-    edits: list[Callable[[], object]] = [
-        add,
-        lambda: setattr(some(), "kind", random.choice(["dynamic", "static"])),
-        lambda: setattr(some(), "mass", random.uniform(0.5, 2)),
-        lambda: setattr(some().particles[0], "radius", random.uniform(0.01, 0.2)),
-        hinge,
-        lambda: iota.Particle.separate(*hinges.pop()),
-        lambda: added[0].combine(added.pop()),
-        lambda: some().particle(tuple(random.uniform(0, 1, 3))),
-        lambda: setattr(cluster.particles[0], "position", cluster.particles[0].position + (0.02, 0.01, 0)),
-        lambda: setattr(added[-1].particles[0], "position", added[-1].particles[0].position + (0.02, 0.01, 0)),
-        lambda: added.pop(0).destroy(),
-        lambda: setattr(some(), "radius", random.uniform(0.01, 0.05)),
-    ]  # fmt: skip
-    done = 0
-    for _ in range(300):
-        before = system.scene_version
-        try:
-            random.choice(edits)()
-            done += 1
-        except (ValueError, RuntimeError, IndexError, iota.StaleIdError):
-            pass  # some edits do not fit some bodies
-        floor.push(1 / 120)
-        system.step(1 / 120)
-        if system.scene_version == before:
-            continue  # it lists bodies after edits of them only
-        floor._take_structure(system.positions)
-        fresh = Floor(system, 0.0)
-        fresh._take_structure(system.positions)
-        kept, new = floor._touches, fresh._touches
-        assert kept is not None and new is not None and kept.ranges == new.ranges
-        for name in ("rows", "mass_rows", "masses", "mass_bodies", "radius", "is_solid", "is_joined", "bodies"):
-            np.testing.assert_array_equal(getattr(kept, name), getattr(new, name), err_msg=name)
-        np.testing.assert_allclose(kept.weights, new.weights, atol=1e-6)
-        assert floor._reach == pytest.approx(fresh._reach, rel=1e-6)
-    assert done > 150
-
-
 def test_a_body_that_is_let_go_later_is_held_too() -> None:
     system = iota.System()
     box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.5, 0), kind="static")
@@ -268,7 +195,7 @@ def test_a_body_that_is_let_go_later_is_held_too() -> None:
     world = iota.World(system, ground=0.0)
     world.at(0.5)(lambda: setattr(box, "kind", "dynamic"))
     run(world, 2)
-    assert box.center_of_mass.y == pytest.approx(0.1, abs=0.01)
+    assert box.center_of_mass.y == pytest.approx(0.1, abs=1e-6)
 
 
 def test_emitted_sparks_pass_and_the_rest_is_held() -> None:
@@ -291,3 +218,112 @@ def test_a_fall_on_the_ground_is_heard_once_where_it_is_and_rest_is_silent(size:
     place = heard[0][1]
     assert abs(place - iota.Vec3(body.center_of_mass.x, 0, body.center_of_mass.z)) < 0.01 * size
     assert 0.3 < heard[0][2] <= 1 and still.alive
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 120])
+@pytest.mark.parametrize("radius", [0.02, 0.05, 0.1, 0.5])
+@pytest.mark.parametrize("is_ball", [True, False])
+def test_what_rolls_keeps_its_speed(is_ball: bool, radius: float, dt: float) -> None:
+    system, speed = iota.System(), min(1.0, 0.5 * radius / dt)
+    shape = iota.Sphere(radius) if is_ball else iota.Cylinder(radius, 2 * radius)
+    turn = (0, math.sqrt(0.5), 0, math.sqrt(0.5))  # its axis along z
+    body = system.body(
+        shape=shape, position=(0, radius, 0), orientation=turn, velocity=(speed, 0, 0), spin=(0, 0, -speed / radius)
+    )
+    run(iota.World(system, ground=0.0, dt=dt), 5)
+    assert body.center_of_mass.x == pytest.approx(5 * speed, rel=0.005)
+    assert body.center_of_mass.y == pytest.approx(radius, rel=1e-3)
+    assert body.velocity.x == pytest.approx(speed, rel=0.005)
+
+
+def table(system: iota.System, top: float, leg: float) -> list[iota.Body]:
+    """A table with four legs that are welded to it, kg."""
+    board = system.body(shape=iota.Box((1, 0.05, 0.6)), mass=top, position=(0, 0.625, 0))
+    legs = []
+    for x in (-0.45, 0.45):
+        for z in (-0.25, 0.25):
+            legs.append(system.body(shape=iota.Box((0.05, 0.6, 0.05)), mass=leg, position=(x, 0.3, z)))
+            system.weld(board, legs[-1], at=(x, 0.6, z))
+    return [board, *legs]
+
+
+@pytest.mark.parametrize("leg", [0.01, 0.25, 2.5])
+def test_a_heavy_table_stands_on_light_legs(leg: float) -> None:
+    system = iota.System()
+    parts = table(system, 10, leg)
+    before = [part.center_of_mass for part in parts]
+    run(iota.World(system, ground=0.0), 3)
+    assert max(abs(part.center_of_mass - place) for part, place in zip(parts, before, strict=True)) < 1e-6
+
+
+def test_a_table_of_one_body_does_not_glide() -> None:
+    system = iota.System()
+    board, *legs = table(system, 90, 2.5)
+    for leg in legs:
+        board.combine(leg)
+    before = board.center_of_mass
+    run(iota.World(system, ground=0.0), 4)
+    assert abs(board.center_of_mass - before) < 1e-6
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9, 1.1])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 120])
+def test_a_box_that_is_pulled_with_less_than_its_friction_stays(share: float, dt: float) -> None:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.4, 0.2, 0.4)), mass=5, position=(0, 0.1, 0))
+    system.field("fx = q", q=share * 0.6 * 5 * 9.81 / 4)  # on each of its four particles
+    run(iota.World(system, ground=0.0, dt=dt), 4)
+    if share < 1:
+        assert abs(box.center_of_mass - iota.Vec3(0, 0.1, 0)) < 1e-4
+    else:
+        assert box.center_of_mass.x > 1
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 120])
+@pytest.mark.parametrize("height", [1.0, 5.0])
+def test_what_falls_is_never_seen_below_the_ground(height: float, dt: float) -> None:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.1 + height, 0))
+    world = iota.World(system, ground=0.0, dt=dt)
+    seen: list[float] = []
+    world.on_step(lambda: seen.append(box.center_of_mass.y))
+    run(world, 2)
+    assert min(seen) > 0.1 - 1e-6
+    assert seen[-1] == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_restored_world_moves_on_as_before() -> None:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.3, 0.2, 0.4)), position=(0, 0.5, 0), velocity=(1, 0, 0), spin=(1, 2, 3))
+    world = iota.World(system, ground=0.0)
+    run(world, 0.5)
+    saved = system.snapshot()
+    for _ in range(60):
+        system.step(1 / 120)
+    there = box.center_of_mass
+    system.restore(saved)
+    for _ in range(60):
+        system.step(1 / 120)
+    assert box.center_of_mass == there
+
+
+def test_a_ground_of_ice_has_the_material_that_the_script_gives_it() -> None:
+    system = iota.System(damping=0)
+    box = system.body(shape=iota.Box((0.4, 0.2, 0.4)), position=(0, 0.1, 0), velocity=(1, 0, 0))
+    world = iota.World(system, ground=0.0)
+    assert world.scene.ground_body is not None
+    world.scene.ground_body.material = iota.Material(friction=0)
+    run(world, 2)
+    assert box.velocity.x == pytest.approx(1, abs=1e-6)
+    contacts = box.contacts
+    assert len(contacts) == 4 and {contact.other for contact in contacts} == {world.scene.ground_body}
+    assert sum(contact.force.y for contact in contacts) == pytest.approx(box.mass * 9.81, rel=1e-6)
+
+
+def test_a_material_says_what_is_wrong_with_it() -> None:
+    with pytest.raises(ValueError, match="friction"):
+        iota.Material(friction=-0.1)
+    with pytest.raises(TypeError):
+        iota.System().body().material = 0.5  # type: ignore[assignment]
+    assert repr(iota.Material(friction=0.25)) == "Material(friction=0.25)"
+    assert iota.Material() == iota.Material(friction=0.5)

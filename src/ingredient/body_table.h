@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/slot_table.h"
+
+#include <algorithm>
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+namespace iota::ingredient {
+
+/// A slot table of items that have a member `body`, with the lists of the bodies: visiting the items of one body costs
+/// only their number.
+template <class T, class IdType>
+class BodyTable : public SlotTable<T, IdType> {
+  using Items = SlotTable<T, IdType>;
+
+ public:
+  IdType create(const T& item) {
+    const IdType id = Items::create(item);
+    by_body_.insert(place_of({item.body, id.slot}), {item.body, id.slot});
+    return id;
+  }
+  void destroy(std::uint32_t slot) {
+    by_body_.erase(place_of({(*this)[slot].body, slot}));
+    Items::destroy(slot);
+  }
+  void move(std::uint32_t slot, std::uint32_t body) {
+    by_body_.erase(place_of({(*this)[slot].body, slot}));
+    (*this)[slot].body = body;
+    by_body_.insert(place_of({body, slot}), {body, slot});
+  }
+  /// visit(slot, item): in the order of slots.
+  template <class Visit>
+  void for_each_of(std::uint32_t body, Visit visit) const {
+    if (by_body_.empty()) return;
+    for (auto at = place_of({body, 0}); at != by_body_.end() && at->body == body; ++at)
+      visit(at->slot, (*this)[at->slot]);
+  }
+  bool has_any(std::uint32_t body) const {
+    const auto at = place_of({body, 0});
+    return at != by_body_.end() && at->body == body;
+  }
+  template <class Archive>
+  void archive(Archive& ar) {
+    Items::archive(ar);
+    by_body_.clear();
+    this->for_each([&](std::uint32_t slot, const T& item) { by_body_.push_back({item.body, slot}); });
+    std::sort(by_body_.begin(), by_body_.end());
+  }
+
+ private:
+  struct Place {
+    std::uint32_t body, slot;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  std::vector<Place>::const_iterator place_of(const Place& place) const {
+    return std::lower_bound(by_body_.begin(), by_body_.end(), place);
+  }
+
+  std::vector<Place> by_body_;  // in order; not saved
+};
+
+}  // namespace iota::ingredient
