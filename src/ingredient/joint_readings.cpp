@@ -8,17 +8,37 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
+#include <utility>
 
 namespace iota::ingredient {
 
 using namespace joint;
 
+namespace {
+
+/// visit(row, places): the row of a coordinate at the present places; an angle is unwrapped near the last one.
+template <class Visit>
+void with_placed_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which, Visit visit) {
+  const Constraint& c = model.constraints[slot];
+  const JointPlaces places(model, c);
+  with_coordinate({c, model.geometry(slot), places.arms}, which, [&](auto row) {
+    set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
+    visit(std::as_const(row), places);
+  });
+}
+
+}  // namespace
+
 void refresh_coordinates(Model& model, std::uint32_t slot) {
   Constraint& c = model.constraints[slot];
-  for (const JointCoordinate which : joint_coordinates)
-    if (has_coordinate(c.kind, which))
-      c.coordinate[static_cast<std::size_t>(which)] = calc_coordinate(model, slot, which).first;
+  for (const JointCoordinate which : joint_coordinates) {
+    if (!has_coordinate(c.kind, which)) continue;
+    double value = 0;
+    with_placed_coordinate(model, slot, which, [&](const auto& row, const JointPlaces& places) {
+      row.value(places.position.data(), 1, &value);
+    });
+    c.coordinate[static_cast<std::size_t>(which)] = value;
+  }
 }
 
 namespace {
@@ -143,24 +163,15 @@ double calc_energy_of_holds(const Model& model, std::uint32_t slot) {
 }
 
 std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {
-  const Constraint& c = model.constraints[slot];
-  const JointPlaces places(model, c);
-  const auto read = [&](const auto& row) {
-    using Row = std::remove_cvref_t<decltype(row)>;
-    double value = 0, speed = 0;
-    row.value(places.position.data(), 1, &value);
+  std::pair<double, double> found{0, 0};
+  with_placed_coordinate(model, slot, which, [&]<class Row>(const Row& row, const JointPlaces& places) {
+    row.value(places.position.data(), 1, &found.first);
     const solver::Gradients<Row> gradients(row, places.position.data(), 1);
     for (int i = 0; i < row.node_count(); ++i) {
       Vec3 direction;
       gradients.of_node(i, &direction);
-      speed += dot(direction, places.velocity[row.nodes[i]]);
+      found.second += dot(direction, places.velocity[row.nodes[i]]);
     }
-    return std::pair{value, speed};
-  };
-  std::pair<double, double> found{0, 0};
-  with_coordinate({c, model.geometry(slot), places.arms}, which, [&](auto row) {
-    set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
-    found = read(row);
   });
   return found;
 }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace iota::ingredient {
@@ -98,7 +99,14 @@ void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
       const auto places = arms_of(map, c);
       if (!places) return;
       joints_.push_back(slot);
-      build_rows({c, map.model.geometry(slot), *places}, sink);
+      const JointArms arms{c, map.model.geometry(slot), *places};
+      build_rows(arms, sink);
+      for (const int which : {angle, second_angle})
+        if (has_coordinate(c.kind, joint_coordinates[which]))
+          (void)with_coordinate(arms, joint_coordinates[which], [&]<class Row>(const Row& row) {
+            if constexpr (std::is_same_v<Row, solver::AngleConstraint>)
+              problem.count(row, key_of(owner, slot, {.coordinate = static_cast<std::uint8_t>(which)}));
+          });
     }
   });
 }
@@ -118,6 +126,8 @@ void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, R
 
 void Joints::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   if (joints_.empty()) return;
+  for (auto& [angle, key] : problem.counted_angles)
+    set_target(angle, model.constraints[key.slot].coordinate[use_of(key).coordinate], 0);
   problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
     for_each_item_of<C>(owner, problem, [&](std::size_t item, solver::ItemKey key) {
       const Constraint& c = model.constraints[key.slot];
@@ -150,6 +160,8 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
 
 void Joints::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
   if (joints_.empty()) return;
+  for (const auto& [angle, key] : problem.counted_angles)
+    model.constraints[key.slot].coordinate[use_of(key).coordinate] = angle.near;
   for (const std::uint32_t slot : joints_) {
     model.constraints[slot].gap = 0;
     refresh_coordinates(model, slot);

@@ -224,6 +224,7 @@ void Integrator::commit(Problem& problem, const Stage& stage, const StepEnergy& 
 }
 
 void Integrator::track(Problem& problem, double fraction) {
+  for (Problem::CountedAngle& c : problem.counted_angles) c.angle.track(problem.position.data(), fraction);
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if constexpr (TrackingConstraint<C>)
       for (C& c : pool.items) c.track(problem.position.data(), fraction);
@@ -263,7 +264,10 @@ bool Integrator::coast_a_piece(Problem& problem, double h) {
     // A projection may have raised the points by more than the motion can pay.
     is_taken = std::isfinite(gained) && (drives_rows_ || gained <= 0 || change_kinetic_energy(problem, gained));
   }
-  if (is_taken) return true;
+  if (is_taken) {
+    track(problem, 1);
+    return true;
+  }
   std::copy(saved_position_.begin(), saved_position_.end(), problem.position.begin());
   for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] = 0.5 * saved_velocity_[i];
   if (!std::isfinite(problem.kinetic_energy())) std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});

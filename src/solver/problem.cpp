@@ -28,7 +28,7 @@ void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size
 
 void Problem::clear() {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
-  clear(position, velocity, force, mass, damping, mass_couplings);
+  clear(position, velocity, force, mass, damping, mass_couplings, counted_angles);
   for_each_constraint_pool([&](auto& p) {
     acting_version_ += !p.acting.empty();  // the next ones may have no laws, and all act
     clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held);
@@ -67,6 +67,12 @@ void Problem::couple_masses(std::uint32_t a, std::uint32_t b, double m) {
   mass_couplings.push_back({a, b, m});
 }
 
+void Problem::count(const AngleConstraint& angle, ItemKey key) {
+  if (!is_any_open({angle.nodes.data(), angle.count})) return;
+  reserve_with_slack(counted_angles, counted_angles.size() + 1);
+  counted_angles.push_back({angle, key});
+}
+
 void Problem::open(std::span<const std::uint32_t> nodes) {
   is_open_.assign(size(), 0);
   for (const std::uint32_t node : nodes) {
@@ -84,6 +90,8 @@ void Problem::open(std::span<const std::uint32_t> nodes) {
   };
   find_leaving(mass_couplings, [](const MassCoupling& c) { return std::array{c.a, c.b}; });
   take_out(mass_couplings, 1, leaving);
+  std::erase_if(counted_angles,
+                [&](const CountedAngle& c) { return is_any_open({c.angle.nodes.data(), c.angle.count}); });
   for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     find_leaving(pool.items, pool.nodes_of);
     for (const std::size_t i : leaving) changes_.removed_rows.push_back(pool.slots[i].unknown);
@@ -150,6 +158,7 @@ void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
   if (!damping.empty()) number.apply(damping);
   const auto renumber = [&](std::uint32_t& node) { node = number(node); };
   for (auto& c : mass_couplings) renumber(c.a), renumber(c.b);
+  for (auto& c : counted_angles) std::for_each_n(c.angle.nodes.begin(), c.angle.count, renumber);
   for_each_constraint_pool([&](auto& pool) {
     for (auto& c : pool.items) std::for_each_n(c.nodes.begin(), c.node_count(), renumber);
   });

@@ -171,6 +171,12 @@ struct Problem {
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
   std::vector<double> damping;           ///< of velocities, 1/s, for the caller of the integrator; or empty: none
   std::vector<MassCoupling> mass_couplings;
+  /// Angles without a force, which are followed in each sub-step: so turns are counted above half of one in a step.
+  struct CountedAngle {
+    AngleConstraint angle;
+    ItemKey key;
+  };
+  std::vector<CountedAngle> counted_angles;
   Vec3 gravity;
   /// Origin of positions and targets, m. It keeps their precision far from the world's origin.
   Vec3 origin;
@@ -197,6 +203,8 @@ struct Problem {
   /// A constraint or a force.
   template <class Item>
   void add(const Item&, ItemKey);
+  /// An angle that is followed.
+  void count(const AngleConstraint&, ItemKey);
 
   /// Returns the number of a new node, which is eliminated right after the one beside it.
   std::uint32_t add_node_beside(std::uint32_t);
