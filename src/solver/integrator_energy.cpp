@@ -10,20 +10,35 @@
 
 namespace iota::solver {
 
+namespace {
+
+/// Whether a target moved in the (sub-)step that was solved. A motor at its largest torque is a force and drives nothing.
+bool has_driven_rows(const Problem& problem) {
+  bool drives = false;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) drives = drives || c.is_moving();
+    for (std::size_t row = 0; row < pool.laws.size(); ++row)
+      drives = drives || (pool.laws[row].rate != 0 && pool.states.is_equation(row));
+  });
+  return drives;
+}
+
+}  // namespace
+
 // The mid-point rule satisfies the rows by the mean velocity, not by the velocity at the end: the residual of a row
 // there would change its sign in each step, as a rate of stretch of rigid links (up to 30 % of the kinetic energy of a
 // whip) and as oscillating reactions. So velocities are projected, and the energy of that is returned to the motion.
 // Not in an impact, when a bounded row has just become active: that is inelastic, and the projection takes its energy.
 void Integrator::project_velocities_after_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  const bool met = met_ > 0;
+  const bool met = met_ > 0, drives = drives_rows_ && has_driven_rows(problem);
   const std::optional<double> kinetic = newton_.project_velocities_after(
-      problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives_rows_, .is_isolated = holds_.count == 0});
+      problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0});
   has_corrected_ = kinetic.has_value();
   double taken = 0;
   if (kinetic) {
     taken = energy_.kinetic - *kinetic;
     energy_.kinetic -= taken, energy_.total -= taken;
-    if (drives_rows_) {  // rows that move do work in it
+    if (drives) {  // rows that move do work in it
       const auto earlier = newton_.velocities_before();
       const double own = problem.kinetic_energy([&](std::size_t i) { return problem.velocity[i] - earlier[i]; });
       report.external_work += own - taken;
@@ -34,7 +49,7 @@ void Integrator::project_velocities_after_step(Problem& problem, const Stage& st
     report.dissipated += taken;
   else
     energy_.missing += taken;
-  if (!met && !drives_rows_ && give_energy_back(problem, stage, taken, report)) has_corrected_ = true;
+  if (!met && !drives && give_energy_back(problem, stage, taken, report)) has_corrected_ = true;
 }
 
 // Newton's velocities before the correction become the correction.
@@ -119,7 +134,8 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
 bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double taken, AdvanceReport& report) {
   constexpr double most = 0.1;  // of the kinetic energy: limit of the returned error on curves
   const bool is_made = has_curved_rows_ && std::abs(energy_.missing) > energy_.slack;
-  const double missing = is_made ? std::clamp(energy_.missing, -most * energy_.kinetic, most * energy_.kinetic) : taken;
+  const double limit = most * energy_.kinetic;
+  const double missing = taken + (is_made ? std::clamp(energy_.missing - taken, -limit, limit) : 0);
   if (missing == 0) return false;
   if (std::exchange(may_be_in_pieces_, false)) {
     const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_, room_for_pieces_);
