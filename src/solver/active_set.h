@@ -10,8 +10,8 @@ namespace iota::solver {
 
 /// The sides of rows with bounds (RowLaw): at a bound, or free. A primal-dual active set (Hintermueller, Ito, Kunisch
 /// 2002): at each iteration a row is at the bound beyond which lambda + g / (natural compliance) lies, or free. All
-/// rows change at once while that reduces the number of wrong ones, else one at a time, lowest first, which cannot
-/// cycle (Judice and Pires 1994). A cone switches as one row does, between its own states. States and multipliers are in
+/// rows change at once while that reduces the number of wrong ones. Otherwise friction and motors first yield, less and
+/// less; then rows change one at a time, lowest first, which cannot cycle (Judice and Pires 1994). A cone switches as one row does, between its own states. States and multipliers are in
 /// the pools.
 class ActiveSet {
  public:
@@ -20,6 +20,7 @@ class ActiveSet {
   /// Switches rows between bounds and free, by positions x and multipliers; returns whether any changed. Rows within
   /// the tolerance do not change.
   bool choose(Problem&, const Stage&, const Vec3* x);
+  static constexpr int most_softenings = 6;
   /// Number of rows that became free since `begin`.
   static int count_met(const Problem&);
 
@@ -30,6 +31,25 @@ class ActiveSet {
   /// Releases rows whose impulse, by unknown, has the wrong sign; returns whether there were any.
   static bool release_impulses(Problem&, std::span<const double> impulses);
 
+  /// @name Sides in an explicit sub-step, which do not change in it (active_set_motion.cpp)
+  ///@{
+  struct Sides {
+    bool can_follow =
+        true;  ///< not if a stop is met, with a cone, or a drive of unlimited strength that has not its speed
+    bool are_new = false;   ///< other ones than before
+    bool stop_any = false;  ///< a row became an equation
+  };
+  /// By positions and velocities, in a step of h seconds: friction and motors slide or have their speed, stops are open or carry.
+  static Sides begin_motion(Problem&, double h);
+  /// Moves equations whose multipliers are beyond a bound to it; returns whether any.
+  static bool release_motion(Problem&);
+  /// The part of the sub-step after which a row has left its side, by interpolation; 1: none. A row that does so in
+  /// less than `least` of it begins the next sub-step with its new side.
+  static double find_change(Problem&, double h, double least);
+  /// The longest step in which springs of rows are no stiff ones, s.
+  static double longest_step(const Problem&);
+  ///@}
+
  private:
   template <class C>
   static void begin_cone(ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&);
@@ -39,7 +59,11 @@ class ActiveSet {
   template <class C>
   static void set_cone(ConstraintPool<C>&, std::size_t item, ConeState);
 
+  void soften(Problem&, const Stage&, const Vec3* x);
+
   int fewest_wrong_ = 0, stalled_ = 0;
+  double softening_ = 0;  // of hold rows, in their natural compliances
+  bool has_softened_ = false;
 };
 
 }  // namespace iota::solver

@@ -100,6 +100,11 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
       if (!settled) {
         factor_will_do = false;
         measure(problem, stage);
+        for (int more = ActiveSet::most_softenings; more > 0 && !settled && !(residual_.worst > stage.tolerance);
+             --more) {
+          settled = !active_set_.choose(problem, stage, x_.data());  // what yields less may need no other motion
+          measure(problem, stage);
+        }
         most_iterations =
             std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
       }

@@ -46,6 +46,10 @@ struct RowLaw {
   double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
   /// Distance of g into the forbidden side.
   double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
+  /// Of a compliant row, by its value and its rate, N.
+  double spring_force(double g, double speed) const {
+    return std::clamp(g / compliance + damping * speed, lower, upper);
+  }
   /// Energy that a spring row stores, J; a pure dashpot stores none.
   double energy(double g) const {
     if (!is_compliant() || hold || std::isinf(compliance)) return 0;

@@ -18,7 +18,7 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   const RowLaw& law = pool.law(i)[r];
   const double start = pool.states.start(i * C::rows + static_cast<std::size_t>(r));
   if (law.hold) g -= start + law.rate * stage.h;
-  if (!law.is_compliant()) return {g, 0};
+  if (!law.is_compliant()) return {g, pool.states.yield(i * C::rows + static_cast<std::size_t>(r))};
   const double part = stage.is_mid_point() ? 0.5 : 1;
   const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
   const double total = part * stiffness + damping;
@@ -39,6 +39,32 @@ ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const d
   ConeState state = pool.states.cone(i * C::rows);
   if (stage.is_projection()) state.direction = 0;
   return pool.items[i].equations(state, pool.multiplier(i), values, natural);
+}
+
+/// Values, gradients and speeds of a constraint's rows at the positions and velocities of a problem.
+template <class C>
+struct RowMotion {
+  double value[C::rows], speed[C::rows] = {};
+  double size[C::rows] = {};  ///< the largest speed that these velocities can cause
+
+  RowMotion(const Problem& problem, const C& c) : gradients_(c, problem.position.data(), 1) {
+    c.value(problem.position.data(), 1, value);
+    for (int i = 0; i < c.node_count(); ++i) {
+      gradients_.of_node(i, rows_[i]);
+      const Vec3& v = problem.velocity[c.nodes[i]];
+      for (int r = 0; r < C::rows; ++r) speed[r] += dot(rows_[i][r], v), size[r] += norm(rows_[i][r]) * norm(v);
+    }
+  }
+  const Vec3& gradient(int node, int r) const { return rows_[node][r]; }
+
+ private:
+  Gradients<C> gradients_;
+  Vec3 rows_[C::max_nodes][C::rows];
+};
+
+/// The multiplier of a row that is no equation while it moves: a bound, or the force of a spring by its value and speed.
+inline double multiplier_in_motion(const RowLaw& law, double at_bound, double value, double speed) {
+  return law.is_compliant() ? law.spring_force(value, speed) : law.hold ? at_bound : 0;
 }
 
 /// Whether all rows of an item are at a bound of zero, so that it has no effect.

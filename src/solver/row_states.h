@@ -29,14 +29,20 @@ class RowStates {
   }
   /// The value of a hold or compliant row at the start of the (sub-)step.
   double start(std::size_t row) const { return rows_[row].start; }
+  /// By how much a hold row yields to a multiplier of 1 while the sides are sought; 0 in every solution.
+  double yield(std::size_t row) const { return rows_[row].yield; }
 
  private:
   friend class ActiveSet;
+  static constexpr std::int8_t as_it_moves = 2;
   struct Row {
     std::int8_t side = 0;         // -1, 1: its multiplier is at the lower, upper bound; 0: an equation
     std::int8_t side_before = 0;  // at the start of the (sub-)step
     bool off_speed = false;       // a hold row whose velocity there was not the target
-    double start = 0;
+    double start = 0, yield = 0;
+    double before =
+        0;  // at the start of an explicit sub-step: the speed of a row that slides, the multiplier of an equation
+    std::int8_t next_side = as_it_moves;  // of an explicit sub-step
   };
   std::vector<Row> rows_;
 };
