@@ -275,10 +275,21 @@ void Assembly::load_rates(const Problem& problem) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       double* const row = unknowns_.data() + pool.slots[k].unknown;
       calc_bends(pool.items[k], x, v, row);
-      for (int r = 0; r < C::rows; ++r)
-        if (!pool.is_equation(k, r)) row[r] = 0;
+      if (pool.has_laws()) load_row_forces(problem, pool, k, row);
     }
   });
+}
+
+template <class C>
+void Assembly::load_row_forces(const Problem& problem, const ConstraintPool<C>& pool, std::size_t k, double* row) {
+  const RowMotion<C> motion(problem, pool.items[k]);
+  for (int r = 0; r < C::rows; ++r) {
+    if (pool.is_equation(k, r)) continue;
+    row[r] = multiplier_in_motion(pool.law(k)[r], pool.multiplier(k)[r], motion.value[r], motion.speed[r]);
+    if (row[r] == 0) continue;
+    for (int i = 0; i < pool.items[k].node_count(); ++i)
+      add_force(pool.items[k].nodes[i], row[r] * motion.gradient(i, r));
+  }
 }
 
 inline void Assembly::add_to_node(std::uint32_t node,

@@ -112,6 +112,8 @@ class Assembly {
   template <Scheme S, class C>
   void add_resistance(const Stage&, const ConstraintPool<C>&, const Vec3* x0, const Vec3* x);
 
+  template <class C>
+  void load_row_forces(const Problem&, const ConstraintPool<C>&, std::size_t item, double* row);
   void add_force(std::uint32_t node, const Vec3& force) {
     double* const r = unknowns_.data() + node_unknown_[node];
     r[0] += force.x, r[1] += force.y, r[2] += force.z;

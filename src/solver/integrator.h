@@ -128,6 +128,7 @@ class Integrator {
   double advance_explicitly(Problem&, double h, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   bool is_smooth(Problem&, double h) const;
+  bool begin_motion(Problem&, bool has_accelerations, AdvanceReport&);
   std::optional<RigidMotion> free_motion(const Problem&) const;
   void keep_momenta(Problem&, const RigidMotion& start, double time) const;
   void keep_energy(Problem&, const RungeKutta&, AdvanceReport&);

@@ -30,35 +30,62 @@ bool has_stiff_forces(const Problem& problem, double h) {
 
 }  // namespace
 
-// Explicit steps need rows that are equations at rest in time, or open rows that stay open.
+// Explicit steps need rows at rest in time.
 bool Integrator::is_smooth(Problem& problem, double h) const {
-  if (drives_rows_ || holds_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
+  constexpr double most_parts = 100;  // of a step by the springs of rows; shorter ones are stiff
+  if (holds_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
   if (!problem.items_of<GripForce>().empty()) return false;
-  if (has_stiff_forces(problem, h)) return false;
-  if (!problem.has_laws()) return true;
-  ActiveSet::begin_impulses(problem);
-  bool smooth = true;
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    for (std::size_t row = 0; row < pool.laws.size(); ++row) {
-      const RowLaw& law = pool.laws[row];
-      if (law == RowLaw{} || law.is_off()) continue;
-      smooth = smooth && !law.hold && !law.is_compliant() && !pool.states.is_equation(row);
+  if (drives_rows_) {
+    bool moves = false;
+    problem.for_each_constraint_pool([&](const auto& pool) {
+      for (const auto& c : pool.items) moves = moves || c.is_moving();
+    });
+    if (moves) return false;
+  }
+  return !has_stiff_forces(problem, h) && h < most_parts * ActiveSet::longest_step(problem);
+}
+
+// Finds the sides of bounded rows for explicit sub-steps, and the accelerations with them. What stops takes its last speed
+// with it.
+bool Integrator::begin_motion(Problem& problem, bool has_accelerations, AdvanceReport& report) {
+  constexpr int most_releases = 12;
+  const auto begin = [&] {
+    runge_kutta_->begin(newton_, problem);
+    ++report.iterations, --iterations_left_;
+  };
+  if (problem.has_laws()) {
+    const ActiveSet::Sides sides = ActiveSet::begin_motion(problem, step_length_);
+    if (!sides.can_follow) return false;
+    if (sides.stop_any) {
+      const double before = energy_.kinetic, missing = energy_.missing;
+      if (!newton_.project_state(problem, 0)) return false;
+      energy_.measure_kinetic(problem);
+      report.dissipated += before - energy_.kinetic, energy_.missing = missing;
     }
-  });
-  return smooth;
+    has_accelerations = has_accelerations && !sides.are_new;
+  }
+  if (!has_accelerations) begin();
+  for (int i = 0; i < most_releases && problem.has_laws(); ++i, begin())
+    if (!ActiveSet::release_motion(problem)) return true;
+  return !problem.has_laws();
 }
 
 namespace {
 
 bool has_closed_row(const Problem& problem) {
+  constexpr double met = 1e-9;  // a row that has just opened is closed to round-off
   bool closed = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       double g[C::rows];
       pool.value(k, problem.position.data(), 1, g);
-      for (int r = 0; r < C::rows; ++r)
-        closed = closed || (!pool.is_equation(k, r) && pool.law(k)[r].violation(g[r]) > 0);
+      for (int r = 0; r < C::rows; ++r) {
+        const RowLaw& law = pool.law(k)[r];
+        const double start = pool.states.start(k * C::rows + static_cast<std::size_t>(r));
+        closed = closed || (!pool.is_equation(k, r) &&
+                            law.violation(g[r]) > law.violation(start) + met * pool.items[k].reference_length());
+      }
     }
   });
   return closed;
@@ -80,31 +107,39 @@ double time_scale(const Problem& problem, std::span<const Vec3> accelerations) {
 }  // namespace
 
 // Returns the fraction of the step that was taken: less than all if a row closes, or if steps become too short, as they
-// do for stiff springs.
+// do for stiff springs. A sub-step ends where friction stops or begins to slide, or a motor reaches its speed.
 double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport& report) {
   constexpr double shortest = 1.0 / 4096, safety = 0.9, least = 0.2, most = 5, first = 0.5;
+  constexpr int most_changes = 60;  // of sides: then rows switch all the time
   if (!is_smooth(problem, h)) return 0;
   if (!runge_kutta_) runge_kutta_ = std::make_unique<RungeKutta>();
   RungeKutta& steps = *runge_kutta_;
-  steps.begin(newton_, problem);
+  if (!begin_motion(problem, false, report)) return 0;
+  const bool has_laws = problem.has_laws();
   const std::optional<RigidMotion> free = free_motion(problem);
-  double time = 0, part = first * time_scale(problem, steps.accelerations());
+  const double longest = ActiveSet::longest_step(problem);
+  double time = 0, part = std::min(longest, first * time_scale(problem, steps.accelerations()));
+  double until_change = 0;  // s, if a row changes its side in the present sub-step
+  int changes = 0;
   while (time < h) {
+    part = std::min(part, longest);
     part = (h - time) / std::ceil((h - time) / part * (1 - 1e-9));
     if (!(part >= shortest * h) || is_out_of_budget() || iterations_left_ < RungeKutta::solves) break;
+    const double length = until_change > 0 ? until_change : part;
     const AdvanceReport before = report;
     const EnergyBalance energy = energy_;
-    const bool is_last = part == h - time;
+    const bool is_last = length == h - time;
     report.iterations += RungeKutta::solves, ++report.solves, iterations_left_ -= RungeKutta::solves;
-    bool good = steps.step(newton_, problem, part);
-    if (free) keep_momenta(problem, *free, time + part);
+    bool good = steps.step(newton_, problem, length);
+    if (free) keep_momenta(problem, *free, time + length);
     keep_energy(problem, steps, report);
     steps.end(newton_, problem);
-    const double error = steps.estimate_error(part).position / newton_.reference_length();
-    const double ratio = error / (settings_.max_error * part);
+    const double error = steps.estimate_error(length).position / newton_.reference_length();
+    const double ratio = error / (settings_.max_error * length);
     good = good && ratio <= 1 && !has_closed_row(problem);
-    if (good) {
-      time = is_last ? h : time + part;
+    const double change = good && has_laws ? ActiveSet::find_change(problem, step_length_, shortest * h / length) : 1;
+    if (good && change == 1) {
+      time = is_last ? h : time + length;
       steps.accept(problem);
       track(problem, 1);
       ++report.substeps, report.error += error / h;
@@ -112,9 +147,12 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
       const int iterations = report.iterations, solves = report.solves;
       steps.reject(problem);
       report = before, report.iterations = iterations, report.solves = solves, energy_ = energy;
-      if (ratio <= 1) break;  // a row closes, or the constraints cannot be met
+      if (ratio <= 1 && !good) break;  // a row closes, or the constraints cannot be met
+      if (change < 1 && ++changes > most_changes) break;
     }
-    part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
+    until_change = change < 1 && change * length >= shortest * h ? change * length : 0;
+    if (has_laws && time < h && !begin_motion(problem, good && change == 1, report)) break;
+    if (change == 1) part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
   }
   if (time > 0) energy_.close(problem, reference_length(), time, report), is_instant_ = true;
   return time < h ? time / h : 1;

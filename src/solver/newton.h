@@ -84,11 +84,12 @@ class Newton {
   /// pools).
   void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
 
-  /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities.
+  /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities. Rows at a bound
+  /// push with their multipliers, compliant ones with their force.
   void find_accelerations(Problem& problem, std::span<Vec3> accelerations);
   /// Moves the problem's positions and velocities, which nearly satisfy the constraints, by the least changes in the
-  /// mass norm onto them. False if gaps of more than 1e-10 of a length remain.
-  bool project_state(Problem& problem);
+  /// mass norm onto them. False if gaps of more than 1e-10 of a length remain. `time`: since the start of rows with a hold.
+  bool project_state(Problem& problem, double time);
 
   double reference_length() const { return assembly_.reference_length(); }  ///< mean of the constraints', m
 
@@ -122,7 +123,7 @@ class Newton {
   };
   std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
   double find_rates(const Problem&, const Wanted&);
-  double find_gaps(const Problem&);
+  double find_gaps(const Problem&, double time);
   template <class C>
   void add_mean_rates(const C&, double* row) const;
   void add_step_to_velocities(Problem&);

@@ -21,8 +21,8 @@ void Newton::find_accelerations(Problem& problem, std::span<Vec3> accelerations)
   });
 }
 
-// Relative; what the rows lack goes into the residuals.
-double Newton::find_gaps(const Problem& problem) {
+// Relative; what the rows lack goes into the residuals. A row with a hold has moved by its rate for `time` seconds.
+double Newton::find_gaps(const Problem& problem, double time) {
   const std::span<double> residuals = assembly_.residuals();
   std::fill(residuals.begin(), residuals.end(), 0.0);
   Largest worst;
@@ -32,7 +32,10 @@ double Newton::find_gaps(const Problem& problem) {
       const double per_length = 1 / pool.items[k].reference_length();
       pool.value(k, problem.position.data(), 1, row);
       for (int r = 0; r < C::rows; ++r) {
-        if (!pool.is_equation(k, r)) row[r] = 0;
+        if (!pool.is_equation(k, r))
+          row[r] = 0;
+        else if (pool.has_laws() && pool.law(k)[r].hold)
+          row[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r)) + pool.law(k)[r].rate * time;
         worst.add(std::abs(row[r]) * per_length);
       }
     }
@@ -41,16 +44,16 @@ double Newton::find_gaps(const Problem& problem) {
 }
 
 // One matrix for all: the positions change by little.
-bool Newton::project_state(Problem& problem) {
+bool Newton::project_state(Problem& problem, double time) {
   constexpr int most_passes = 4;
   constexpr double clean = 1e-13, sufficient = 1e-10;  // of a length
-  double gap = find_gaps(problem);
+  double gap = find_gaps(problem, time);
   (void)assembly_.factor_and_solve(problem, Stage::projection(), problem.position.data(), Hessian::none);
   for (int pass = 0; pass < most_passes && gap > clean; ++pass) {
     if (pass > 0) assembly_.solve();
     for (std::size_t i = 0; i < problem.size(); ++i)
       problem.position[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
-    const double before = std::exchange(gap, find_gaps(problem));
+    const double before = std::exchange(gap, find_gaps(problem, time));
     if (!(gap < before)) break;
   }
   const Wanted wanted;

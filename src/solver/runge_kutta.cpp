@@ -2,6 +2,7 @@
 #include "solver/runge_kutta.h"
 
 #include "solver/largest.h"
+#include "solver/row_equation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,19 @@ Power calc_power(const Problem& problem) {
         power.external += f.push_work(before, e, ForceStage::at_an_instant());
     }
   });
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size() && pool.has_laws(); ++k) {
+      const RowMotion<C> motion(problem, pool.items[k]);
+      for (int r = 0; r < C::rows; ++r) {
+        const RowLaw& law = pool.law(k)[r];
+        const double lambda = pool.multiplier(k)[r], speed = motion.speed[r];
+        if (law.hold)
+          power.external -= lambda * law.rate, power.dissipated += lambda * (speed - law.rate);
+        else if (law.is_compliant())  // what it does not store
+          power.dissipated += (lambda - std::clamp(motion.value[r] / law.compliance, law.lower, law.upper)) * speed;
+      }
+    }
+  });
   return power;
 }
 
@@ -96,7 +110,7 @@ bool RungeKutta::step(Newton& newton, Problem& problem, double h) {
     newton.find_accelerations(problem, slopes_[stage]);
     add_work(weights[stage]);
   }
-  return newton.project_state(problem);
+  return newton.project_state(problem, h);
 }
 
 void RungeKutta::end(Newton& newton, Problem& problem) { newton.find_accelerations(problem, slopes_[stages - 1]); }

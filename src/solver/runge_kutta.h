@@ -10,7 +10,7 @@ namespace iota::solver {
 
 /// Explicit steps of fifth order with an error estimate of fourth order (Dormand and Prince 1980), from the
 /// accelerations that satisfy the constraints; each step ends with a projection of positions and velocities on them
-/// (Hairer, Lubich, Wanner 2006, IV.4). For problems whose rows all are equations at rest in time, or stay open.
+/// (Hairer, Lubich, Wanner 2006, IV.4). For problems whose rows stay equations or at their bounds in a step.
 class RungeKutta {
  public:
   /// Saves the state as the start of a step, with its accelerations.

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sides of bounded rows in the explicit sub-steps of the accurate mode.
+#include "solver/active_set.h"
+#include "solver/row_equation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iota::solver {
+
+namespace {
+
+/// The speed below which a row counts as at rest: a part of the largest one that its points can cause, and of its length a
+/// step.
+template <class C>
+double little(const C& c, double size, double rate, double h) {
+  return 1e-6 * (size + std::abs(rate)) + 1e-9 * c.reference_length() / h;
+}
+
+/// Of a one-sided row: the direction in which it opens.
+int opening(const RowLaw& law) { return law.upper == 0 ? 1 : -1; }
+
+}  // namespace
+
+ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
+  Sides sides;
+  bool& can_follow = sides.can_follow;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    can_follow = can_follow && !ConeConstraint<C>;
+    for (std::size_t k = 0; k < pool.items.size() && can_follow; ++k) {
+      const RowMotion<C> motion(problem, pool.items[k]);
+      for (int r = 0; r < C::rows; ++r) {
+        const RowLaw& law = pool.law(k)[r];
+        RowStates::Row& state = pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)];
+        const double speed = motion.speed[r] - law.rate;
+        const double rest = little(pool.items[k], motion.size[r], law.rate, h);
+        const int side_before = state.side;
+        state.start = motion.value[r], state.yield = 0;
+        if (law == RowLaw{}) {
+          state.side = 0;
+        } else if (law.is_off() || law.is_compliant()) {
+          state.side = 1;
+        } else if (state.next_side != RowStates::as_it_moves) {
+          state.side = state.next_side;
+        } else if (law.hold) {
+          const bool is_at_rest = std::abs(speed) <= rest;
+          state.side = static_cast<std::int8_t>(is_at_rest ? 0 : speed > 0 ? 1 : -1);
+          can_follow = can_follow && (is_at_rest || std::isfinite(speed > 0 ? law.upper : law.lower));
+        } else {
+          const int open = opening(law);
+          const bool touches = open * motion.value[r] <= closed_gap * pool.items[k].reference_length();
+          can_follow = can_follow && !(touches && open * speed < -rest);
+          state.side = static_cast<std::int8_t>(touches && open * speed <= rest ? 0 : open);
+        }
+        if (state.side != 0 && !law.is_compliant())
+          pool.multiplier(k)[r] = law.hold ? (state.side > 0 ? law.upper : law.lower) : 0;
+        state.before = std::abs(speed), state.next_side = RowStates::as_it_moves;
+        sides.are_new = sides.are_new || state.side != side_before;
+        sides.stop_any = sides.stop_any || (state.side == 0 && side_before != 0);
+      }
+    }
+  });
+  return sides;
+}
+
+bool ActiveSet::release_motion(Problem& problem) {
+  bool released = false;
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (std::size_t row = 0; row < pool.laws.size(); ++row) {
+      RowStates::Row& state = pool.states.rows_[row];
+      if (state.side != 0) continue;
+      double& lambda = pool.multipliers[row];
+      state.before = lambda;
+      const RowLaw& law = pool.laws[row];
+      if (lambda >= law.lower && lambda <= law.upper) continue;
+      state.side = static_cast<std::int8_t>(lambda > law.upper ? 1 : -1);
+      lambda = std::clamp(lambda, law.lower, law.upper);
+      state.before = 0, released = true;
+    }
+  });
+  return released;
+}
+
+double ActiveSet::find_change(Problem& problem, double h, double least) {
+  constexpr double beyond = 1e-3;  // of a bound: reached early enough
+  double part = 1;
+  const auto note = [&](RowStates::Row& state, int next_side, double until) {
+    if (until < least) state.next_side = static_cast<std::int8_t>(next_side);
+    part = std::min(part, until);
+  };
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size() && pool.has_laws(); ++k) {
+      const RowMotion<C> motion(problem, pool.items[k]);
+      for (int r = 0; r < C::rows; ++r) {
+        const RowLaw& law = pool.law(k)[r];
+        RowStates::Row& state = pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)];
+        if (law == RowLaw{} || law.is_off() || law.is_compliant()) continue;
+        if (state.side == 0) {
+          const double lambda = pool.multiplier(k)[r], bound = std::clamp(lambda, law.lower, law.upper);
+          if (std::abs(lambda - bound) > beyond * std::max(std::abs(bound), std::abs(state.before)))
+            note(state, lambda > bound ? 1 : -1, (bound - state.before) / (lambda - state.before));
+        } else if (law.hold) {
+          const double speed = state.side * (motion.speed[r] - law.rate);
+          if (!(speed < -little(pool.items[k], motion.size[r], law.rate, h))) continue;
+          note(state, 0, state.before / (state.before - speed));
+        }
+      }
+    }
+  });
+  return part;
+}
+
+double ActiveSet::longest_step(const Problem& problem) {
+  constexpr double of_radian = 1, of_decay = 2;
+  double longest = std::numeric_limits<double>::infinity();
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size() && pool.has_laws(); ++k) {
+      const RowLaw* const law = pool.law(k);
+      if (std::none_of(law, law + C::rows, [](const RowLaw& l) { return l.is_compliant() && !l.is_off(); })) continue;
+      const RowMotion<C> motion(problem, pool.items[k]);
+      for (int r = 0; r < C::rows; ++r) {
+        if (!law[r].is_compliant() || law[r].is_off()) continue;
+        double mobility = 0;
+        for (int i = 0; i < pool.items[k].node_count(); ++i)
+          mobility += dot(motion.gradient(i, r), motion.gradient(i, r)) / problem.mass[pool.items[k].nodes[i]];
+        longest = std::min(
+            {longest, of_radian / std::sqrt(mobility / law[r].compliance), of_decay / (mobility * law[r].damping)});
+      }
+    }
+  });
+  return longest;
+}
+
+}  // namespace iota::solver
