@@ -69,6 +69,7 @@ void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dis
   energy_.measure_kinetic(problem);
   const double refunded = std::clamp(-energy_.missing, 0.0, std::max(0.0, dissipated));
   energy_.missing += refunded, report.dissipated -= refunded;
+  spin().turn_on(problem, newton_.velocities_before(), stage.h, [&] { track(problem, stage.fraction); });
 }
 
 // Also if dampers dissipate energy. Down to half of the slack, since round-off would exceed the whole.

@@ -242,6 +242,15 @@ void Spin::find_motions(const Problem& problem, Parts& parts) {
   });
 }
 
+// The motions after `give_back`.
+void Spin::find_velocities(const Problem& problem, Parts& parts) {
+  for (Part& part : parts.parts) part.chord = part.velocity(), part.momentum = {};
+  for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
+    parts.of(a).momentum += mass * problem.velocity[b];
+  });
+  find_motions(problem, parts);
+}
+
 // A part on a single point in gravity turns only about the direction of gravity.
 Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
   const double g = dot(gravity, gravity);
@@ -256,14 +265,14 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
   find_parts(problem, Connection::rows, all, pieces_);
   const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
   const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
-  const bool are_members_due = find_members(problem) && find_losses(problem, displacement, h, members_);
-  const bool are_wheels_due = wheels_.find_losses(problem, displacement, h);
-  if (are_members_due) most_gain -= turn_members(problem, most_gain);
-  if (are_wheels_due)
+  are_members_due_ = find_members(problem) && find_losses(problem, displacement, h, members_);
+  are_wheels_due_ = wheels_.find_losses(problem, displacement, h);
+  if (are_members_due_) most_gain -= turn_members(problem, most_gain);
+  if (are_wheels_due_)
     most_gain -= wheels_.turn(
         problem, most_gain,
         [&](auto points) {  // not yet done as a member
-          return !are_members_due ||
+          return !are_members_due_ ||
                  std::none_of(points.begin(), points.end(), [&](std::uint32_t i) { return members_.of(i).is_due; });
         },
         [&](auto points, const Vec3& given) {
@@ -276,7 +285,7 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
       clusters_.of(i).lost += std::exchange(pieces_.of(i).given, Vec3{});
     (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
   }
-  return are_pieces_due || are_clusters_due || are_members_due || are_wheels_due;
+  return are_pieces_due || are_clusters_due || are_members_due_ || are_wheels_due_;
 }
 
 /// Gives each member the angular impulse that it has lost, without moving its supports. A free piece would be pushed by this:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/function_ref.h"
 #include "math/mat3.h"
 #include "solver/holds.h"
 #include "solver/pieces.h"
@@ -38,6 +39,11 @@ class Spin {
   bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                  bool is_rigid);
 
+  /// The end-point rule turns a body by atan(h w) where its velocity, with what `give_back` has returned, says h w: turns
+  /// positions and velocities of the same pieces, members and wheels by the rest, each about an axis that no row and no
+  /// force notices. `chords`: the velocities (x1 - x0)/h. Calls `turned` after each radian.
+  void turn_on(Problem&, std::span<const Vec3> chords, double h, FunctionRef<void()> turned);
+
   /// Notes momentum and angular momentum before positions are moved ...
   void note(const Problem&, const Holds& all);
   /// ... and restores both by the least change of kinetic energy. Returns the largest angular momentum that a piece cannot
@@ -58,6 +64,7 @@ class Spin {
     Mat3 inertia;                          ///< about the center
     Vec3 wanted_momentum, wanted_angular;  ///< about the origin, or the point that holds it
     Vec3 velocity_change, turn;            ///< m/s, rad/s
+    Vec3 chord;                            ///< of the center of mass in the step, m/s
     Vec3 velocity() const { return holds.count > 0 ? Vec3{} : (1 / mass) * momentum; }
   };
   struct Parts {
@@ -83,10 +90,12 @@ class Spin {
   bool find_clusters(const Problem&, const Holds& all);
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, double h, Parts&);
   static void find_motions(const Problem&, Parts&);
+  static void find_velocities(const Problem&, Parts&);
   enum class Rest : std::uint8_t { gives, gives_all, is_kept };
   static double turn_parts(Problem&, double most_gain, Rest, Parts&);
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
   void add_momenta(const Problem&);
+  void find_pushed(const Problem&);
 
   std::uint64_t acting_version_ = 0;  // of the problem, when the parts were found
   Parts pieces_, clusters_, members_;
@@ -95,6 +104,9 @@ class Spin {
   std::vector<Support> supports_;
   std::vector<std::uint32_t> piece_of_, nodes_of_, rows_of_;
   std::vector<std::uint8_t> may_turn_;
+  std::vector<std::uint8_t> is_pushed_;  // each node, by a force
+  // Whether the latest `give_back` found any.
+  bool are_members_due_ = false, are_wheels_due_ = false;
   DisjointSets room_for_pieces_;
 };
 

@@ -38,6 +38,13 @@ class Wheels {
   double turn(Problem&, double most_gain, FunctionRef<bool(std::span<const std::uint32_t>)> is_due,
               FunctionRef<void(std::span<const std::uint32_t>, const Vec3&)> given);
 
+  /// visit(axis, own points): each wheel that the latest `turn` has turned.
+  template <class Visit>
+  void for_each_turned(Visit visit) const {
+    for (const Wheel& wheel : wheels_)
+      if (wheel.turn != 0) visit(wheel.axis, wheel.points());
+  }
+
  private:
   static constexpr std::size_t most_nodes = 8;  // of a body: four that carry it, and some markers
   struct Wheel {
