@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 namespace iota::scenes {
@@ -155,10 +157,150 @@ Complaint check_order(std::uint64_t seed) {
   return {};
 }
 
+/// An angle about z between -pi and pi.
+double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+
+/// The direction of a body that turns about z.
+double direction(const System& system, BodyId body) {
+  const Vec3 x = rotate(system.bodies().orientation(body), {1, 0, 0});
+  return std::atan2(x.y, x.x);
+}
+
+// A shaft that turns by itself, two geared wheels and a screw, all about z in empty space. The end-point rule brakes what
+// something else notices: gears and screws.
+Complaint check_turns(std::uint64_t seed) {
+  Dice dice{seed};
+  const bool is_accurate = seed % 3 == 0, is_robust = seed % 3 == 1;
+  System system({.gravity = {},
+                 .mode = is_accurate ? IntegrationMode::accurate
+                         : is_robust ? IntegrationMode::robust
+                                     : IntegrationMode::energy_keeping});
+  const double h = 1.0 / 60, pi = std::numbers::pi;
+  const double speed =
+      (seed % 2 ? 1 : -1) * 2 * pi * std::pow(10, dice.uniform(-2, is_accurate || is_robust ? 1 : 0.5)) / h;
+  const double ratio = dice.uniform(-1, 1), lead = dice.uniform(-0.2, 0.2);
+  const auto make = [&](double x, ConstraintKind kind, double spin, double rise) {
+    const Vec3 at{x, 0, 0};
+    const BodyId body =
+        system.bodies().create(Box{{dice.uniform(0.1, 0.3), 0.2, 0.1}},
+                               {.mass = dice.uniform(0.1, 10), .position = at, .velocity = {0, 0, rise}});
+    const ConstraintId joint = system.joints().create({.kind = kind, .a = body, .at = at, .lead = lead});
+    system.bodies().set_angular_velocity(body, {0, 0, spin});
+    return std::pair{body, joint};
+  };
+  const auto [shaft, bearing] = make(0, ConstraintKind::revolute, speed, 0);
+  const auto [wheel, first] = make(1, ConstraintKind::revolute, speed, 0);
+  const auto [other, second] = make(2, ConstraintKind::revolute, ratio * speed, 0);
+  const auto [screw, thread] = make(3, ConstraintKind::screw, speed, lead / (2 * pi) * speed);
+  (void)system.joints().create({.terms = {{.constraint = first, .ratio = ratio}, {.constraint = second, .ratio = -1}}});
+  (void)system.step(h);
+  const auto turn = [&](ConstraintId joint) { return system.joints().state(joint).coordinate[0]; };
+  const Energy before = system.energy();
+  const double shaft_start = turn(bearing), rise_start = system.bodies().center_of_mass(screw).z;
+  const double said = system.bodies().angular_velocity(shaft).z;
+  constexpr int steps = 20;
+  double says = 0;
+  for (int i = 0; i < steps; ++i) {
+    (void)system.step(h);
+    says += h * system.bodies().angular_velocity(shaft).z;
+  }
+  const double angle = steps * h * speed, close = is_accurate ? 1e-3 : 0.2;
+  const double turned = turn(bearing) - shaft_start;
+  if (!(std::abs(wrapped(turned - (direction(system, shaft) - 0) + shaft_start)) <= 1e-6 * (1 + std::abs(turned))))
+    return text("a shaft has turned to ", direction(system, shaft), " and counts ", turned + shaft_start);
+  if (!(std::abs(turned - says) <= (is_robust ? 0.02 : close) * std::abs(angle)))
+    return text("a shaft says ", says, " rad and counts ", turned);
+  if (!is_robust && !(std::abs(system.bodies().angular_velocity(shaft).z - said) <= 1e-6 * std::abs(speed)))
+    return text("a free shaft has changed its speed from ", said);
+  const double edits = is_robust ? 0 : system.energy().edits - before.edits;
+  if (!(std::abs(edits) <= 1e-6 * before.kinetic)) return text("edits have ", edits, " J of ", before.kinetic);
+  if (is_robust) return {};
+  const double speed_now = system.bodies().angular_velocity(wheel).z,
+               other_now = system.bodies().angular_velocity(other).z;
+  if (!(std::abs(speed_now / speed - 1) <= close))
+    return text("a geared wheel keeps ", speed_now / speed, " of its speed");
+  if (!(std::abs(other_now - ratio * speed) <= close * std::abs(speed)))
+    return text("a geared wheel turns ", other_now / speed, " times as fast, not ", ratio);
+  const double gap = wrapped(direction(system, other) - ratio * turn(first));
+  if (!(std::abs(gap) <= 1e-6 * (1 + std::abs(angle)))) return text("gears have slipped by ", gap, " rad");
+  const double rise = (system.bodies().center_of_mass(screw).z - rise_start) / (lead / (2 * pi) * angle);
+  if (!(std::abs(rise - 1) <= close)) return text("a screw slides ", rise, " of its way");
+  return {};
+}
+
+// A chain of boxes about z with motors far below their speed, friction and stops, from rest or spinning.
+Complaint check_bounds(std::uint64_t seed) {
+  Dice dice{seed};
+  const IntegrationMode mode = mode_of(seed);
+  System system({.gravity = {}, .mode = mode});
+  struct Link {
+    BodyId body;
+    double mass = 0, inertia = 0, motor = 0, friction = 0, angle = 0, moved = 0;
+  };
+  std::vector<Link> links(2 + dice.below(3));
+  double reach = 0;
+  const bool has_stops = dice.below(3) == 0;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    Link& link = links[i];
+    const double length = dice.uniform(0.3, 1), width = dice.uniform(0.05, 0.2);
+    link.mass = dice.uniform(0.2, 2), link.inertia = link.mass * (length * length + width * width) / 12;
+    link.body =
+        system.bodies().create(Box{{length, width, 0.1}}, {.mass = link.mass, .position = {reach + length / 2, 0, 0}});
+    if (dice.below(2)) link.motor = dice.uniform(-2, 2);
+    if (dice.below(2)) link.friction = dice.uniform(0, 1);
+    CoordinateOptions options{
+        .motor_speed = std::copysign(1e7, link.motor), .motor_max = std::abs(link.motor), .friction = link.friction};
+    if (has_stops) options.lower = -1, options.upper = 1;
+    (void)system.joints().create(
+        {.a = link.body, .b = i > 0 ? links[i - 1].body : BodyId{}, .at = {reach, 0, 0}, .angle = options});
+    reach += length;
+  }
+  const auto kinetic = [&] {
+    double sum = 0;
+    for (const Link& link : links) {
+      const Vec3 v = system.bodies().velocity(link.body);
+      const double spin = system.bodies().angular_velocity(link.body).z;
+      sum += 0.5 * link.mass * dot(v, v) + 0.5 * link.inertia * spin * spin;
+    }
+    return sum;
+  };
+  system.bodies().set_angular_velocity(links[0].body, {0, 0, dice.uniform(-3, 3)});
+  (void)system.step(1e-6);
+  constexpr double h = 1.0 / 120;
+  double work = 0, paths = 0, inner_spin = 0;
+  for (Link& link : links) {
+    const double spin = system.bodies().angular_velocity(link.body).z;
+    link.angle = direction(system, link.body), link.moved = h * std::abs(spin - std::exchange(inner_spin, spin));
+    paths += link.friction * link.moved;
+  }
+  const double start = kinetic();
+  double size = start;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report = system.step(h);
+    if (report.unconverged > 0 || report.fallbacks > 0) return {};
+    double inner = 0;
+    for (Link& link : links) {
+      const double turned = wrapped(direction(system, link.body) - link.angle);
+      link.angle += turned;
+      // The step in which friction stops a motion may have hardly any, by the mid-point rule half of it.
+      const double moved = std::abs(turned - inner);
+      work += link.motor * (turned - inner), paths += link.friction * std::max(moved, std::exchange(link.moved, moved));
+      size += std::abs(link.motor * (turned - inner));
+      inner = turned;
+    }
+    const double taken = work - (kinetic() - start);
+    if (!(taken >= -1e-6 * size - 1e-12)) return text("motors with friction have made ", -taken, " J of ", size, " J");
+    if (!keeps_energy(mode) || has_stops) continue;
+    if (!(taken <= (mode == IntegrationMode::accurate ? 1.1 : 2) * paths + 1e-5 * size))
+      return text("motors with friction have lost ", taken, " J, and ", paths, " J rubbed");
+  }
+  return {};
+}
+
 }  // namespace
 
 const char* name_of(Promise promise) {
-  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict", "order"};
+  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict", "order", "turns", "bounds"};
   return names[static_cast<std::size_t>(promise)];
 }
 
@@ -170,6 +312,8 @@ std::optional<std::string> break_promise(Promise promise, std::uint64_t seed) {
     case Promise::force: return check_force(seed);
     case Promise::conflict: return check_conflict(seed);
     case Promise::order: return check_order(seed);
+    case Promise::turns: return check_turns(seed);
+    case Promise::bounds: return check_bounds(seed);
     case Promise::count: break;
   }
   return {};

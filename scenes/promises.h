@@ -15,6 +15,8 @@ enum class Promise : std::uint8_t {
   force,       ///< changes momentum and angular momentum, in every mode
   conflict,    ///< is shared, held and reported
   order,       ///< of arguments means nothing
+  turns,       ///< are those of the bodies: shafts, gears and screws at 0.01 to 10 turns a step
+  bounds,      ///< motors at their largest torque and friction do the work torque times angle
   count
 };
 const char* name_of(Promise);
