@@ -114,8 +114,9 @@ void bind_settings(nb::class_<SystemObject>& type) {
       .def_prop_rw(
           "tolerance", [](SystemObject& self) { return self.use().tolerance(); },
           [](SystemObject& self, double value) { self.use_between_steps("tolerance = ...").set_tolerance(value); },
-          "Of mode 'accurate', 1e-12 to 1: the estimated error of positions that a second of simulated time may add, in\n"
-          "mean lengths of the links (and springs) that are solved together. See `StepReport.error`.")
+          "Of mode 'accurate', 1e-12 to 1: the estimated local error of positions that the sub-steps of a second may add, in\n"
+          "mean lengths of the links (and springs) that are solved together. The motion may amplify it. See\n"
+          "`StepReport.error`.")
       .def_prop_rw(
           "budget_iterations", [](SystemObject& self) { return self.use().budget().iterations; },
           [](SystemObject& self, int value) {

@@ -113,8 +113,8 @@ struct IslandReport {
   bool converged = true;   ///< false: left with a least violation instead of a solution
   bool cut_short = false;  ///< the budget ended before the solution
   double gap = 0;          ///< largest violation of a constraint at the end, m
-  /// Estimated error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt. Only of
-  /// mode accurate; without sub-steps that fell back to the robust scheme.
+  /// Estimated local error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt,
+  /// without what the motion makes of earlier ones. Only of mode accurate; without sub-steps that fell back to the robust scheme.
   double error = 0;
   double lost = 0, made = 0;  ///< energy, by the integration scheme, J
 };

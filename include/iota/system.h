@@ -120,8 +120,8 @@ class System {
   /// which gets dense arrays and is far slower. If it fails, the built-in one takes over, with a warning.
   std::string solver() const;
   void set_solver(std::string_view name);
-  /// The estimated error of positions that one second of simulated time may add in mode accurate, in mean lengths of
-  /// links (and springs) of an island. 1e-12 to 1.
+  /// The estimated local error of positions that the sub-steps of a second may add in mode accurate, in mean lengths of
+  /// links (and springs) of an island; the motion may amplify it. 1e-12 to 1.
   double tolerance() const;
   void set_tolerance(double);
   StepBudget budget() const;
