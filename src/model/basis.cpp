@@ -11,6 +11,27 @@ namespace iota::model {
 
 namespace {
 
+// Below this many particles a basis is chosen again at each change, which takes microseconds.
+constexpr std::uint32_t large = 64;
+
+/// The extent up to which a body counts as a point, m: the round-off of places, or 2e-6 (see strained_gap) of what is hinged to it. No step
+/// resolves how it turns there: a link of 1e-8 m stopped a chain of 0.1 m. A solid needs points apart for its pose.
+double size_of_point(const Structure& model, std::uint32_t body_slot) {
+  constexpr double of_neighbors = 2e-6, of_place = 1e-15;
+  const Body& body = model.bodies[body_slot];
+  if (body.first_solid != none || body.count > large) return 0;
+  double largest = 0;
+  model.for_each_particle_of(body_slot, [&](std::uint32_t p) {
+    const std::uint32_t ring = model.particles[p].ring;
+    if (model.rings[ring].count == 1) return;
+    model.for_each_in_ring(ring, [&](std::uint32_t other) {
+      if (model.particles[other].body != body_slot)
+        largest = std::max(largest, model.extent(model.particles[other].body));
+    });
+  });
+  return std::max(of_neighbors * largest, of_place * norm(model.position(body.first)));
+}
+
 /// Distance of r (relative to the first basis point) from the span of `axes` orthonormal directions.
 double distance_from_span(Vec3 r, const std::array<Vec3, 3>& axes, int count) {
   for (int i = 0; i < count; ++i) r -= dot(r, axes[i]) * axes[i];
@@ -80,7 +101,7 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
       if (d > tie * preferred_distance && is_preferred(p)) preferred_distance = d, preferred = p;
     });
     if (dimension == 0) extent = distance;
-    if (farthest == none || !(distance > flat * extent)) break;
+    if (farthest == none || !(distance > (dimension == 0 ? size_of_point(*this, body_slot) : flat * extent))) break;
     if (preferred != none && preferred_distance > far_enough * distance) farthest = preferred;
     Vec3 axis = position(farthest) - origin;
     for (int i = 0; i < dimension; ++i) axis -= dot(axis, axes[i]) * axes[i];
@@ -112,13 +133,6 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
   });
   keep_inertia_positive(body_slot);
 }
-
-namespace {
-
-// Below this many particles a basis is chosen again at each change, which takes microseconds.
-constexpr std::uint32_t large = 64;
-
-}  // namespace
 
 bool carry_by_basis(Structure& model, std::uint32_t body_slot, std::uint32_t before,
                     std::span<const std::uint32_t> particles) {
@@ -180,6 +194,7 @@ void Structure::keep_inertia_positive(std::uint32_t body_slot) {
 
 void Structure::prefer_unknowns(std::uint32_t body_slot) {
   Body& body = bodies[body_slot];
+  if (body.rank > 1 && extent(body_slot) <= size_of_point(*this, body_slot)) return rebuild_basis(body_slot);
   if (body.first_solid == none || body.count == body.rank) return;
   std::uint32_t needs = 0;
   bool outside = false, in_shape = true;

@@ -302,8 +302,9 @@ class Structure {
 
   /// Chooses a body's basis from the present places of its particles, and sets its rigid distances.
   void rebuild_basis(std::uint32_t body);
-  /// For a body made of solids, which has more points than a basis needs: chooses those that are unknowns anyway
-  /// (hinged, nailed, bonded), if there are new ones and they span it well. Saves unknowns and ties.
+  /// Before it is solved: a body that is tiny beside what is hinged to it becomes a point. For a body made of solids, which has
+  /// more points than a basis needs, chooses those that are unknowns anyway (hinged, nailed, bonded), if there are new ones
+  /// and they span it well. Saves unknowns and ties.
   void prefer_unknowns(std::uint32_t body);
   /// A new massless particle; the body's basis does not change.
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);

@@ -208,6 +208,30 @@ TEST(Scale, of_lengths_over_five_decades_lets_a_tiny_link_move_like_a_ball) {
   }
 }
 
+TEST(Scale, of_a_link_below_a_millionth_of_its_neighbors_makes_it_a_point_between_them) {
+  for (const IntegrationMode mode : modes)
+    for (const double tiny : {1e-7, 1e-8, 1e-10, 1e-12, 1e-16}) {
+      System system({.gravity = {}, .mode = mode});
+      Row row(system, 2, {}, 0.1, [](int) { return 2.0; });
+      system.particles().release(row.upper.front());
+      const BodyId needle = system.bodies().create(), last = system.bodies().create();
+      const ParticleId from = system.particles().create(needle, {0.2, 0, 0}),
+                       to = system.particles().create(needle, {0.2 + tiny, 0, 0}),
+                       next = system.particles().create(last, {0.2 + tiny, 0, 0}),
+                       end = system.particles().create(last, {0.3 + tiny, 0, 0});
+      (void)system.edits().combine(row.lower.back(), from);
+      (void)system.edits().combine(to, next);
+      for (const ParticleId p : system.particles().ids()) system.particles().set_velocity(p, {1, 0, 0});
+      system.particles().set_velocity(end, {1, 3, 1});
+      (void)system.step(1e-6);
+      const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
+      for (int step = 0; step < 60; ++step) EXPECT_EQ(system.step(1.0 / 60).unconverged, 0) << tiny;
+      EXPECT_LT(norm(system.momentum() - momentum), 1e-9) << tiny;
+      EXPECT_LT(norm(system.angular_momentum() - angular), 1e-6) << tiny;
+      EXPECT_TRUE(system.validate().empty());
+    }
+}
+
 TEST(Scale, of_places_to_ten_million_meters_lets_a_chain_swing_as_at_home) {
   for (const IntegrationMode mode : modes) {
     std::vector<Vec3> ends;
