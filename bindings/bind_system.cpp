@@ -154,8 +154,8 @@ void bind_settings(nb::class_<SystemObject>& type) {
           },
           "s, 0 for never: bodies tied by hinges or bonds fall asleep together when none of their particles has been\n"
           "faster than `rest_speed` for that long. They are then 'resting', do not move, and cost nothing. An edit,\n"
-          "an assigned velocity, a grip, an applied force (that of a function too), a moving nail or another gravity\n"
-          "wakes them.")
+          "an assigned velocity, a grip, an applied force (that of a function too), a moving nail or scripted body,\n"
+          "another gravity or a bond whose force changes with the time wakes them.")
       .def_prop_rw(
           "rest_speed", [](SystemObject& self) { return self.use().rest().speed; },
           [](SystemObject& self, double value) {

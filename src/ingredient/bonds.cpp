@@ -241,9 +241,32 @@ std::uint32_t Bonds::add(Model& model, const Bond& bond) {
   return slot;
 }
 
+// Implicit ones whose law depends on the time, when it changes their force; forces that are held are pushes.
+void Bonds::visit_stirred(const Model& model, double h, Visit visit) {
+  const auto depends_on_time = [&](std::uint32_t law) {
+    return model.laws[law].has_derivative() && model.compiled(law).depends_on_time();
+  };
+  bool any = false;
+  model.laws.for_each([&](std::uint32_t law, const Law&) { any = any || depends_on_time(law); });
+  if (!any) return;
+  model.bonds.for_each([&](std::uint32_t, const Bond& bond) {
+    if (!bond.ties() || !depends_on_time(bond.law)) return;
+    const laws::PairLaw& law = model.compiled(bond.law);
+    laws::PairState at = state(model, bond);
+    const auto force = [&] {
+      return law.push(at, bond.parameters.data()).value - law.elastic(at, bond.parameters.data()).slope;
+    };
+    const double before = force();
+    at.t += h;
+    if (force() == before) return;
+    for (const std::uint32_t end : {bond.p, bond.q}) visit(model.particles[end].ring);
+  });
+}
+
 void Bonds::parameter_changed(Model& model, std::uint32_t slot) {
   Bond& bond = model.bonds[slot];
   if (!bond.implicit) return;
+  for (const std::uint32_t end : {bond.p, bond.q}) model.wake(model.bodies[model.particles[end].body].articulate);
   const std::uint8_t form = is_stiff(model, bond) ? Bond::as_row : Bond::as_force;
   if (form == bond.implicit) return;
   bond.implicit = form;

@@ -60,6 +60,7 @@ class Bonds : public NoAnswers {
   static void drop(Model&, std::uint32_t particle);
   static void acting_changed(Model&, std::uint32_t particle);
   static void tell(Model&, Outcome&);
+  static void visit_stirred(const Model&, double h, Visit);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
 

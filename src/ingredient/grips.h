@@ -59,7 +59,9 @@ class Grips : public NoAnswers {
   void renew_pulls(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  bool keeps_awake(const Problem& problem) const { return !problem.items_of<solver::GripForce>().empty(); }
+  bool keeps_awake(const Model&, const Problem& problem) const {
+    return !problem.items_of<solver::GripForce>().empty();
+  }
   void leave(const IslandMap&) { felt_masses_.clear(); }
   void clear() { felt_masses_.clear(); }
 

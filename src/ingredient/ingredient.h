@@ -198,9 +198,10 @@ struct NoAnswers {
 
   /// @name Sleep
   ///@{
-  /// visit(ring): of what must not be still in the next step.
-  static void visit_stirred(const Model&, Visit) {}
-  bool keeps_awake(const Problem&) const { return false; }  ///< an island that would fall asleep
+  /// visit(ring): of what the next step, of h seconds, moves or pushes anew without an edit. This wakes, as edits do, and
+  /// begins the time before sleep again.
+  static void visit_stirred(const Model&, double /*h*/, Visit) {}
+  bool keeps_awake(const Model&, const Problem&) const { return false; }  ///< an island that is slow
   void put_to_rest(Model&, const Problem&) const {}
   ///@}
 };
@@ -275,7 +276,7 @@ concept IslandIngredient =
       { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
       fixed.impose_velocities(problem, h);
       fixed.impose_positions(problem);
-      { fixed.keeps_awake(solved) } -> std::same_as<bool>;
+      { fixed.keeps_awake(seen, solved) } -> std::same_as<bool>;
       fixed.put_to_rest(model, solved);
     };
 

@@ -193,6 +193,20 @@ void Joints::store(Model& model, const IslandNodes&, double, const Problem& prob
   }
 }
 
+// A motor that turns, however slowly. One at its largest force stands, or moves as fast as that.
+bool Joints::keeps_awake(const Model& model, const Problem&) const {
+  return std::any_of(joints_.begin(), joints_.end(), [&](std::uint32_t slot) {
+    const Constraint& c = model.constraints[slot];
+    bool turns = false;
+    for (std::size_t k = 0; k < c.options.size(); ++k) {
+      const CoordinateOptions& o = c.options[k];
+      turns = turns || (std::isnan(o.servo) && o.motor_speed != 0 &&
+                        std::abs(c.efforts[k][static_cast<std::size_t>(Role::motor) - 1]) < o.motor_max);
+    }
+    return turns;
+  });
+}
+
 void Joints::refresh(Model& model, const IslandNodes&, bool) const {
   for (const std::uint32_t slot : joints_) refresh_coordinates(model, slot);
 }

@@ -72,6 +72,7 @@ class Joints : public NoAnswers {
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   void refresh(Model&, const IslandNodes&, bool moved) const;
   bool meets_pinned(const Model&) const;
+  bool keeps_awake(const Model&, const Problem&) const;
   std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:

@@ -96,9 +96,9 @@ bool Nails::prescribes_motion(const Model& model, const IslandNodes& nodes) cons
   return any;
 }
 
-void Nails::visit_stirred(const Model& model, Visit visit) {
+void Nails::visit_stirred(const Model& model, double, Visit visit) {
   model.nails.for_each([&](std::uint32_t ring, const Nail& nail) {
-    if (is_moved(model, ring, nail)) visit(ring);
+    if (model.rings[ring].nailed && nail.position != nail.position_before) visit(ring);
   });
 }
 

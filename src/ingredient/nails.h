@@ -32,7 +32,7 @@ class Nails : public NoAnswers {
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
   static double worst_gap(const Scope&);
-  static void visit_stirred(const Model&, Visit);
+  static void visit_stirred(const Model&, double h, Visit);
   static void tell(Model&, Outcome&);
 
   void build(const IslandMap&, Problem&);

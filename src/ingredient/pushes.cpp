@@ -30,13 +30,13 @@ void Pushes::store(Model& model, const IslandNodes& nodes, double, const Problem
   });
 }
 
-void Pushes::visit_stirred(const Model& model, Visit visit) {
+void Pushes::visit_stirred(const Model& model, double, Visit visit) {
   model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
     if (push.force != Vec3{}) visit(ring);
   });
 }
 
-bool Pushes::keeps_awake(const Problem& problem) const {
+bool Pushes::keeps_awake(const Model&, const Problem& problem) const {
   return std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return f != Vec3{}; });
 }
 

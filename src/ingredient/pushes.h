@@ -30,8 +30,8 @@ class Pushes : public NoAnswers {
 
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  static void visit_stirred(const Model&, Visit);
-  bool keeps_awake(const Problem&) const;
+  static void visit_stirred(const Model&, double h, Visit);
+  bool keeps_awake(const Model&, const Problem&) const;
 };
 
 }  // namespace iota::ingredient

@@ -37,7 +37,9 @@ class RodSpins : public NoAnswers {
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   double after_step(Model&, double h, Problem&);
-  bool keeps_awake(const Problem& problem) const { return !problem.items_of<solver::GyroscopicForce>().empty(); }
+  bool keeps_awake(const Model&, const Problem& problem) const {
+    return !problem.items_of<solver::GyroscopicForce>().empty();
+  }
   void put_to_rest(Model&, const Problem&) const;
 };
 

@@ -550,13 +550,12 @@ void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
   }
 }
 
-void Islands::wake_stirred(Model& model) {
+void Islands::wake_stirred(Model& model, double h) {
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
-    I::visit_stirred(model, [&](std::uint32_t ring) {
+    I::visit_stirred(model, h, [&](std::uint32_t ring) {
       model.for_each_in_ring(ring, [&](std::uint32_t p) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
-        const Island* const island = of_articulate(articulate);
-        if (island ? island->is_still() : free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
+        wake(model, {&articulate, 1});
       });
     });
   });

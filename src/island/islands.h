@@ -75,8 +75,8 @@ class Islands {
   std::vector<IslandReport> reports(const model::Model&);
   /// The islands of these articulates are awake in the next step.
   void wake(model::Model&, std::span<const std::uint32_t> articulates);
-  /// So are those that ingredients stir: forces on their points, moving nails.
-  void wake_stirred(model::Model&);
+  /// So are those that ingredients stir in a step of h seconds: forces on their points, moving nails, laws of the time.
+  void wake_stirred(model::Model&, double h);
   void put_to_rest(model::Model&, std::uint32_t articulate);
   /// Bodies that sleep, free particles included, in the latest step.
   std::uint32_t resting(const model::Model&) const;

@@ -27,11 +27,11 @@ void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& r
   if (!(model.rest_after > 0)) return;
   const double limit = model.rest_speed * model.rest_speed;
   const auto is_slow = [&](const Vec3& v) { return dot(v, v) < limit; };
-  const bool slow = !any_ingredient([&](const auto& i) { return i.keeps_awake(problem_); }) &&
-                    std::all_of(problem_.velocity.begin(), problem_.velocity.end(), is_slow);
+  const bool slow = std::all_of(problem_.velocity.begin(), problem_.velocity.end(), is_slow) &&
+                    !any_ingredient([&](const auto& i) { return i.keeps_awake(model, problem_); });
   double& slow_time = articulate(model).slow_time;
   slow_time = slow ? slow_time + h : 0;
-  if (slow_time < model.rest_after) return;
+  if (slow_time < model.rest_after || slow_time <= h) return;  // what wakes in each step does not sleep in between
   report.lost += problem_.kinetic_energy();
   put_to_rest(model);
 }

@@ -28,7 +28,7 @@ StepReport Stepper::step(double dt) {
   model::choose_usual_radius(editor_.model);
   take_held_forces(report);
   find_contacts(dt);
-  update_islands();
+  update_islands(dt);
   advance_islands(report);
   door_.end_step();
   apply_edits(report);
@@ -49,7 +49,7 @@ void Stepper::find_contacts(double h) {
 }
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
-void Stepper::update_islands() {
+void Stepper::update_islands(double dt) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
   model.take_flagged(flagged_);
@@ -65,7 +65,7 @@ void Stepper::update_islands() {
     if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
   }
   islands.wake(model, woken_);
-  islands.wake_stirred(model);
+  islands.wake_stirred(model, dt);
   islands.for_each_of(model, dirty_, [&](island::Island& island) { (void)island.project(model, false); });
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }

@@ -20,7 +20,7 @@ class Stepper {
   // The stages, in their order; described in stepper.cpp.
   void take_held_forces(StepReport&);
   void find_contacts(double h);
-  void update_islands();
+  void update_islands(double dt);
   void advance_islands(StepReport&);
   void apply_edits(StepReport&);
   void fill(StepReport&);

@@ -135,7 +135,7 @@ struct Flight {
   void step(double h) {
     model::Model& model = core.model;
     (void)core.islands.update(model, core.parallel);
-    core.islands.wake_stirred(model);
+    core.islands.wake_stirred(model, 0.01);
     const std::size_t islands_awake = core.islands.awake(model).size();
     const auto loose = core.islands.loose(model);
     core.parallel.for_each(islands_awake + loose.size(), 1, [&](std::size_t i) {

@@ -1,0 +1,334 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Each kind of change wakes the island that it moves: judged from places, beside a twin that never sleeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iota
+
+DT = 1 / 120
+Things = dict[str, Any]
+
+
+def particle(system: iota.System, x: float, y: float = 0.0) -> iota.Particle:
+    return system.body().particle((x, y, 0))
+
+
+def link(system: iota.System, kind: str = "dynamic", start: float = 0, end: float = 1) -> iota.Body:
+    body = system.body(kind=kind)
+    middle = 0.5 * (start + end)
+    for place in ((start, 0, 0), (end, 0, 0), (middle, 0.3, 0), (middle, -0.3, 0), (middle, 0, 0.3), (middle, 0, -0.3)):
+        body.particle(place)
+    return body
+
+
+def still_pair(system: iota.System) -> Things:
+    p, q = particle(system, 0), particle(system, 1)
+    return {"p": p, "q": q, "bond": system.bond(p, q, "spring", stiffness=5, length=1)}
+
+
+def still_particle(system: iota.System) -> Things:
+    return {"p": particle(system, 1)}
+
+
+def still_box(system: iota.System) -> Things:
+    return {"box": system.body(shape=iota.Box((0.2, 0.3, 0.4)))}
+
+
+def hinged(system: iota.System) -> Things:
+    body = link(system)
+    joint = system.revolute(body, at=(0, 0, 0), axis=(0, 0, 1))
+    return {"body": body, "joint": joint, "end": body.particles[1]}
+
+
+def guided(system: iota.System) -> Things:
+    body = link(system)
+    return {"body": body, "joint": system.prismatic(body, at=(0, 0, 0), axis=(1, 0, 0))}
+
+
+def nailed(system: iota.System) -> Things:
+    body = link(system)
+    body.particles[0].nail()
+    return {"body": body, "top": body.particles[0], "end": body.particles[1]}
+
+
+def hanging(system: iota.System) -> Things:
+    """A particle that hangs still on a spring in gravity."""
+    system.gravity = (0, -10, 0)
+    anchor = system.body(kind="static").particle((0, 1, 0))
+    p = particle(system, 0, 0)
+    return {"p": p, "bond": system.bond(p, anchor, "spring", stiffness=20, length=0.5, damping=1)}
+
+
+def scripted(join: Callable[[iota.System, iota.Body, iota.Body], object]) -> Callable[[iota.System], Things]:
+    def build(system: iota.System) -> Things:
+        table, body = link(system, "scripted", -1, 0), link(system)
+        join(system, table, body)
+        return {"table": table, "body": body}
+
+    return build
+
+
+def move_table(things: Things) -> None:
+    things["table"].position = tuple(np.array(things["table"].position) + (0.05, 0.02, 0))
+
+
+def bond_on(law: Any, **parameters: Any) -> Callable[[iota.System], Things]:
+    def build(system: iota.System) -> Things:
+        p, q = particle(system, 0), particle(system, 1)
+        return {"p": p, "q": q, "bond": system.bond(p, q, law, **parameters)}
+
+    return build
+
+
+def field_on(field: Any, build: Callable[[iota.System], Things] = still_particle, **parameters: Any) -> Any:
+    def both(system: iota.System) -> Things:
+        things = build(system)
+        return {**things, "field": system.field(field, **parameters)}
+
+    return both
+
+
+def late_push(batch: iota.ParticleBatch) -> np.ndarray:
+    return np.array([[0, 1.0, 0]]) * (batch.time > 0.75) * np.ones((len(batch), 1))
+
+
+def in_group(system: iota.System) -> Things:
+    things = still_particle(system)
+    group = system.group("g")
+    system.field("fx = 1", group=group)
+    return {**things, "group": group}
+
+
+def geared(system: iota.System) -> Things:
+    a, b = hinged(system), hinged(system)
+    return {"coupling": system.couple([(a["joint"].angle, 1), (b["joint"].angle, 1)]), "end": a["end"]}
+
+
+def roped(system: iota.System) -> Things:
+    p, q = particle(system, 0), particle(system, 1)
+    return {"rope": system.rope(p, q, 1.5), "p": p}
+
+
+def squeezed(system: iota.System) -> Things:
+    """A spring that presses a hinged link against its stop."""
+    things = hinged(system)
+    things["joint"].angle.limits = (0, 1)
+    things["joint"].angle.spring = (5, 0.5, -1)
+    return things
+
+
+def rubbing(system: iota.System) -> Things:
+    """A spring that friction holds."""
+    things = hinged(system)
+    things["joint"].angle.friction = 10
+    things["joint"].angle.spring = (5, 0.5, 1)
+    return things
+
+
+def bent(system: iota.System) -> Things:
+    p, q, r = particle(system, 0), particle(system, 1), particle(system, 1, 1)
+    for a, b in ((p, q), (q, r)):
+        system.rod(a, b)
+    return {"spring": system.angle_spring(p, q, r, 1.0, damping=0.1), "r": r}
+
+
+def on_scripted_path(system: iota.System) -> Things:
+    table, p = link(system, "scripted", -1, 0), particle(system, 0)
+    system.on_path(p, [(-1, 0, 0), (0, 0, 0), (1, 0, 0)], body=table)
+    return {"table": table, "p": p}
+
+
+def on_scripted_surface(system: iota.System) -> Things:
+    table, p = link(system, "scripted", -1, 0), particle(system, 0.5)
+    system.on_surface(p, iota.Sphere(0.5), body=table)
+    return {"table": table, "p": p}
+
+
+def undone(system: iota.System) -> Things:
+    """A sleeper that was woken, and put back to sleep by an undo."""
+    things = nailed(system)
+    for _ in range(60):
+        system.step(DT)
+    with system.edit():
+        things["end"].mass = 3
+    system.step(DT)
+    system.undo()
+    return things
+
+
+def two_links(system: iota.System) -> Things:
+    system.gravity = (3, 0, 0)
+    a, b = nailed(system), link(system, start=1, end=2)
+    a["end"].combine(b.particles[0])
+    return {"p": a["end"], "q": b.particles[0]}
+
+
+def set_joint(name: str, value: Any, coordinate: str = "angle") -> Callable[[Things], None]:
+    return lambda things: setattr(getattr(things["joint"], coordinate), name, value)
+
+
+def set_on(thing: str, name: str, value: Any) -> Callable[[Things], None]:
+    return lambda things: setattr(things[thing], name, value)
+
+
+def nothing(_: Things) -> None:
+    pass
+
+
+CASES: dict[str, tuple[Callable[[iota.System], Things], Callable[[Things], object]]] = {
+    # Bonds and laws.
+    "a parameter of a bond": (still_pair, lambda t: t["bond"].set(length=0.5)),
+    "a bond switched off": (hanging, set_on("bond", "active", False)),
+    "a bond destroyed": (hanging, lambda t: t["bond"].destroy()),
+    "a new bond": (
+        still_particle,
+        lambda t: t["p"].system.bond(t["p"], particle(t["p"].system, 3), "spring", stiffness=5, length=1),
+    ),
+    "a bond of t": (bond_on("force = 5*max(t - 0.75, 0)"), nothing),
+    "an energy of t": (bond_on("energy = 0.5*k*(r - 1 - 0.3*max(t - 0.75, 0))^2", k=5), nothing),
+    "a drag of t": (bond_on("drag = t; force = 2*max(t - 0.75, 0)"), nothing),
+    "a held bond of t": (bond_on("force = 5*max(t - 0.75, 0)", implicit=False), nothing),
+    "a bond of t between held ends": (
+        lambda s: {
+            "p": particle(s, 0),
+            "bond": s.bond(s.particles[0], s.body(kind="static").particle((1, 0, 0)), "force = 5*max(t - 0.75, 0)"),
+        },
+        nothing,
+    ),
+    "a bond of t on links": (
+        lambda s: {
+            **nailed(s),
+            "bond": s.bond(s.particles[1], s.body(kind="static").particle((1, 1, 0)), "force = 5*max(t - 0.75, 0)"),
+        },
+        nothing,
+    ),
+    "a function of a bond": (bond_on(lambda b: (max(b.time - 0.75, 0), 0, 0)), nothing),
+    "an angle spring's rest": (bent, lambda t: setattr(t["spring"], "rest", 1.0)),
+    # Fields and pairs.
+    "a field of t": (field_on("fx = max(t - 0.75, 0)"), nothing),
+    "a field's energy of t": (field_on("energy = -x*max(t - 0.75, 0)", still_box), nothing),
+    "a function of a field": (field_on(late_push, nailed), nothing),
+    "a field's parameter": (field_on("fx = a", a=0), lambda t: t["field"].set(a=1)),
+    "a field's parameter on a link": (field_on("fy = a", nailed, a=0), lambda t: t["field"].set(a=1)),
+    "a new field": (nailed, lambda t: t["end"].system.field("fy = 1")),
+    "a new field on a box": (still_box, lambda t: t["box"].system.field("fy = 1")),
+    "a member of a group": (in_group, lambda t: t["group"].add(t["p"])),
+    "a pair force": (still_pair, lambda t: t["p"].system.pair_force("energy = r", cutoff=2)),
+    "gravity": (nailed, lambda t: setattr(t["end"].system, "gravity", (0, -1, 0))),
+    "gravity of a box": (still_box, lambda t: setattr(t["box"].system, "gravity", (0, -1, 0))),
+    # Joints.
+    "a motor": (hinged, set_joint("motor", (2, 50))),
+    "a servo": (hinged, set_joint("servo", (0.5, 50))),
+    "a spring of a joint": (hinged, set_joint("spring", (5, 0.1, 0.5))),
+    "a limit that opens": (squeezed, set_joint("limits", None)),
+    "a limit that moves": (squeezed, set_joint("limits", (-0.5, 1))),
+    "friction that ends": (rubbing, set_joint("friction", 0)),
+    "friction that is less": (rubbing, set_joint("friction", 0.5)),
+    "a motor that is slower than the speed of rest": (hinged, set_joint("motor", (0.005, 50))),
+    "a value of a joint": (hinged, set_joint("value", 0.7)),
+    "a motor of a slide": (guided, set_joint("motor", (2, 50), "slide")),
+    "a joint switched off": (
+        lambda s: {**hinged(s), "g": setattr(s, "gravity", (3, 0, 0))},
+        lambda t: setattr(t["joint"], "active", False),
+    ),
+    "a joint destroyed": (
+        lambda s: {**hinged(s), "g": setattr(s, "gravity", (3, 0, 0))},
+        lambda t: t["joint"].destroy(),
+    ),
+    "a joint that yields": (
+        lambda s: {**hinged(s), "g": setattr(s, "gravity", (3, 0, 0))},
+        lambda t: setattr(t["joint"], "compliance", (0.05, 0.05, 0.1)),
+    ),
+    "the length of a rope": (roped, set_on("rope", "length", 0.8)),
+    "the sum of a coupling": (geared, set_on("coupling", "length", 0.8)),
+    # What is scripted, nails.
+    "a table that moves slowly": (scripted(lambda s, a, b: s.ball(a, b, at=(0, 0, 0))), nothing),
+    "a scripted body at a joint": (scripted(lambda s, a, b: s.ball(a, b, at=(0, 0, 0))), move_table),
+    "a scripted body at a hinge": (scripted(lambda s, a, b: a.particles[1].combine(b.particles[0])), move_table),
+    "a scripted body at a spring": (
+        scripted(lambda s, a, b: s.bond(a.particles[0], b.particles[0], "spring", stiffness=50, length=1)),
+        move_table,
+    ),
+    "a scripted body at a held spring": (
+        scripted(
+            lambda s, a, b: s.bond(a.particles[0], b.particles[0], "spring", stiffness=50, length=1, implicit=False)
+        ),
+        move_table,
+    ),
+    "a scripted body at a rope": (scripted(lambda s, a, b: s.rope(a.particles[0], b.particles[1], 2)), move_table),
+    "a scripted body under a path": (on_scripted_path, move_table),
+    "a scripted body under a surface": (on_scripted_surface, move_table),
+    "a nail that moves": (nailed, lambda t: t["top"].nail((0.1, 0.1, 0))),
+    "a nail that goes": (lambda s: {**nailed(s), "g": setattr(s, "gravity", (3, 0, 0))}, lambda t: t["top"].release()),
+    "a nail that comes": (still_particle, lambda t: t["p"].nail((1.2, 0, 0))),
+    # Forces, motion, masses.
+    "a force": (nailed, lambda t: t["end"].apply_force((0, 30, 0))),
+    "a force on a box": (still_box, lambda t: t["box"].apply_force((0, 300, 0))),
+    "a torque": (still_box, lambda t: t["box"].apply_torque((0, 0, 30))),
+    "a velocity": (nailed, set_on("end", "velocity", (0, 1, 0))),
+    "an angular velocity": (
+        lambda s: {"box": s.body(shape=iota.Box((0.2, 0.3, 0.4)), position=(1, 0, 0))},
+        set_on("box", "angular_velocity", (0, 0, 2)),
+    ),
+    "a place": (still_pair, set_on("p", "position", (-0.5, 0, 0))),
+    "a mass": (hanging, set_on("p", "mass", 3)),
+    "a grip": (nailed, lambda t: t["body"].system.grip(t["body"], (0.5, 0, 0), (1, 1, 0))),
+    "velocities of all": (
+        nailed,
+        lambda t: setattr(
+            t["body"].system, "velocities", np.tile((0.0, 1.0, 0.0), (len(t["body"].system.particles), 1))
+        ),
+    ),
+    # Structure.
+    "a combine": (still_pair, lambda t: t["p"].combine(particle(t["p"].system, -0.5))),
+    "a slow combine": (still_pair, lambda t: t["p"].combine(particle(t["p"].system, -0.5), over=0.3)),
+    "a separate": (two_links, lambda t: t["p"].separate(t["q"])),
+    "a destroyed neighbor": (hanging, lambda t: t["bond"].ends[1].body.destroy()),
+    "a change after an undo": (undone, lambda t: t["end"].apply_force((0, 30, 0))),
+    "a change of gravity after an undo": (undone, lambda t: setattr(t["end"].system, "gravity", (0, -3, 0))),
+}
+
+
+def free_bodies(system: iota.System) -> list[iota.Body]:
+    return [body for body in system.bodies if body.kind in ("dynamic", "resting")]
+
+
+def creep(things: Things) -> None:
+    """A scripted body that goes at half the speed of rest."""
+    things["table"].position = tuple(np.array(things["table"].position) + (0.005 * DT, 0, 0))
+
+
+def run(name: str, rest_after: float) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Places before the change and after it, and the kinds of the bodies that can move before it."""
+    build, change = CASES[name]
+    system = iota.System(gravity=(0, 0, 0), damping=0.2)
+    system.rest_after, system.rest_speed = rest_after, 0.01
+    things = build(system)
+    for _ in range(80):
+        system.step(DT)
+    kinds = [body.kind for body in free_bodies(system)]
+    before = np.array(system.positions)
+    change(things)
+    for _ in range(60):
+        if "slowly" in name:
+            creep(things)
+        system.step(DT)
+    return before, np.array(system.positions), kinds
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_wakes_what_it_moves(name: str) -> None:
+    before, after, kinds = run(name, 0.2)
+    assert kinds and set(kinds) == {"resting"}
+    twin_before, twin_after, _ = run(name, 0)
+    assert np.abs(before - twin_before).max() < 1e-6
+    count = min(len(before), len(after))  # a change may make particles, or destroy the last ones
+    moved = np.abs(twin_after[:count] - twin_before[:count]).max()
+    assert moved > 1e-4
+    assert np.abs(after - twin_after).max() < 0.02 * moved + 1e-6
