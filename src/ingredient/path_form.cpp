@@ -54,7 +54,8 @@ std::uint32_t make_constraint(Model& model, const PathSpec& spec) {
   c.particles.fill(none);
   c.particles[a_origin] = spec.particle.slot;
   c.curve.kind = spec.curve, c.curve.closed = spec.closed, c.curve.rounding = spec.rounding;
-  const Vec3 origin = b.is_world() ? Vec3{} : model.center_of_mass(b.body);
+  const Vec3 first = spec.points.empty() ? Vec3{} : spec.points.front();
+  const Vec3 origin = b.is_world() ? first : model.center_of_mass(b.body);
   std::vector<Vec3> local = spec.points;
   for (Vec3& p : local) p -= origin;
   const auto curve = make_curve(c.curve, local);  // throws for bad points before any change

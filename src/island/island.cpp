@@ -105,23 +105,17 @@ void Island::carry_along(Model& model, MovedRings& moved) {
 
 // Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and
 // a step has the precision of the island's size instead of the place's. At 1e7 m a chain of 2 cm links did not move.
-// Not if anything other than a nail or a grip is fixed in the world: a path, a surface, a joint's axis.
 Vec3 Island::choose_origin(const Model& model) const {
   constexpr double far = 1e4;  // mean lengths of links: closer by, 1e-12 of one is resolved
   if (nodes_.size() == 0) return {};
   const Vec3& first = model.rings[nodes_.rings.front()].position;
   const double distance = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
-  if (!(distance > far * integrator_->reference_length())) return {};
-  std::size_t held = 0;
-  problem_.for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items) held += !c.is_internal();
-  });
-  return held == nodes_.pinned_count() ? first : Vec3{};
+  return distance > far * integrator_->reference_length() ? first : Vec3{};
 }
 
 void Island::load(const Model& model, double h) {
   problem_.gravity = model.acting_gravity();
-  problem_.origin = choose_origin(model);
+  problem_.set_origin(choose_origin(model));
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Ring& r = model.rings[nodes_.rings[i]];
     problem_.position[i] = r.position - problem_.origin;

@@ -37,9 +37,20 @@ void Problem::clear() {
   changes_.clear(), is_open_.clear();
   structure_ = no_structure;
   gravity = origin = {};
+  places_.clear();
   has_new_rows = false;
   standing_gap = 0, standing_steps = unsolved_steps = 0;
   used_ = 0;
+}
+
+// From the places as they were added, so that the same origin gives the same bits.
+void Problem::set_origin(const Vec3& place) {
+  origin = place;
+  if (place == Vec3{} && places_.empty()) return;
+  if (places_.empty()) for_each_place([&](const Vec3& constant, double) { places_.push_back(constant); });
+  auto added = places_.begin();
+  for_each_place([&](Vec3& constant, double weight) { constant = *added++ + weight * place; });
+  if (place == Vec3{}) places_.clear();
 }
 
 void Problem::add_nodes(std::size_t count) {
@@ -74,6 +85,7 @@ void Problem::count(const AngleConstraint& angle, ItemKey key) {
 }
 
 void Problem::open(std::span<const std::uint32_t> nodes) {
+  set_origin({});
   is_open_.assign(size(), 0);
   for (const std::uint32_t node : nodes) {
     is_open_[node] = 1;

@@ -182,8 +182,7 @@ struct Problem {
   };
   std::vector<CountedAngle> counted_angles;
   Vec3 gravity;
-  /// Origin of positions and targets, m. It keeps their precision far from the world's origin.
-  Vec3 origin;
+  Vec3 origin;  ///< see set_origin
   /// Velocities may violate a new row: they are projected at the start of the next step.
   bool has_new_rows = false;
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
@@ -191,6 +190,10 @@ struct Problem {
   std::uint64_t unsolved_steps = 0;  ///< the latest ones in a row of which no part was solved
 
   std::size_t size() const { return position.size(); }
+
+  /// The origin of positions and of the places of rows, m, which were added with that of the world. It keeps their precision far
+  /// from there. Positions, and targets that are set for each step, are up to the caller.
+  void set_origin(const Vec3&);
 
   /// @name Structure
   /// A problem is built by adding nodes and items that act on them; `compile` then makes its pattern. It is changed in
@@ -416,6 +419,16 @@ struct Problem {
     }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
   }
 
+  template <class Visit>
+  void for_each_place(Visit visit) {
+    for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+      if constexpr (requires(C& c) { c.visit_places(visit); })
+        for (C& c : pool.items) c.visit_places(visit);
+    });
+  }
+
+  std::vector<Vec3>
+      places_;  // of rows, in the order of the pools, as they were added; or none: the origin is the world's
   std::uint32_t used_ = 0;  // a bit for each pool that ever had an item
   GraphChange changes_;
   static constexpr std::uint64_t no_structure = 1;  // is not 0

@@ -42,6 +42,14 @@ struct AffineConstraint {
     for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
     return std::abs(sum) < 1e-9;
   }
+  /// See Arms.
+  template <class Visit>
+  void visit_places(Visit visit) {
+    if (is_internal()) return;
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
+    visit(target_start, -sum), visit(target, -sum);
+  }
 };
 
 }  // namespace iota::solver

@@ -51,6 +51,15 @@ struct Arms {
     });
   }
   bool is_moving() const { return constant != constant_start; }
+  /// visit(constant, weight): the constants that are places in the world; the weight is that of a place in the arm.
+  template <class Visit>
+  void visit_places(Visit visit) {
+    for (int a = 0; a < Count; ++a) {
+      double sum = 0, size = 0;
+      for (std::uint32_t i = 0; i < count; ++i) sum += weights[a][i], size += std::abs(weights[a][i]);
+      if (std::abs(sum) > 1e-9 * size) visit(constant_start[a], sum), visit(constant[a], sum);
+    }
+  }
 };
 
 /// Constraints that are functions of a few arms: g_r(e_0, e_1, ...). `Derived` has

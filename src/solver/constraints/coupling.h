@@ -63,6 +63,11 @@ struct CouplingConstraint {
       return std::visit([](const auto& row) { return row.is_internal(); }, term.coordinate);
     });
   }
+  /// See Arms.
+  template <class Visit>
+  void visit_places(Visit visit) {
+    for (Term& term : terms) std::visit([&](auto& row) { row.visit_places(visit); }, term.coordinate);
+  }
   bool is_moving() const {
     return target != target_start || std::any_of(terms.begin(), terms.end(), [](const Term& term) {
              return std::visit([](const auto& row) { return row.is_moving(); }, term.coordinate);
