@@ -139,6 +139,18 @@ __all__ = [
     "types",
 ]
 
+# What scripts look for at one of them, and another one has.
+arguments.explain_reading(
+    (AngleSpring, Articulate, Body, Bond, Constraint, Emitter, Field, Grip, Group, Law, PairForce, Particle, System),
+    {
+        "particle": "body.particle(...), of a body such as system.body()",
+        "particles": "body.particles or system.particles",
+        "nail": "particle.nail()",
+        "combine": "p.combine(q), of particles or bodies",
+        "separate": "p.separate(q), of particles",
+        "apply_force": "particle.apply_force(force) or body.apply_force(force)",
+    },
+)
 for _module in (builder.__name__, looks.__name__, types.__name__, __name__):
     arguments.explain_module(_module)
 

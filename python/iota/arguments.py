@@ -115,6 +115,18 @@ def refuse_reading(thing: object, name: str, elsewhere: Mapping[str, str] = Mapp
     raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{near}")
 
 
+def explain_reading(kinds: Iterable[type], elsewhere: Mapping[str, str]) -> None:
+    """Lets classes of the engine say where names are that they do not have; tracebacks add near names of their own."""
+
+    def read(thing: object, name: str) -> object:
+        if name in elsewhere:
+            refuse_reading(thing, name, elsewhere)
+        return object.__getattribute__(thing, name)  # raises
+
+    for kind in kinds:
+        setattr(kind, "__getattr__", read)  # noqa: B010  # checkers would take any name
+
+
 def near_attribute(name: str, names: Iterable[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:
     """The place of an attribute, or of a near one."""
     if name in elsewhere:

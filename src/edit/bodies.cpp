@@ -25,6 +25,17 @@ using model::none;
 
 namespace {
 
+/// Static and scripted bodies have the velocity with which their places are set.
+void require_own_motion(BodyKind kind, const char* what, const Vec3& value) {
+  if (value == Vec3{} || (kind != BodyKind::static_ && kind != BodyKind::scripted)) return;
+  throw std::invalid_argument(
+      kind == BodyKind::static_
+          ? text(what, ": a static body does not move")
+          : text(what,
+                 ": a scripted body goes where its places are set, and has the velocity of that: set its position, or "
+                 "set_pose, before each step"));
+}
+
 Mat3 to_mat3(const Matrix3& rows) {
   Mat3 m;
   for (int i = 0; i < 3; ++i) m.m[i][0] = rows[i].x, m.m[i][1] = rows[i].y, m.m[i][2] = rows[i].z;
@@ -70,6 +81,7 @@ BodyId apply(Editor& e, const CreateSolid& c) {
   require_finite("position", o.position);
   require_finite("velocity", o.velocity);
   require_finite("spin", o.spin);
+  require_own_motion(o.kind, "velocity", o.velocity), require_own_motion(o.kind, "spin", o.spin);
   for (const Vec3& a : o.attachments) require_finite("each attachment", a);
   const model::SolidPose pose{o.position, require_quaternion("orientation", o.orientation)};
 
@@ -349,6 +361,7 @@ void apply(Editor& e, const SetBodyVelocity& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_finite("velocity", c.value);
+  require_own_motion(model.bodies[body].kind, "velocity", c.value);
   require_particles(model, body);
   const Vec3 change = c.value - body_velocity(model, body);
   add_motion(e, body, [&](const Vec3&) { return change; });
@@ -358,6 +371,7 @@ void apply(Editor& e, const SetAngularVelocity& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_finite("angular velocity", c.value);
+  require_own_motion(model.bodies[body].kind, "angular velocity", c.value);
   require_particles(model, body);
   require_can_spin(model, body, c.value);
   const Vec3 change = c.value - body_angular_velocity(model, body), center = model.center_of_mass(body);

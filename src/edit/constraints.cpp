@@ -101,9 +101,33 @@ void wake(Editor& e, std::uint32_t constraint) {
   if (rests) constraint_changed(e, constraint);
 }
 
+/// Bodies jump where a new stop or rope asks for it.
+void note_jump(model::Model& model, std::uint32_t slot) {
+  constexpr double far = 1e-6;  // relative
+  const ingredient::Constraint& c = model.constraints[slot];
+  const char* const kind = ingredient::info(c.kind).name;
+  if (c.kind == ConstraintKind::rope) {
+    const double distance =
+        norm(position_of(model, c, ingredient::a_origin) - position_of(model, c, ingredient::b_origin));
+    if (distance > (1 + far) * c.length)
+      model.notes.push_back(text(kind, " ", slot, " is ", c.length, " m long and its ends are ", distance,
+                                 " m apart: the next step moves them together"));
+  }
+  for (const JointCoordinate which : joint_coordinates) {
+    const CoordinateOptions& o = c.options[static_cast<std::size_t>(which)];
+    if (!has_coordinate(c.kind, which) || !(o.lower <= o.upper)) continue;
+    const double now = c.coordinate[static_cast<std::size_t>(which)], slack = far * std::max(1.0, std::abs(now));
+    if (now < o.lower - slack || now > o.upper + slack)
+      model.notes.push_back(text("the ", name_of(which), " of ", kind, " ", slot, " is ", now,
+                                 ", outside of its limits ", o.lower, " to ", o.upper,
+                                 ": the next step moves its bodies there"));
+  }
+}
+
 ConstraintId made(Editor& e, std::uint32_t slot) {
   model::Model& model = e.model;
   ingredient::start_rows(model, slot);
+  note_jump(model, slot);
   constraint_changed(e, slot);
   return model.constraints.id(slot);
 }
@@ -228,6 +252,10 @@ ConstraintId apply(Editor& e, const CreateCoupling& c) {
   }
   if (!std::isnan(c.spec.length)) require_number("length", c.spec.length);
   require_limits(c.spec.breaks);
+  if (c.spec.terms.size() == 1 && c.spec.kind == ConstraintKind::coupling && std::isnan(c.spec.length))
+    throw std::invalid_argument(text(name,
+                                     ": couples two or more coordinates, and would lock a single one; give it a length "
+                                     "if you want that, or the coordinate limits or a servo"));
   return made(e, make_constraint(model, c.spec));
 }
 
@@ -271,6 +299,7 @@ void apply(Editor& e, const SetCoordinate& c) {
   const bool same_line = (options.friction_coefficient > 0) == (c.options.friction_coefficient > 0);
   const bool same_rows = ingredient::rows_of(options) == ingredient::rows_of(c.options) && same_line;
   options = c.options;
+  note_jump(e.model, slot);
   if (same_rows) return wake(e, slot);
   if (!same_line) constraint.multipliers.fill(0);  // other rows than those of its line follow it
   const ingredient::RowsOf rows = ingredient::rows_of(options);

@@ -218,3 +218,27 @@ def test_a_large_body_that_grows_point_by_point_has_the_inertia_and_motion_of_al
     for other in (1, 100, 299):
         apart = np.linalg.norm(now - now[other], axis=1)
         assert apart == pytest.approx(np.linalg.norm(places - places[other], axis=1), abs=1e-9)
+
+
+def test_a_body_of_one_particle_or_of_points_in_one_place_has_no_angular_velocity() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    for count in (1, 3):
+        body = system.body()
+        for _ in range(count):
+            body.particle((0.1, 0.7, -3.3), mass=0.37, velocity=(1, 2, 3))
+        for _ in range(20):
+            system.step()
+            assert body.angular_velocity == (0, 0, 0)
+
+
+def test_scripted_and_static_bodies_take_no_velocity_as_their_places_are_set() -> None:
+    system = iota.System()
+    table = system.body("scripted", shape=iota.Box((1, 1, 1)))
+    with pytest.raises(ValueError, match="a scripted body goes where its places are set"):
+        table.velocity = (1, 0, 0)
+    with pytest.raises(ValueError, match="angular velocity: a scripted body"):
+        table.angular_velocity = (1, 0, 0)
+    with pytest.raises(ValueError, match="a static body does not move"):
+        system.body("static", shape=iota.Box((1, 1, 1))).velocity = (1, 0, 0)
+    table.velocity = (0, 0, 0)
+    system.velocities = system.velocities

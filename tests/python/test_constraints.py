@@ -429,3 +429,16 @@ def test_each_coordinate_says_its_name_and_unit() -> None:
     assert repr(cross.angle).startswith("<angle ") and repr(cross.angle).endswith(" rad>")
     assert repr(cross.second_angle).startswith("<second_angle ") and repr(cross.second_angle).endswith(" rad>")
     assert repr(system.prismatic(box, at=(0, 0, 0), axis=(0, 1, 0)).slide).endswith(" m>")
+
+
+def test_limits_and_ropes_that_move_bodies_at_once_are_noted() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.revolute(system.body(shape=iota.Sphere(0.1)), at=(0, 0, 0), axis=(0, 0, 1), limits=(0.5, 1))
+    p, q = system.body().particle((3, 0, 0)), system.body().particle((6, 0, 0))
+    system.rope(p, q, 0.5)
+    system.rope(p, q, 3)
+    notes = system.step().warnings
+    assert [note for note in notes if "outside of its limits 0.5 to 1" in note]
+    assert [note for note in notes if "its ends are 3 m apart" in note]
+    assert len(notes) == 2
+    assert system.step().warnings == []

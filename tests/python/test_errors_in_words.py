@@ -142,6 +142,10 @@ MISTAKES: dict[str, tuple[Callable[[sweep.Scene], Any], str]] = {
     "density without a shape": (lambda c: c.system.body(density=3), "density, mass, position.* are of bodies with a shape"),
     "a spring": (lambda c: c.system.bond(c.p, c.point, "spring"), r"a spring needs stiffness=\.\.\., N/m"),
     "a tether": (lambda c: c.system.bond(c.p, c.point, "tether", length=1), r"a tether needs stiffness"),
+    "a particle of a system": (lambda c: c.system.particle(V), r"a System has no attribute 'particle': it is body.particle"),
+    "a nail of a body": (lambda c: c.box.nail(), r"a Body has no attribute 'nail': it is particle.nail\(\)"),
+    "a coupling of one": (lambda c: c.system.couple([(c.hinge.angle, 1)]), "couples two or more coordinates"),
+    "a scripted body that flies": (lambda c: c.system.body("scripted", shape=iota.Sphere(1), velocity=V), "set its position"),
 }  # fmt: skip
 V = (0.1, 0.2, 0.3)
 

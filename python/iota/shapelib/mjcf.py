@@ -325,7 +325,8 @@ class _Reader:
             self.mechanism.notes.append(
                 f"the equality {name} is violated initially: it keeps the initial poses of its bodies"
             )
-        self.mechanism.couplings.append(JointCoupling(name, self.terms(total)))
+        length = 0.0 if len(total) == 1 else None  # one joint, which is locked where it is
+        self.mechanism.couplings.append(JointCoupling(name, self.terms(total), length))
 
     def sum_of_tendon(self, number: int) -> dict[int, float] | None:
         """The ratios by joint of a fixed tendon; None for a tendon in space."""
