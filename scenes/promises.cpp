@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -297,10 +298,72 @@ Complaint check_bounds(std::uint64_t seed) {
   return {};
 }
 
+struct Momenta {
+  Vec3 linear, angular;          ///< angular: about the origin
+  double speed = 0, extent = 0;  ///< the largest
+  double mass = 0;
+};
+Momenta momenta_of(const System& system) {
+  Momenta sum;
+  for (const ParticleId p : system.particles().ids()) {
+    const double mass = system.particles().mass(p);
+    const Vec3 x = system.particles().position(p), v = system.particles().velocity(p);
+    sum.linear += mass * v, sum.angular += mass * cross(x, v);
+    sum.speed = std::max(sum.speed, norm(v)), sum.extent = std::max(sum.extent, norm(x));
+    sum.mass += mass;
+  }
+  return sum;
+}
+
+// Random combines in empty space, most of which ask for what cannot be, with masses over decades, links that are far too short
+// for their neighbors, and budgets that end before a solution. No step changes their momenta.
+Complaint check_rescue(std::uint64_t seed) {
+  Dice dice{seed};
+  System system({.gravity = {}, .mode = mode_of(seed)});
+  // Without a limit an accurate step that nothing solves takes 10 000 iterations.
+  const int most = system.mode() == IntegrationMode::accurate ? 100 : 0;
+  system.set_budget({.iterations = dice.below(3) == 0 ? 1 + static_cast<int>(dice.below(6)) : most});
+  const double decades = dice.below(2) == 0 ? 0 : 3;
+  const int bodies = 3 + static_cast<int>(dice.below(6));
+  for (int b = 0; b < bodies; ++b) {
+    const BodyId body = system.bodies().create();
+    const Vec3 place = dice.point(1), velocity = dice.point(1), turning = dice.point(4);
+    const bool is_needle = dice.below(4) == 0;
+    const double size = is_needle ? std::pow(10, dice.uniform(-16, -3)) : 0.3;
+    for (std::uint32_t k = is_needle ? 2 : 2 + dice.below(3); k > 0; --k) {
+      const Vec3 arm = dice.point(size);
+      (void)system.particles().create(body, place + arm, std::pow(10, dice.uniform(-decades, decades)),
+                                      velocity + cross(turning, arm));
+    }
+  }
+  const double most_spin = system.mode() == IntegrationMode::plausible ? 1e-5 : 1e-6;
+  for (int i = 0; i < 16; ++i) {
+    const std::vector<ParticleId> particles = system.particles().ids();
+    const auto pick = [&] { return particles[dice.below(static_cast<std::uint32_t>(particles.size()))]; };
+    try {
+      if (i % 2 == 0) (void)system.edits().combine(pick(), pick());
+    } catch (const std::invalid_argument&) {  // one body at both, or both are hinged already
+    }
+    const Momenta before = momenta_of(system);
+    const StepReport report = system.step(1.0 / 60);
+    const Momenta after = momenta_of(system);
+    const double size = before.mass * std::max(before.speed, after.speed);
+    const double lost = norm(after.linear - before.linear), lost_spin = norm(after.angular - before.angular);
+    const bool is_solved = report.unconverged == 0;
+    const char* const how = is_solved ? "a step" : "a step that was not solved";
+    if (!(lost <= 1e-9 * size)) return text(how, " changes the momentum by ", lost, " of ", size, " kg m/s");
+    // Bodies that are drawn into one place cannot keep it, which is told.
+    if (report.warnings.empty() && !(lost_spin <= most_spin * size * before.extent))
+      return text(how, " changes the angular momentum by ", lost_spin, " of ", size * before.extent, " kg m^2/s");
+  }
+  return {};
+}
+
 }  // namespace
 
 const char* name_of(Promise promise) {
-  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict", "order", "turns", "bounds"};
+  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict",
+                             "order",  "turns",      "bounds",  "rescue"};
   return names[static_cast<std::size_t>(promise)];
 }
 
@@ -314,6 +377,7 @@ std::optional<std::string> break_promise(Promise promise, std::uint64_t seed) {
     case Promise::order: return check_order(seed);
     case Promise::turns: return check_turns(seed);
     case Promise::bounds: return check_bounds(seed);
+    case Promise::rescue: return check_rescue(seed);
     case Promise::count: break;
   }
   return {};

@@ -17,6 +17,7 @@ enum class Promise : std::uint8_t {
   order,       ///< of arguments means nothing
   turns,       ///< are those of the bodies: shafts, gears and screws at 0.01 to 10 turns a step
   bounds,      ///< motors at their largest torque and friction do the work torque times angle
+  rescue,      ///< momenta of what nothing holds stay in steps that are not solved, too
   count
 };
 const char* name_of(Promise);

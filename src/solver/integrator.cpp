@@ -176,6 +176,8 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // In a conflict also what targets take that give way to rows: what these store in their gaps is in no book.
   if (drives_rows_) energy.external_work -= holds_offsets_ ? energy.idle_work() : std::max(0.0, energy.idle_work());
   if (holds_offsets_) energy.overdrawn = 0;
+  if (holds_offsets_) note_momenta(problem, stage);
+  const AdvanceReport before = report;
   commit(problem, stage, energy, report);
   if (free) {
     keep_momenta(problem, *free, part.h);
@@ -185,11 +187,53 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     project_velocities_after_step(problem, stage, report);
   else
     give_spin_back(problem, stage, energy.dissipated, report);
+  const bool keeps_momenta = !holds_offsets_ || restore_momenta(problem);
   if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy.total_before);
+  if (!keeps_momenta || (holds_offsets_ && has_taken_off(energy))) {
+    report.external_work = before.external_work, report.dissipated = before.dissipated;
+    move_rigidly_instead(problem, part, report);
+  }
   if (has_corrected_) keep_correction(problem);
   energy_.close(problem, reference_length(), part.h, report);
   report.converged = report.converged && !is_soft;
   return true;
+}
+
+// A held gap of a point is a direction in the world, which does not turn with the bodies: steps in conflict changed the
+// angular momentum of what flies freely by a third.
+void Integrator::note_momenta(const Problem& problem, const Stage& stage) {
+  const auto end = newton_.solution();
+  saved_position_.assign(end.begin(), end.end());
+  if (stage.is_mid_point())
+    for (std::size_t i = 0; i < end.size(); ++i) saved_position_[i] = 0.5 * (problem.position[i] + end[i]);
+  spin().note(problem, holds_, Connection::rows_and_forces);
+  spin().expect(problem, saved_position_, stage.h);
+  saved_position_.assign(problem.position.begin(), problem.position.end());
+  saved_velocity_.assign(problem.velocity.begin(), problem.velocity.end());
+}
+
+// False if what is free cannot carry them any more.
+bool Integrator::restore_momenta(Problem& problem) {
+  const double lost = spin().restore(problem);
+  energy_.measure_kinetic(problem);
+  has_corrected_ = true;
+  return lost == 0 || drives_rows_ || !holds_.are_none();
+}
+
+/// Points that a conflict draws almost into one place can carry their angular momentum only with an energy that nothing gives.
+bool Integrator::has_taken_off(const StepEnergy& step) const {
+  constexpr double most = 1e-6;  // of the kinetic energy
+  const double made = energy_.total - step.total_before - step.external_work;
+  return holds_.are_none() && !drives_rows_ && !(made <= most * step.kinetic_before + energy_.slack);
+}
+
+void Integrator::move_rigidly_instead(Problem& problem, const Part& part, AdvanceReport& report) {
+  std::copy(saved_position_.begin(), saved_position_.end(), problem.position.begin());
+  std::copy(saved_velocity_.begin(), saved_velocity_.end(), problem.velocity.begin());
+  has_corrected_ = false;
+  energy_ = {};
+  energy_.measure(problem, part.from);
+  move_rigidly(problem, part.h, report);
 }
 
 bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial, StepEnergy& energy,
@@ -232,23 +276,25 @@ void Integrator::track(Problem& problem, double fraction) {
 }
 
 // If no attempt has succeeded: moves the points by their velocities, in small pieces, and projects positions and velocities
-// on the constraints after each. If a piece cannot be taken, the points stay and lose half of their speed. First order and
-// without an energy balance, but plausible, finite and reported.
+// on the constraints after each. From the first piece that cannot be taken to the end of the part the problem moves as a
+// rigid body, or stays if it is held. First order and without an energy balance, but plausible, finite and reported; what
+// nothing holds keeps momentum and angular momentum.
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   const int left = iterations_left_, allowed = std::max(left, resort_left_);
   iterations_left_ = allowed;
   settings_.deadline = std::chrono::steady_clock::time_point::max();
   has_corrected_ = is_instant_ = false;
-  bool goes_on = true;
-  for (int piece = 0; piece < IntegratorSettings::last_resort_pieces && goes_on; ++piece)
-    goes_on = coast_a_piece(problem, h / IntegratorSettings::last_resort_pieces);
+  constexpr int pieces = IntegratorSettings::last_resort_pieces;
+  int taken = 0;
+  while (taken < pieces && coast_a_piece(problem, h / pieces, report)) ++taken;
+  if (taken < pieces) move_rigidly(problem, h * (pieces - taken) / pieces, report);
   resort_left_ = std::min(resort_left_, iterations_left_);
   iterations_left_ = std::max(0, left - (allowed - iterations_left_));
   energy_.close(problem, reference_length(), h, report);
   ++report.substeps;
 }
 
-bool Integrator::coast_a_piece(Problem& problem, double h) {
+bool Integrator::coast_a_piece(Problem& problem, double h, AdvanceReport& report) {
   saved_position_.assign(problem.position.begin(), problem.position.end());
   saved_velocity_.assign(problem.velocity.begin(), problem.velocity.end());
   const EnergyBalance before = energy_;
@@ -256,24 +302,80 @@ bool Integrator::coast_a_piece(Problem& problem, double h) {
     problem.velocity[i] += h * problem.gravity;
     problem.position[i] += h * problem.velocity[i];
   }
-  bool is_taken = holds_offsets_ || project_positions(problem);
+  spin().note(problem, holds_);
+  bool is_taken = holds_offsets_ ? !opens_gaps(problem) : project_positions(problem);
   if (is_taken) {
     project_velocities(problem);
+    const bool keeps_momenta = spin().restore(problem) == 0;
     energy_.measure_change(problem, 1);
     const double gained = energy_.total - before.total;
-    // A projection may have raised the points by more than the motion can pay.
-    is_taken = std::isfinite(gained) && (drives_rows_ || gained <= 0 || change_kinetic_energy(problem, gained));
+    is_taken = keeps_momenta && std::isfinite(gained) && (drives_rows_ || gained <= 0 || pay(problem, gained));
   }
   if (is_taken) {
+    act_with_held_forces(problem, h, report);
     track(problem, 1);
     return true;
   }
   std::copy(saved_position_.begin(), saved_position_.end(), problem.position.begin());
-  for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] = 0.5 * saved_velocity_[i];
-  if (!std::isfinite(problem.kinetic_energy())) std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
+  std::copy(saved_velocity_.begin(), saved_velocity_.end(), problem.velocity.begin());
   energy_ = before;
-  energy_.measure_kinetic(problem);
   return false;
+}
+
+// Whether the points have left the gaps of a conflict behind: what flies freely can go on as a rigid body instead.
+bool Integrator::opens_gaps(const Problem& problem) const {
+  if (!holds_.are_none()) return false;
+  const double before = problem.worst_gap(saved_position_.data(), 1, true);
+  return !(problem.worst_gap(problem.position.data(), 1, true) <= before + strained_gap);
+}
+
+// A projection may have raised the points by more than the motion can pay: a rigid one keeps its angular momentum.
+bool Integrator::pay(Problem& problem, double energy) {
+  const std::optional<RigidMotion> rigid = rigid_motion(problem);
+  return !(rigid && energy_.kinetic - rigid->kinetic_energy() <= energy) &&
+         change_kinetic_energy(problem, energy, rigid);
+}
+
+// Their impulses, which the rows distribute.
+void Integrator::act_with_held_forces(Problem& problem, double h, AdvanceReport& report) {
+  if (problem.force.empty()) return;
+  std::vector<Vec3>& impulses = saved_velocity_;
+  std::transform(problem.force.begin(), problem.force.end(), impulses.begin(), [h](const Vec3& f) { return h * f; });
+  project_velocities(problem, 0, impulses);
+  const double work = problem.kinetic_energy() - energy_.kinetic;
+  energy_.kinetic += work, energy_.total += work, report.external_work += work;
+}
+
+namespace {
+
+/// Whether a slack rope, an open stop or a near surface should have acted.
+bool violates_idle_rows(const Problem& problem) {
+  bool any = false;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t i = 0; i < pool.items.size() && pool.has_laws(); ++i) {
+      if (pool.acts(i)) continue;
+      double g[C::rows];
+      pool.items[i].value(problem.position.data(), 1, g);
+      for (int r = 0; r < C::rows; ++r)
+        any = any || !(pool.law(i)[r].violation(g[r]) <= strained_gap * pool.items[i].reference_length());
+    }
+  });
+  return any;
+}
+
+}  // namespace
+
+// From the saved state. What would meet a stop or a surface on its way stays, as what is held does.
+void Integrator::move_rigidly(Problem& problem, double h, AdvanceReport& report) {
+  double work = spin().move_rigidly(problem, h, holds_);
+  if (violates_idle_rows(problem)) {
+    work = 0;
+    std::copy(saved_position_.begin(), saved_position_.end(), problem.position.begin());
+    for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] = 0.5 * saved_velocity_[i];
+  }
+  if (!std::isfinite(problem.kinetic_energy())) std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
+  energy_.measure_change(problem, 1, work);
+  report.external_work += work;
 }
 
 // Sub-steps have the row compliance of the whole step, as a taut net of bars stores energy in it: a shorter one with less would

@@ -93,8 +93,16 @@ class Integrator {
   bool take(Problem&, const Part&, const Attempt&, AdvanceReport&);
   bool is_acceptable(Problem&, const Stage&, Trial, StepEnergy&, AdvanceReport&);
   void commit(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
+  void note_momenta(const Problem&, const Stage&);
+  bool restore_momenta(Problem&);
+  bool has_taken_off(const StepEnergy&) const;
+  void move_rigidly_instead(Problem&, const Part&, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
-  bool coast_a_piece(Problem&, double h);
+  bool coast_a_piece(Problem&, double h, AdvanceReport&);
+  bool opens_gaps(const Problem&) const;
+  bool pay(Problem&, double energy);
+  void act_with_held_forces(Problem&, double h, AdvanceReport&);
+  void move_rigidly(Problem&, double h, AdvanceReport&);
   double compliance_part(const Part&, Scheme) const;
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;

@@ -81,8 +81,7 @@ void Integrator::remove_made_energy(Problem& problem, double energy_before) {
 
 // Removes `excess` from the kinetic energy, or adds it if negative: scales all velocities, in an isolated problem
 // relative to the rigid motion, so that momentum and angular momentum are kept. Velocities still satisfy the
-// constraints afterwards. If the rigid motion alone has too much energy, all of the velocities are scaled. False if the
-// motion has not so much energy.
+// constraints afterwards. False if the motion has not so much energy beside the rigid one: all of that is removed.
 bool Integrator::change_kinetic_energy(Problem& problem, double excess, const std::optional<RigidMotion>& found) {
   if (!scale_motion(problem, excess, found)) {
     energy_.measure_kinetic(problem);
@@ -117,10 +116,6 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
   if (found) {
     rigid = *found;
     rest -= rigid.kinetic_energy();
-    if (!(rest > excess)) {
-      rest = energy_.kinetic - 0.5 * rigid.mass * dot(rigid.velocity, rigid.velocity);
-      rigid.turning = {};
-    }
   }
   constexpr double most_given = 1;  // of the kinetic energy of the motion
   if (!(rest > 0 && -excess <= most_given * rest)) return false;

@@ -37,4 +37,19 @@ RigidMotion rigid_motion_about(const Problem&, const Vec3& pivot, std::span<cons
 /// includes that of gravity and of forces that are held over the step. If the angle is not small, nothing is changed.
 void turn_for_energy(Problem&, double energy, const std::optional<Vec3>& pivot = {});
 
+/// A rigid body about its center of mass or the point that it hangs on; vectors at the begin of the motion.
+struct TurningBody {
+  Mat3 inertia;           ///< without what spins within it, kg m^2
+  Vec3 angular_momentum;  ///< with what spins within it, kg m^2/s
+  Vec3 spin;              ///< angular momentum of what spins within it: turns along
+  Vec3 torque;            ///< that stays as it is, N m
+  Vec3 moment;            ///< mass times the way to the center of mass, kg m: gravity acts there
+};
+struct Turned {
+  Quaternion turn;
+  Vec3 angular_momentum, turning;  ///< at the end
+};
+/// How a rigid body turns in h seconds, by any angle. The angular momentum is exact, the energy to second order.
+Turned turn_rigidly(const TurningBody&, const Vec3& gravity, double h);
+
 }  // namespace iota::solver

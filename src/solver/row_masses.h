@@ -3,6 +3,7 @@
 
 #include "solver/problem.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace iota::solver {
@@ -12,6 +13,13 @@ namespace iota::solver {
 inline void sum_row_masses(const Problem& problem, std::vector<double>& sum) {
   sum.assign(problem.mass.begin(), problem.mass.end());
   for (const auto& c : problem.mass_couplings) sum[c.a] += c.mass, sum[c.b] += c.mass;
+}
+
+/// visit(mass, a, b): the entries of the mass matrix, off-diagonal ones twice.
+template <class Visit>
+void for_each_mass(const Problem& problem, Visit visit) {
+  for (std::uint32_t i = 0; i < problem.size(); ++i) visit(problem.mass[i], i, i);
+  for (const auto& c : problem.mass_couplings) visit(c.mass, c.a, c.b), visit(c.mass, c.b, c.a);
 }
 
 }  // namespace iota::solver

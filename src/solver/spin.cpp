@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/spin.h"
 
+#include "solver/row_masses.h"
+
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -9,13 +11,6 @@
 namespace iota::solver {
 
 namespace {
-
-/// visit(mass, a, b): the entries of the mass matrix, off-diagonal ones twice.
-template <class Visit>
-void for_each_mass(const Problem& problem, Visit visit) {
-  for (std::uint32_t i = 0; i < problem.size(); ++i) visit(problem.mass[i], i, i);
-  for (const auto& c : problem.mass_couplings) visit(c.mass, c.a, c.b), visit(c.mass, c.b, c.a);
-}
 
 /// visit(part): each part that contains one of the nodes.
 template <class Visit>
@@ -162,6 +157,15 @@ bool Spin::find_clusters(const Problem& problem, const Holds& all) {
   };
   drop_held(problem.items_of<SpringForce>()), drop_held(problem.items_of<RadialForce>());
   return true;
+}
+
+/// Those that nothing else than a single point at rest holds.
+void Spin::find_free_clusters(const Problem& problem, const Holds& all) {
+  find_parts(problem, Connection::rows_and_forces, all, clusters_);
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items)
+      if (!f.arm.is_internal()) clusters_.of(f.arm.nodes[0]).is_kept = false;
+  });
 }
 
 // The end-point rule gives sum m x1 x (v1 - v0) = h moment, that is L1 - L0 = h moment + h sum m v1 x v0.
@@ -368,29 +372,43 @@ double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion,
 
 // Adds up mass, center, momentum and angular momentum of each piece. The angular momentum includes the spins of rods,
 // and is about the pivot or, without one, the origin. Pieces that nothing or one point at rest holds are due.
-void Spin::add_momenta(const Problem& problem) {
-  for (Part& piece : pieces_.parts) {
+void Spin::add_momenta(const Problem& problem, Parts& parts) {
+  for (Part& piece : parts.parts) {
     piece.is_due = piece.is_kept;
     piece.mass = 0;
     piece.center = piece.momentum = piece.angular = {};
   }
   const auto about = [](const Part& piece) { return piece.holds.pivot().value_or(Vec3{}); };
   for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
-    Part& piece = pieces_.of(a);
+    Part& piece = parts.of(a);
     piece.mass += mass;
     piece.center += mass * problem.position[a];
     piece.momentum += mass * problem.velocity[a];
     piece.angular += mass * cross(problem.position[a] - about(piece), problem.velocity[b]);
   });
   for (const GyroscopicForce& f : problem.items_of<GyroscopicForce>())
-    pieces_.of(f.arm.nodes[0]).angular += f.spin * f.arm.value(problem.position.data());
+    parts.of(f.arm.nodes[0]).angular += f.spin * f.arm.value(problem.position.data());
 }
 
-void Spin::note(const Problem& problem, const Holds& all) {
+void Spin::note(const Problem& problem, const Holds& all, Connection connection) {
   begin(problem);
-  find_parts(problem, Connection::rows, all, pieces_);
-  add_momenta(problem);
-  for (Part& piece : pieces_.parts) piece.wanted_momentum = piece.momentum, piece.wanted_angular = piece.angular;
+  are_clusters_noted_ = connection == Connection::rows_and_forces;
+  if (are_clusters_noted_)
+    find_free_clusters(problem, all);
+  else
+    find_parts(problem, Connection::rows, all, pieces_);
+  add_momenta(problem, noted());
+  for (Part& part : noted().parts) part.wanted_momentum = part.momentum, part.wanted_angular = part.angular;
+}
+
+void Spin::expect(const Problem& problem, std::span<const Vec3> places, double h) {
+  const auto add = [&](std::uint32_t i, const Vec3& impulse) {
+    Part& part = noted().of(i);
+    part.wanted_momentum += impulse;
+    part.wanted_angular += cross(places[i] - part.holds.pivot().value_or(Vec3{}), impulse);
+  };
+  for_each_mass(problem, [&](double mass, std::uint32_t i, std::uint32_t) { add(i, (h * mass) * problem.gravity); });
+  for (std::uint32_t i = 0; i < problem.force.size(); ++i) add(i, h * problem.force[i]);
 }
 
 double Spin::restore(Problem& problem) {
@@ -398,10 +416,11 @@ double Spin::restore(Problem& problem) {
   constexpr double most_gains[passes] = {
       100, 1e-9};  // of the kinetic energy: points almost in one place would spin extremely
   constexpr double tolerance = 1e-9;
+  Parts& parts = noted();
   double most_lost = 0;
   for (const double most_gain : most_gains) {
-    add_momenta(problem);
-    for (Part& piece : pieces_.parts) {
+    add_momenta(problem, parts);
+    for (Part& piece : parts.parts) {
       piece.is_due = piece.is_due && piece.mass > 0;
       if (!piece.is_due) continue;
       piece.lost = piece.wanted_angular - piece.angular;
@@ -413,9 +432,9 @@ double Spin::restore(Problem& problem) {
         piece.lost -= cross(piece.center, push), piece.velocity_change = (1 / piece.mass) * push;
       }
     }
-    find_motions(problem, pieces_);
+    find_motions(problem, parts);
     most_lost = 0;
-    for (Part& piece : pieces_.parts) {
+    for (Part& piece : parts.parts) {
       if (!piece.is_due) continue;
       piece.turn = solve_semidefinite(piece.inertia, piece.lost, 1e-12);
       const double first = dot(piece.turn, piece.angular), second = 0.5 * dot(piece.turn, piece.inertia * piece.turn);
@@ -424,7 +443,7 @@ double Spin::restore(Problem& problem) {
       if (remains > tolerance * norm(piece.wanted_angular)) most_lost = std::max(most_lost, remains);
     }
     for (std::size_t i = 0; i < problem.size(); ++i) {
-      const Part& piece = pieces_.of(i);
+      const Part& piece = parts.of(i);
       if (piece.is_due)
         problem.velocity[i] += piece.velocity_change + cross(piece.turn, problem.position[i] - piece.center);
     }

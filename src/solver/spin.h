@@ -6,6 +6,7 @@
 #include "solver/holds.h"
 #include "solver/pieces.h"
 #include "solver/problem.h"
+#include "solver/rigid_motion.h"
 #include "solver/wheels.h"
 
 #include <array>
@@ -44,11 +45,18 @@ class Spin {
   /// force notices. `chords`: the velocities (x1 - x0)/h. Calls `turned` after each radian.
   void turn_on(Problem&, std::span<const Vec3> chords, double h, FunctionRef<void()> turned);
 
-  /// Notes momentum and angular momentum before positions are moved ...
-  void note(const Problem&, const Holds& all);
+  /// Notes momentum and angular momentum of pieces, or of clusters, before positions are moved ...
+  void note(const Problem&, const Holds& all, Connection = Connection::rows);
+  /// ... adds what gravity and held forces give in h seconds while the points are at `places` ...
+  void expect(const Problem&, std::span<const Vec3> places, double h);
   /// ... and restores both by the least change of kinetic energy. Returns the largest angular momentum that a piece cannot
   /// carry any more, kg m^2/s: its points are almost in one place.
   double restore(Problem&);
+
+  /// Moves each cluster that nothing or a single point at rest holds as a rigid body: this needs no solve, changes no row, and
+  /// keeps momentum and angular momentum. Half of its other motion remains. What is held otherwise stays and keeps half of
+  /// its velocity. Held forces and gravity act; returns the work of the former, J.
+  double move_rigidly(Problem&, double h, const Holds& all);
 
  private:
   struct Part {  // a piece, a cluster or a member
@@ -88,17 +96,20 @@ class Spin {
   void find_supports(const Problem&);
   double turn_members(Problem&, double most_gain);
   bool find_clusters(const Problem&, const Holds& all);
+  void find_free_clusters(const Problem&, const Holds& all);
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, double h, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);
   enum class Rest : std::uint8_t { gives, gives_all, is_kept };
   static double turn_parts(Problem&, double most_gain, Rest, Parts&);
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
-  void add_momenta(const Problem&);
   void find_pushed(const Problem&);
+  static void add_momenta(const Problem&, Parts&);
 
   std::uint64_t acting_version_ = 0;  // of the problem, when the parts were found
   Parts pieces_, clusters_, members_;
+  bool are_clusters_noted_ = false;
+  Parts& noted() { return are_clusters_noted_ ? clusters_ : pieces_; }
   Wheels wheels_;
   // One entry for each member.
   std::vector<Support> supports_;
@@ -108,6 +119,7 @@ class Spin {
   // Whether the latest `give_back` found any.
   bool are_members_due_ = false, are_wheels_due_ = false;
   DisjointSets room_for_pieces_;
+  std::vector<TurningBody> turning_bodies_;
 };
 
 }  // namespace iota::solver

@@ -99,5 +99,43 @@ TEST(TurnForEnergy, does_nothing_that_would_take_more_than_a_small_angle) {
   EXPECT_EQ(problem.velocity, tumbling().velocity);
 }
 
+/// The energy of a turning body after it has turned.
+double energy_of(const TurningBody& body, const Turned& turned) {
+  return 0.5 * dot(turned.angular_momentum - rotate(turned.turn, body.spin), turned.turning);
+}
+
+TEST(TurnRigidly, by_many_turns_keeps_the_angular_momentum_and_nearly_the_energy) {
+  for (const double thin : {1.0, 1e-3, 1e-9, 0.0}) {  // from a body of three different inertias to points on a line
+    TurningBody body{.inertia = {{{2, 0, 0}, {0, 1 + thin, 0}, {0, 0, thin}}}, .angular_momentum = {1, 20, 3 * thin}};
+    if (thin > 1e-12) body.inertia.m[0][0] = 1 + 2 * thin;
+    const double start = energy_of(body, turn_rigidly(body, {}, 0));
+    const Turned turned = turn_rigidly(body, {}, 1);
+    EXPECT_EQ(turned.angular_momentum, body.angular_momentum);
+    EXPECT_NEAR(energy_of(body, turned), start, 1e-3 * start) << thin;
+  }
+}
+
+TEST(TurnRigidly, agrees_with_the_equations_of_a_body_with_a_wheel_in_gravity) {
+  const TurningBody body{.inertia = {{{2, 0.1, 0}, {0.1, 3, 0.2}, {0, 0.2, 1.5}}},
+                         .angular_momentum = {1, -2, 4},
+                         .spin = {0, 3, 0},
+                         .torque = {0.5, 0, -0.2},
+                         .moment = {0.3, 0.1, 0.2}};
+  const Vec3 gravity{0, -9.81, 0};
+  constexpr int parts = 20000;
+  Quaternion turn;
+  Vec3 angular = body.angular_momentum;
+  for (int i = 0; i < parts; ++i) {  // explicit and fine
+    const Quaternion back{-turn.x, -turn.y, -turn.z, turn.w};
+    const Vec3 turning = rotate(turn, solve_semidefinite(body.inertia, rotate(back, angular) - body.spin));
+    angular += (1.0 / parts) * (body.torque + cross(rotate(turn, body.moment), gravity));
+    turn = normalized(multiply(turn_by((1.0 / parts) * turning), turn));
+  }
+  const Turned turned = turn_rigidly(body, gravity, 1);
+  EXPECT_LT(norm(turned.angular_momentum - angular), 2e-3);
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}})
+    EXPECT_LT(norm(rotate(turned.turn, axis) - rotate(turn, axis)), 2e-3);
+}
+
 }  // namespace
 }  // namespace iota::solver
