@@ -139,7 +139,7 @@ __all__ = [
     "types",
 ]
 
-# What scripts look for at one of them, and another one has.
+# Scripts look for these at one class, and another one has them.
 arguments.explain_reading(
     (AngleSpring, Articulate, Body, Bond, Constraint, Emitter, Field, Grip, Group, Law, PairForce, Particle, System),
     {

@@ -159,7 +159,7 @@ bool Spin::find_clusters(const Problem& problem, const Holds& all) {
   return true;
 }
 
-/// Those that nothing else than a single point at rest holds.
+/// Finds the clusters, and keeps the momenta of those that nothing else than a single point at rest holds.
 void Spin::find_free_clusters(const Problem& problem, const Holds& all) {
   find_parts(problem, Connection::rows_and_forces, all, clusters_);
   problem.for_each_force_pool([&](const auto& pool) {
