@@ -555,7 +555,8 @@ void Islands::wake_stirred(Model& model, double h) {
     I::visit_stirred(model, h, [&](std::uint32_t ring) {
       model.for_each_in_ring(ring, [&](std::uint32_t p) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
-        wake(model, {&articulate, 1});
+        // A free body that is awake hears its force itself.
+        if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
       });
     });
   });
