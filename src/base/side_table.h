@@ -61,6 +61,12 @@ class SideTable {
     values_.pop_back(), owners_.pop_back();
   }
 
+  /// Keeps its room.
+  void clear() {
+    for (const std::uint32_t slot : owners_) place_of_[slot] = absent;
+    values_.clear(), owners_.clear();
+  }
+
   template <class Visit>
   void for_each(Visit visit) const {
     for (std::uint32_t place = 0; place < size(); ++place) visit(owners_[place], values_[place]);

@@ -37,9 +37,8 @@ void apply(Editor&, const SetBodyMass&);
 void apply(Editor&, const ApplyBodyForce&);
 void apply(Editor&, const ApplyBodyTorque&);
 
-/// Adds forces on a body's particles that are equivalent to a force at its center of mass and a torque. Throws
-/// std::invalid_argument if the torque has no lever arm.
-void spread(const model::Model&, std::uint32_t body, const Vec3& force, const Vec3& torque,
+/// Adds the shares of a force at the center of mass to `forces`: in proportion to mass, so that there is no load within.
+void spread(const model::Model&, std::uint32_t body, const Vec3& force,
             std::vector<std::pair<ParticleId, Vec3>>& forces);
 
 }  // namespace iota::edit

@@ -335,10 +335,10 @@ void apply(Editor& e, const AssignBodies& c) {
         require_finite("angular velocity", vector_in(row(i) + 3));
         return require_can_spin(model, body, vector_in(row(i) + 3));
       case mass: return check(e, SetBodyMass{c.bodies[i], *row(i)});
-      case force: require_finite("force", vector_in(row(i))); return spread(model, body, vector_in(row(i)), {}, forces);
+      case force: require_finite("force", vector_in(row(i))); return spread(model, body, vector_in(row(i)), forces);
       case torque:
         require_finite("torque", vector_in(row(i)));
-        return spread(model, body, {}, vector_in(row(i)), forces);
+        return ingredient::Pushes::check_torque(model, body, vector_in(row(i)));
       default: throw std::invalid_argument("bodies have no such quantity that can be assigned");
     }
   });
@@ -346,6 +346,8 @@ void apply(Editor& e, const AssignBodies& c) {
     for (std::size_t i = 0; i < count; ++i) apply(e, SetBodyMass{c.bodies[i], *row(i)});
     return;
   }
+  if (c.quantity == torque)
+    for (std::size_t i = 0; i < count; ++i) ingredient::Pushes::add_torque(e.model, c.bodies[i].slot, vector_in(row(i)));
   if (c.quantity == force || c.quantity == torque) {
     for (const auto& [particle, share] : forces) apply(e, ApplyForce{particle, share});
     return;

@@ -45,10 +45,11 @@ void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& re
     if (!call_field(slot, set, report)) return;
   } else {
     const laws::FieldLaw& law = model_.compiled_field(slot);
+    const double time = model_.time + look_ahead(report.dt);
     in_chunks(n, parallel_, [&](std::size_t first, std::size_t last) {
-      law.evaluate(set.arrays, first, last - first, model_.time, report.dt, field.parameters.data(),
-                   set.force_rows.data() + 3 * first);
+      law.evaluate(set.arrays, first, last - first, time, field.parameters.data(), set.force_rows.data() + 3 * first);
     });
+    if (law.depends_on_velocity()) add_rates(law, field, time, set);
   }
   std::size_t bad = 0, first_bad = 0;
   const double* f = set.force_rows.data();
@@ -64,6 +65,22 @@ void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& re
                                    field.name[0] ? ")" : "", " gives no finite force on particle ",
                                    set.ids[first_bad].slot, bad > 1 ? text(" and ", bad - 1, " more") : "",
                                    "; there it gives none"));
+}
+
+// The solver takes the part of a force that is linear in the velocity implicitly.
+void HeldForces::add_rates(const laws::FieldLaw& law, const ingredient::Field& field, double time,
+                           ParticleSet& set) const {
+  const std::size_t n = set.rings.size();
+  set.rates.resize(n), set.rate_rows.resize(9 * n);
+  in_chunks(n, parallel_, [&](std::size_t first, std::size_t last) {
+    double* const rows = set.rate_rows.data() + 9 * first;
+    law.evaluate_rates(set.arrays, first, last - first, time, field.parameters.data(), rows);
+    for (std::size_t i = first; i < last; ++i) {
+      const double *const f = set.force_rows.data() + 3 * i, *const rate = rows + 9 * (i - first);
+      if (!laws::is_force(f[0], f[1], f[2])) continue;
+      for (int k = 0; k < 9; ++k) set.rates[i].m[k / 3][k % 3] += rate[k];
+    }
+  });
 }
 
 bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {

@@ -64,6 +64,7 @@ class HeldForces {
 
   void take_fields(StepReport&);
   void take_field(std::uint32_t field, ParticleSet&, StepReport&);
+  void add_rates(const laws::FieldLaw&, const ingredient::Field&, double time, ParticleSet&) const;
   bool call_field(std::uint32_t field, ParticleSet&, StepReport&);
   void take_pairs(std::uint32_t pairs, ParticleSet&, StepReport&);
   ParticleSet& loaded_set(std::uint32_t group, double ahead);

@@ -50,15 +50,25 @@ void ParticleSet::load(const model::Model& model, double ahead, double normals_a
     load_normals(model, normals_ahead);
     for (auto* const t : {&arrays.tx, &arrays.ty, &arrays.tz}) std::ranges::fill(*t, 0.0);
   }
+  rates.clear();
   is_loaded = true;
 }
 
 void ParticleSet::unload(model::Model& model, const Parallel& parallel) const {
   for (std::size_t i = 0; i < rings.size(); ++i)  // here, since allocating is not thread-safe
-    if (is_pushed[i]) (void)model.pushes.make(rings[i]);
+    if (is_pushed[i]) {
+      (void)model.pushes.make(rings[i]);
+      if (!rates.empty()) (void)model.pushes_by_velocity.make(rings[i]);
+    }
   in_chunks(rings.size(), parallel, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      if (is_pushed[i]) model.pushes.at(rings[i]).force += Vec3{arrays.fx[i], arrays.fy[i], arrays.fz[i]};
+      if (is_pushed[i]) {
+        model.pushes.at(rings[i]).force += Vec3{arrays.fx[i], arrays.fy[i], arrays.fz[i]};
+        if (rates.empty()) continue;
+        ingredient::PushByVelocity& part = model.pushes_by_velocity.at(rings[i]);
+        part.rate += rates[i];
+        part.force += rates[i] * Vec3{arrays.vx[i], arrays.vy[i], arrays.vz[i]};
+      }
   });
   for (std::size_t i = 0; i < attributes.size(); ++i)
     if (is_pushed[i]) model.attributes[attributes[i]].torque += Vec3{arrays.tx[i], arrays.ty[i], arrays.tz[i]};

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "ingredient/model.h"
+#include "math/mat3.h"
 #include "neighbors/pair_sum.h"
 
 #include <memory>
@@ -21,7 +22,8 @@ struct ParticleSet {
   std::vector<ParticleId> ids;            ///< the first of each ring
   std::vector<std::uint8_t> is_pushed;    ///< 0 for static and scripted bodies, which only act on others
   laws::ParticleArrays arrays;
-  std::vector<double> position_rows, velocity_rows, force_rows;  // for fields
+  std::vector<double> position_rows, velocity_rows, force_rows, rate_rows;  // for fields
+  std::vector<Mat3> rates;  ///< derivatives of the forces by the velocities, N s/m; or empty: none
   bool is_loaded = false;
 
   void find(const model::Model&);

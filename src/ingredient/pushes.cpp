@@ -4,11 +4,77 @@
 #include <algorithm>
 #include <utility>
 #include "ingredient/model.h"
+#include "math/mat3.h"
+#include "math/text.h"
 
 namespace iota::ingredient {
 
+namespace {
+
+/// visit(particle, force): forces on the massive particles of a body that add up to a torque, in proportion to its angular
+/// acceleration, m (a x r), so that there is no load within it. place(particle): where it is. Returns what they add up to.
+template <class Place, class Visit>
+Vec3 spread_torque(const Model& model, std::uint32_t body, const Vec3& torque, Place place, Visit visit) {
+  const auto each = [&](auto look) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (!model.particles[p].is_marker()) look(p, model.particles[p].mass);
+    });
+  };
+  double mass = 0;
+  Vec3 center;
+  each([&](std::uint32_t p, double m) { mass += m, center += m * place(p); });
+  center *= 1 / (mass + 1e-300);
+  Mat3 inertia;
+  each([&](std::uint32_t p, double m) { inertia += point_inertia(m, place(p) - center); });
+  const Vec3 turn = solve_semidefinite(inertia, torque);
+  each([&](std::uint32_t p, double m) { visit(p, m * cross(turn, place(p) - center)); });
+  return inertia * turn;
+}
+
+}  // namespace
+
+void Pushes::check_torque(const Model& model, std::uint32_t body, const Vec3& torque) {
+  constexpr double round_off = 1e-9;
+  const Vec3 reached = spread_torque(
+      model, body, torque, [&](std::uint32_t p) { return model.position(p); }, [](auto&&...) {});
+  if (!(norm(reached - torque) <= round_off * norm(torque)))
+    throw std::invalid_argument(
+        text("a torque of ", text_of(torque), " N m cannot act on body ", body,
+             ": its particles are at one place or on one line, about which nothing has a lever; a body given by shape "
+             "can be turned"));
+}
+
+void Pushes::add_torque(Model& model, std::uint32_t body, const Vec3& torque) {
+  if (torque != Vec3{}) model.torques.make(body).torque += torque;
+}
+
+void Pushes::forget_body(Model& model, std::uint32_t body) { model.torques.erase(body); }
+
+// On the points of the basis, which are unknowns.
+void Pushes::load_torques(const Model& model, const IslandNodes& nodes, Problem& problem) {
+  problem.torques.clear();
+  if (model.torques.is_empty()) return;
+  thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> node_of_ring;  // made for the first torque
+  node_of_ring.clear();
+  for (const std::uint32_t body : nodes.bodies) {
+    const Torque* const applied = model.torques.find(body);
+    if (!applied || applied->torque == Vec3{} || !is_free(model.bodies[body].kind)) continue;
+    if (node_of_ring.empty()) {
+      for (std::uint32_t node = 0; node < nodes.size(); ++node) node_of_ring.push_back({nodes.rings[node], node});
+      std::sort(node_of_ring.begin(), node_of_ring.end());
+    }
+    solver::BodyTorque& torque = problem.torques.emplace_back();
+    torque.torque = applied->torque, torque.count = model.bodies[body].rank;
+    for (std::uint32_t i = 0; i < torque.count; ++i) {
+      const std::pair key{model.particles[model.bodies[body].basis[i]].ring, 0u};
+      torque.nodes[i] = std::lower_bound(node_of_ring.begin(), node_of_ring.end(), key)->second;
+    }
+  }
+}
+
 void Pushes::load(const Model& model, const IslandNodes& nodes, double, Problem& problem) {
   problem.force.clear();
+  load_torques(model, nodes, problem);
   if (model.pushes.is_empty()) return;
   const auto add = [&](std::uint32_t node, const Vec3& force) {
     if (force == Vec3{}) return;
@@ -21,32 +87,84 @@ void Pushes::load(const Model& model, const IslandNodes& nodes, double, Problem&
     for (const auto& [node, weight] : nodes.carriers[i])
       if (weight != 0) add(node, weight * force);
   }
+  load_parts_by_velocity(model, nodes, problem);
 }
 
-void Pushes::store(Model& model, const IslandNodes& nodes, double, const Problem&) const {
+// They change from step to step, and couple only points of one body, which are coupled anyway.
+void Pushes::load_parts_by_velocity(const Model& model, const IslandNodes& nodes, Problem& problem) {
+  if (problem.has_used<solver::VelocityForce>()) {
+    auto& pool = problem.pool_of<solver::VelocityForce>();
+    pool.items.clear(), pool.keys.clear(), pool.slots.clear();
+  }
+  arms_.clear();
+  if (model.pushes_by_velocity.is_empty()) return;
+  const auto add = [&](std::uint32_t ring, const solver::ForceArm& arm) {
+    const PushByVelocity* const part = model.pushes_by_velocity.find(ring);
+    if (!part) return;
+    solver::VelocityForce force;
+    force.arm = arm, force.part = {part->rate, model.ring_mass(ring)};
+    for (std::uint32_t i = 0; i < arm.count; ++i) problem.force[arm.nodes[i]] -= arm.weights[i] * part->force;
+    problem.add(force, {owner, {}, ring});
+    arms_.push_back(arm.value(problem.position.data()));
+  };
+  if (problem.force.empty()) problem.force.resize(problem.size());
+  for (std::uint32_t node = 0; node < nodes.size(); ++node)
+    add(nodes.rings[node], {.nodes = {node}, .weights = {1}, .count = 1});
+  for (std::size_t i = 0; i < nodes.carried.size(); ++i) {
+    solver::ForceArm arm;
+    for (const auto& [node, weight] : nodes.carriers[i])
+      if (weight != 0) arm.nodes[arm.count] = node, arm.weights[arm.count++] = weight;
+    add(model.particles[nodes.carried[i]].ring, arm);
+  }
+}
+
+void Pushes::store(Model& model, const IslandNodes& nodes, double h, const Problem& problem) const {
+  if (!model.torques.is_empty())
+    for (const std::uint32_t body : nodes.bodies)
+      if (Torque* const torque = model.torques.find(body)) torque->before = std::exchange(torque->torque, Vec3{});
   if (model.pushes.is_empty()) return;
   nodes.for_each_ring(model, [&](std::uint32_t ring) {
     if (Push* const push = model.pushes.find(ring)) push->before = std::exchange(push->force, Vec3{});
   });
+  for_each_item_of<solver::VelocityForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    model.pushes.at(key.slot).before +=
+        force_by_velocity(model, key.slot, h, problem, i) - model.pushes_by_velocity.at(key.slot).force;
+  });
+}
+
+// At the time of the scheme's forces.
+Vec3 Pushes::force_by_velocity(const Model& model, std::uint32_t ring, double h, const Problem& problem,
+                               std::size_t item) const {
+  const solver::VelocityForce& f = problem.items_of<solver::VelocityForce>()[item];
+  if (model.rings[ring].is_instant) return f.part.at_an_instant(f.arm.rate(problem.velocity.data()));
+  return f.force(arms_[item], f.arm.value(problem.position.data()), {.h = h, .midpoint = !model.steps_to_end_point()});
 }
 
 void Pushes::visit_stirred(const Model& model, double, Visit visit) {
   model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
     if (push.force != Vec3{}) visit(ring);
   });
+  model.torques.for_each([&](std::uint32_t body, const Torque& torque) {
+    if (torque.torque != Vec3{}) visit(model.particles[model.bodies[body].first].ring);
+  });
 }
 
-bool Pushes::keeps_awake(const Model&, const Problem& problem) const {
-  return std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return f != Vec3{}; });
-}
+bool Pushes::keeps_awake(const Model&, const Problem& problem) const { return problem.has_pushes(); }
 
 void Pushes::validate(const Model& model, model::Audit& audit) {
   audit.require_owners("a push", model.pushes, model.rings);
+  audit.require_owners("a torque", model.torques, model.bodies);
 }
 
 // A force on a shared place is distributed equally over its movable bodies.
 void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
+  if (const Torque* const torque = model.torques.find(body); torque && torque->before != Vec3{})
+    spread_torque(
+        model, body, torque->before, [&](std::uint32_t p) { return step.place(p); },
+        [&](std::uint32_t p, const Vec3& force) {
+          reader.take({.particle = p, .force = force, .part = model.particles[p].part});
+        });
   if (model.pushes.is_empty()) return;
   const bool moves = is_free(model.bodies[body].kind);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -63,12 +181,16 @@ void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
 
 // Forces act for one step, also on points that cannot move: otherwise they would act when such a body becomes dynamic.
 void Pushes::end_step(Model& model, double) {
+  model.pushes_by_velocity.clear();
   model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
     if (push.force == Vec3{}) return;
     bool all_free = true;
     model.for_each_in_ring(
         ring, [&](std::uint32_t p) { all_free = all_free && is_free(model.bodies[model.particles[p].body].kind); });
     if (!all_free) model.pushes.at(ring).force = {};
+  });
+  model.torques.for_each([&](std::uint32_t body, const Torque&) {
+    if (!is_free(model.bodies[body].kind)) model.torques.at(body).torque = {};
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/slack.h"
 #include "ingredient/ingredient_list.h"
+#include "laws/velocity_part.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,7 +96,15 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
       const double mass = model.particles[place.particle].mass;
       const double damping = model.damping + model.body_damping[place.body];
       const Vec3 before = ring.velocity;
-      const Vec3 gained = h * ((1 / mass) * force + gravity);
+      Vec3 gained = h * ((1 / mass) * force + gravity);
+      Vec3 turning;  // the part of the force that does no work
+      if (const ingredient::PushByVelocity* const by_velocity = model.pushes_by_velocity.find(place.ring)) {
+        laws::VelocityPart part(by_velocity->rate, mass);
+        part.begin(h);
+        gained = solve(Mat3::diagonal(1) + (-h / mass) * part.rate(), gained);
+        turning = part.turn(before + 0.5 * gained);
+        push->before = (mass / h) * gained - mass * gravity;
+      }
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
       constexpr double absurd = 1e12;  // m/s: the energy of a higher speed would overflow
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
@@ -105,8 +114,9 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
       }
       ring.velocity = after;
       ring.position += moved;
-      share.work += dot(force, moved);
-      if (robust) share.lost += 0.5 * mass * dot(gained, gained);
+      const Vec3 working = (push ? push->before : Vec3{}) - turning;
+      share.work += dot(working, moved);
+      if (robust) share.lost += 0.5 * mass * dot(gained, gained) - dot(turning, moved);
       const bool pushed = force != Vec3{};
       if (damping > 0) {
         const double left = std::exp(-damping * h);

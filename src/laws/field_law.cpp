@@ -19,14 +19,17 @@ constexpr std::size_t field_variable_count = std::size(FieldLaw::variables);
 
 using FieldLawList = LawList<FieldLaws>;
 
-FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) {
-  return {{a.x[i], a.y[i], a.z[i]}, {a.vx[i], a.vy[i], a.vz[i]}, a.m[i], t, h};
+constexpr std::uint32_t first_velocity = 3;  // among the variables
+constexpr std::size_t rate_count = 9;
+
+FieldState state_of(const ParticleArrays& a, std::size_t i, double t) {
+  return {{a.x[i], a.y[i], a.z[i]}, {a.vx[i], a.vy[i], a.vz[i]}, a.m[i], t};
 }
 
 }  // namespace
 
 FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {
-  FieldLawList::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
+  FieldLawList::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy, depends_on_velocity_ = Law::has_drag; });
 }
 
 FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
@@ -44,8 +47,8 @@ FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) :
       if (d.name == std::array{"fx", "fy", "fz"}[k]) force[k] = d.node, any = true;
     if (d.name != "energy") continue;
     energy = d.node, any = true;
-    for (std::uint32_t k = 3; k < 6; ++k)
-      if (formula.depends_on(energy, k))
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (formula.depends_on(energy, first_velocity + k))
         throw expression::ExpressionError("an energy cannot depend on a velocity; put damping into 'fx = ...'", text,
                                           d.position);
   }
@@ -59,6 +62,12 @@ FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) :
   std::fill_n(uniform.begin(), field_variable_count - 1, false);  // all but t
   force_ = Program(formula, force, uniform);
   energy_ = Program(formula, std::array{energy}, uniform);
+  std::array<Node, rate_count> rates;
+  for (std::uint32_t k = 0; k < rate_count; ++k) rates[k] = formula.derivative(force[k / 3], first_velocity + k % 3);
+  depends_on_velocity_ = std::any_of(rates.begin(), rates.end(), [&](Node rate) {
+    return formula[rate].op != expression::Op::constant || formula[rate].value != 0;
+  });
+  if (depends_on_velocity_) rates_ = Program(formula, rates, uniform);
 }
 
 template <class Take>
@@ -69,19 +78,20 @@ void FieldLaw::run(const Program& program, const ParticleArrays& a, std::size_t 
   uniforms[field_variable_count - 1] = t;
   std::copy_n(parameters, parameter_count_, uniforms.begin() + field_variable_count);
   constexpr std::size_t block = Program::block;
-  std::array<std::array<double, block>, 3> results;
-  double* const outputs[3] = {results[0].data(), results[1].data(), results[2].data()};
+  std::array<std::array<double, block>, rate_count> results;
+  std::array<double*, rate_count> outputs;
+  for (std::size_t k = 0; k < rate_count; ++k) outputs[k] = results[k].data();
   for (std::size_t start = 0; start < count; start += block) {
     const std::size_t n = std::min(block, count - start), j = first + start;
     const double* const lanes[field_variable_count + max_field_parameters] = {
         a.x.data() + j,  a.y.data() + j,  a.z.data() + j, a.vx.data() + j,
         a.vy.data() + j, a.vz.data() + j, a.m.data() + j};
-    program.run(n, lanes, uniforms.data(), outputs, workspace);
-    take(start, n, outputs);
+    program.run(n, lanes, uniforms.data(), outputs.data(), workspace);
+    take(start, n, outputs.data());
   }
 }
 
-void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t count, double t, double h,
+void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t count, double t,
                         const double* parameters, double* out) const {
   if (number_ == field_law_count)
     return run(force_, a, first, count, t, parameters, [&](std::size_t start, std::size_t n, double* const* forces) {
@@ -90,9 +100,29 @@ void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t 
     });
   FieldLawList::visit(number_, [&]<class Law>() {
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 f = Law::force(state_of(a, first + i, t, h), parameters);
+      const Vec3 f = Law::force(state_of(a, first + i, t), parameters);
       out[3 * i] = f.x, out[3 * i + 1] = f.y, out[3 * i + 2] = f.z;
     }
+  });
+}
+
+void FieldLaw::evaluate_rates(const ParticleArrays& a, std::size_t first, std::size_t count, double t,
+                              const double* parameters, double* out) const {
+  std::fill_n(out, rate_count * count, 0.0);
+  if (!depends_on_velocity_) return;
+  if (number_ == field_law_count)
+    return run(rates_, a, first, count, t, parameters, [&](std::size_t start, std::size_t n, double* const* rates) {
+      for (std::size_t i = 0; i < n; ++i) {
+        double* const to = out + rate_count * (start + i);
+        double sum = 0;
+        for (std::size_t k = 0; k < rate_count; ++k) to[k] = rates[k][i], sum += 0 * rates[k][i];
+        if (sum != 0) std::fill_n(to, rate_count, 0.0);
+      }
+    });
+  FieldLawList::visit(number_, [&]<class Law>() {
+    if constexpr (Law::has_drag)
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < 3; ++k) out[rate_count * i + 4 * k] = -Law::drag(parameters);
   });
 }
 
@@ -108,7 +138,7 @@ double FieldLaw::energy(const ParticleArrays& a, double t, const double* paramet
     });
   else
     FieldLawList::visit(number_, [&]<class Law>() {
-      for (std::size_t i = 0; i < a.size(); ++i) add(Law::energy(state_of(a, i, t, 0), parameters));
+      for (std::size_t i = 0; i < a.size(); ++i) add(Law::energy(state_of(a, i, t), parameters));
     });
   return sum;
 }

@@ -22,10 +22,15 @@ class FieldLaw {
   FieldLaw(std::string_view text, std::vector<std::string> parameters);
 
   bool has_energy() const { return has_energy_; }
+  bool depends_on_velocity() const { return depends_on_velocity_; }
 
   /// Forces of particles [first, first + count) into out, which has that many rows (count, 3).
-  void evaluate(const ParticleArrays&, std::size_t first, std::size_t count, double t, double h,
-                const double* parameters, double* out) const;
+  void evaluate(const ParticleArrays&, std::size_t first, std::size_t count, double t, const double* parameters,
+                double* out) const;
+  /// The derivatives of these forces by the velocities, N s/m: row i of particle j at out[9 j + 3 i]. Zero for a particle
+  /// where any is not finite, as that of a quadratic drag is at rest.
+  void evaluate_rates(const ParticleArrays&, std::size_t first, std::size_t count, double t, const double* parameters,
+                      double* out) const;
   /// Energy of all particles, J; 0 for fields without one. A particle whose energy is not finite adds nothing.
   double energy(const ParticleArrays&, double t, const double* parameters) const;
 
@@ -38,9 +43,9 @@ class FieldLaw {
   void run(const expression::Program&, const ParticleArrays&, std::size_t first, std::size_t count, double t,
            const double* parameters, Take take) const;
 
-  bool has_energy_ = false;
+  bool has_energy_ = false, depends_on_velocity_ = false;
   std::size_t parameter_count_ = 0;
-  expression::Program force_, energy_;
+  expression::Program force_, energy_, rates_;
 };
 
 std::uint32_t find_field_law(std::string_view name);  ///< field_law_count for an unknown name

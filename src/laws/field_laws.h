@@ -12,25 +12,19 @@ namespace iota::laws {
 
 inline constexpr int max_field_parameters = 12;
 
-/// One particle at time t (s), in a step of h seconds.
+/// One particle at time t (s).
 struct FieldState {
   Vec3 position, velocity;  ///< m, m/s
   double mass = 1;          ///< kg
-  double t = 0, h = 0;
+  double t = 0;
 };
-
-/// The constant force that changes the velocity of a free particle in a step of h exactly as f = -drag (v - u) does: v1
-/// = u + (v - u) exp(-drag h / m). The plain force, held over the step, would overshoot if drag h > m.
-inline Vec3 drag_towards(const Vec3& u, double drag, const FieldState& s) {
-  const double c = drag * s.h / s.mass;
-  const double share = c < 1e-5 ? 1 - c / 2 : (1 - expression::exp(-c)) / c;
-  return (drag * share) * (u - s.velocity);
-}
 
 /// Defaults of a field: no energy.
 struct NoEnergy {
-  static constexpr bool has_energy = false;
+  static constexpr bool has_energy = false, has_drag = false;
   static double energy(const FieldState&, const double*) { return 0; }  ///< J; the force is its negative gradient
+  /// Of a field with a drag: N s/m, minus the derivative of the force by the velocity.
+  static double drag(const double* p) { return p[3]; }
 };
 
 /// Uniform acceleration (m/s^2).
@@ -46,14 +40,18 @@ struct Uniform : NoEnergy {
 
 /// Drag (N s/m) relative to moving air.
 struct Wind : NoEnergy {
+  static constexpr bool has_drag = true;
   static constexpr const char* name = "wind";
   static constexpr Parameter parameters[] = {
       {"velocity_x", 0}, {"velocity_y", 0}, {"velocity_z", 0}, {"drag", 0.1, Range::not_negative}};
-  static Vec3 force(const FieldState& s, const double* p) { return drag_towards({p[0], p[1], p[2]}, p[3], s); }
+  static Vec3 force(const FieldState& s, const double* p) {
+    return p[3] * (Vec3{p[0], p[1], p[2]} - s.velocity);
+  }
 };
 
 /// Drag (N s/m) relative to a turbulent current; see Turbulence.
 struct Current : NoEnergy {
+  static constexpr bool has_drag = true;
   static constexpr const char* name = "current";
   static constexpr Parameter parameters[] = {{"velocity_x", 0},
                                              {"velocity_y", 0},
@@ -71,7 +69,7 @@ struct Current : NoEnergy {
                              static_cast<int>(std::min(p[6], 16.0)),
                              p[7],
                              static_cast<std::uint32_t>(std::min(p[8], 4e9))};
-    return drag_towards(turbulent_velocity(current, s.position, s.t), p[3], s);
+    return p[3] * (turbulent_velocity(current, s.position, s.t) - s.velocity);
   }
 };
 

@@ -43,6 +43,14 @@ inline Mat3 point_inertia(double mass, const Vec3& r) {
   return mass * (Mat3::diagonal(dot(r, r)) + -1.0 * Mat3::outer(r, r));
 }
 
+/// The solution of A x = b by cofactors; not finite if A is singular.
+inline Vec3 solve(const Mat3& a, const Vec3& b) {
+  const Vec3 r0{a.m[0][0], a.m[0][1], a.m[0][2]}, r1{a.m[1][0], a.m[1][1], a.m[1][2]},
+      r2{a.m[2][0], a.m[2][1], a.m[2][2]};
+  const Vec3 c0 = cross(r1, r2);
+  return (1 / dot(r0, c0)) * (b.x * c0 + b.y * cross(r2, r0) + b.z * cross(r0, r1));
+}
+
 /// Eigenvalues of a symmetric matrix and its unit eigenvectors, a right-handed set.
 struct SymmetricEigen {
   double values[3];

@@ -45,6 +45,7 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
   }
   if (!push) return;
   for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
+  for (const BodyTorque& t : problem.torques) add_torque(t, t.forces_in_step(x0, x, stage.is_mid_point()));
   const ForceStage force_stage{stage.h, stage.is_mid_point(), false};
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
@@ -265,6 +266,7 @@ void Assembly::load_rates(const Problem& problem) {
   for (const auto& c : problem.mass_couplings)
     add_force(c.a, -c.mass * problem.gravity), add_force(c.b, -c.mass * problem.gravity);
   for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
+  for (const BodyTorque& t : problem.torques) add_torque(t, t.forces([&](std::uint32_t node) { return x[node]; }));
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
       const Vec3 e = f.arm.value(x), force = f.force(e - f.arm.rate(v), e, ForceStage::at_an_instant());
@@ -363,7 +365,7 @@ void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* 
   forget_factors();
   if (stage.is_mid_point())
     assemble_all<Scheme::mid_point, Storage::general>(problem, stage, x, hessian);
-  else if (stage.storage == Storage::general || problem.has_unsymmetric_rows())
+  else if (stage.storage == Storage::general || problem.is_unsymmetric())
     assemble_all<Scheme::end_point, Storage::general>(problem, stage, x, hessian);
   else
     assemble_all<Scheme::end_point, Storage::symmetric>(problem, stage, x, hessian);

@@ -43,6 +43,8 @@ class Assembly {
   void follow(Problem&);
   /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
   bool place_forces(Problem&) const;
+  /// Those that are loaded anew for each step. Each is on points of one body, which are coupled.
+  void place_forces_by_velocity(Problem&) const;
   /// From now on adds the times of forces, factors and solutions to `times`; null: they are not measured.
   void add_times_to(StepTimes* times) { times_ = times; }
 
@@ -117,6 +119,9 @@ class Assembly {
   void add_force(std::uint32_t node, const Vec3& force) {
     double* const r = unknowns_.data() + node_unknown_[node];
     r[0] += force.x, r[1] += force.y, r[2] += force.z;
+  }
+  void add_torque(const BodyTorque& t, const BodyTorque::Forces& forces) {
+    for (std::uint32_t i = 0; i < t.count; ++i) add_force(t.nodes[i], -forces[i]);
   }
   void add_to_node(std::uint32_t node, double value);
   template <Storage T>

@@ -247,6 +247,13 @@ bool Assembly::place_forces(Problem& problem) const {
   return are_coupled;
 }
 
+void Assembly::place_forces_by_velocity(Problem& problem) const {
+  if (problem.items_of<VelocityForce>().empty()) return;
+  auto& pool = problem.pool_of<VelocityForce>();
+  resize_with_slack(pool.slots, pool.items.size());
+  for (std::size_t i = 0; i < pool.items.size(); ++i) set_slots(pool, i);
+}
+
 // Gives slots to the items of which `is_due` says so: (nodes, unknown of a constraint).
 template <class IsDue>
 void Assembly::place_items(Problem& problem, IsDue is_due) {

@@ -57,13 +57,15 @@ struct Solved {
   double work_of_imbalance() const;
 };
 
-// The work of grips, pushes of laws, targets of points and explicit forces.
+// The work of grips, forces of velocities, pushes of laws, targets of points and explicit forces.
 double Solved::external_work() const {
   double work = 0;
   for (const auto& f : problem.items_of<GripForce>()) {
     const Vec3 e0 = f.arm.value(start()), e1 = f.arm.value(end());
     work += dot(f.force(e0, e1, force_stage()), e1 - e0);
   }
+  for (const auto& f : problem.items_of<VelocityForce>())
+    work += f.work(f.arm.value(start()), f.arm.value(end()), force_stage());
   for (const auto& f : problem.items_of<RadialForce>())
     work += f.push_work(f.arm.value(start()), f.arm.value(end()), force_stage());
   const std::span<const AffineConstraint> affines = problem.items_of<AffineConstraint>();
@@ -76,6 +78,7 @@ double Solved::external_work() const {
     work -= dot(Vec3{l[0], l[1], l[2]}, moved);
   }
   for (std::size_t i = 0; i < problem.force.size(); ++i) work += dot(problem.force[i], end()[i] - start()[i]);
+  for (const BodyTorque& t : problem.torques) work += t.work(start(), end(), stage.is_mid_point());
   return work;
 }
 

@@ -26,7 +26,8 @@ constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<
 /// Two to four points, each at a fixed distance from each other, and nothing else that holds them or turns them.
 bool is_free_body(const Problem& problem) {
   const std::size_t n = problem.size();
-  if (n < 2 || n > 4 || !problem.items_of<GyroscopicForce>().empty()) return false;
+  if (n < 2 || n > 4 || !problem.items_of<GyroscopicForce>().empty() || !problem.items_of<VelocityForce>().empty())
+    return false;
   std::size_t rows = 0, rods = 0;
   problem.for_each_acting(
       [&]<class C>(const ConstraintPool<C>&, std::size_t) { ++rows, rods += std::is_same_v<C, DistanceConstraint>; });
@@ -112,8 +113,7 @@ void Integrator::look_at(Problem& problem) {
     for (const RowLaw& law : pool.laws) drives_rows_ = drives_rows_ || (law.rate != 0 && !law.is_off());
   });
   find_holds(problem);
-  is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty();
-  for (const Vec3& f : problem.force) is_conservative_ = is_conservative_ && f == Vec3{};
+  is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   // The push of a law has no energy: its work is not a gain.
   for (const auto& f : problem.items_of<RadialForce>()) is_conservative_ = is_conservative_ && !f.law->has_push();
 }
@@ -436,6 +436,7 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
   }
   Stage limited = stage;
   limited.iterations_left = iterations_left_;
+  problem.begin_forces(stage.h);
   const NewtonReport newton = newton_.solve(problem, limited);
   iterations_left_ -= newton.iterations;
   is_cut_short_ = is_cut_short_ || (!newton.converged && iterations_left_ <= 0);

@@ -26,6 +26,7 @@ class Integrator {
   /// After a change of structure by the problem's own functions: see Problem::open.
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return newton_.place_forces(problem); }  ///< see Assembly
+  void place_forces_by_velocity(Problem& problem) const { newton_.place_forces_by_velocity(problem); }
 
   /// Advances positions, velocities and multipliers of `problem` by h seconds.
   /// Constraints that are violated at the start are first closed by moving positions only; remaining gaps are held at

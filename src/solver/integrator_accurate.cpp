@@ -160,8 +160,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
 
 // If nothing outside acts on the problem but gravity.
 std::optional<RigidMotion> Integrator::free_motion(const Problem& problem) const {
-  bool is_free = holds_.are_none() && problem.items_of<GyroscopicForce>().empty();
-  for (const Vec3& force : problem.force) is_free = is_free && force == Vec3{};
+  bool is_free = holds_.are_none() && problem.items_of<GyroscopicForce>().empty() && !problem.has_pushes();
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) is_free = is_free && f.arm.is_internal();
   });

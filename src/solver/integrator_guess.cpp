@@ -40,6 +40,10 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
     guess[i] = mass[i] * problem.gravity;
   }
   for (std::size_t i = 0; i < problem.force.size(); ++i) guess[i] += problem.force[i];
+  for (const BodyTorque& t : problem.torques) {
+    const BodyTorque::Forces forces = t.forces([&](std::uint32_t node) { return problem.position[node]; });
+    for (std::uint32_t i = 0; i < t.count; ++i) guess[t.nodes[i]] += forces[i];
+  }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];

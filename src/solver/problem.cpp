@@ -28,7 +28,7 @@ void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size
 
 void Problem::clear() {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
-  clear(position, velocity, force, mass, damping, mass_couplings, counted_angles);
+  clear(position, velocity, force, torques, mass, damping, mass_couplings, counted_angles);
   for_each_constraint_pool([&](auto& p) {
     acting_version_ += !p.acting.empty();  // the next ones may have no laws, and all act
     clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held);

@@ -3,6 +3,7 @@
 
 #include "base/slack.h"
 #include "solver/constraints/constraint_list.h"
+#include "solver/forces/body_torque.h"
 #include "solver/forces/force_list.h"
 #include "solver/row_states.h"
 #include "solver/sparse/block_pattern.h"
@@ -172,6 +173,7 @@ struct Problem {
 
   std::vector<Vec3> position, velocity;  ///< m, m/s
   std::vector<Vec3> force;               ///< explicit, held over the step, N; or empty: none
+  std::vector<BodyTorque> torques;       ///< from outside, in the step
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
   std::vector<double> damping;           ///< of velocities, 1/s, for the caller of the integrator; or empty: none
   std::vector<MassCoupling> mass_couplings;
@@ -320,10 +322,20 @@ struct Problem {
     return any;
   }
   /// Whether the matrix of a step or a projection needs general storage in any scheme.
-  bool has_unsymmetric_rows() const {
+  bool is_unsymmetric() const {
     bool any = false;
     for_each_constraint_pool([&]<class C>(const ConstraintPool<C>&) { any = any || ConeConstraint<C>; });
+    for (const VelocityForce& f : items_of<VelocityForce>()) any = any || f.part.turns;
     return any;
+  }
+  /// Whether forces from outside act in the step, other than gravity and grips.
+  bool has_pushes() const {
+    return !torques.empty() || !items_of<VelocityForce>().empty() ||
+           std::any_of(force.begin(), force.end(), [](const Vec3& f) { return f != Vec3{}; });
+  }
+  /// Tells forces the velocities at the start of a (sub-)step of h seconds.
+  void begin_forces(double h) {
+    for (VelocityForce& f : items_of<VelocityForce>()) f.begin(velocity.data(), h);
   }
   std::size_t multiplier_count() const {
     std::size_t count = 0;

@@ -55,12 +55,18 @@ Power calc_power(const Problem& problem) {
   const Vec3 *const x = problem.position.data(), *const v = problem.velocity.data();
   Power power;
   for (std::size_t i = 0; i < problem.force.size(); ++i) power.external += dot(problem.force[i], v[i]);
+  for (const BodyTorque& t : problem.torques) {
+    const BodyTorque::Forces forces = t.forces([&](std::uint32_t node) { return x[node]; });
+    for (std::uint32_t i = 0; i < t.count; ++i) power.external += dot(forces[i], v[t.nodes[i]]);
+  }
   problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
     for (const auto& f : pool.items) {
       const Vec3 e = f.arm.value(x), before = e - f.arm.rate(v);
       power.dissipated += f.dissipation(before, e, ForceStage::at_an_instant());
       if constexpr (std::is_same_v<F, RadialForce>)
         power.external += f.push_work(before, e, ForceStage::at_an_instant());
+      if constexpr (std::is_same_v<F, VelocityForce>)
+        power.external += f.work(before, e, ForceStage::at_an_instant());
     }
   });
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {

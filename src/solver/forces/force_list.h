@@ -5,6 +5,7 @@
 #include "solver/forces/force_arm.h"
 #include "solver/forces/gyroscopic.h"
 #include "solver/forces/radial.h"
+#include "solver/forces/velocity_force.h"
 
 #include <array>
 #include <cmath>
@@ -111,9 +112,10 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
 /// The list of implicit forces.
 template <template <class> class Pool>
 using ForcePools =
-    std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>, Pool<GyroscopicForce>>;
+    std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>, Pool<GyroscopicForce>,
+               Pool<VelocityForce>>;
 
 static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce> &&
-              ImplicitForce<RadialForce> && ImplicitForce<GyroscopicForce>);
+              ImplicitForce<RadialForce> && ImplicitForce<GyroscopicForce> && ImplicitForce<VelocityForce>);
 
 }  // namespace iota::solver

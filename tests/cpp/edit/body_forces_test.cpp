@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/body_forces.h"
+#include "modes.h"
 #include "vectors.h"
 
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,6 +49,63 @@ TEST(BodyTorque, turns_a_body_by_its_moments_of_inertia_and_moves_no_center) {
   EXPECT_NEAR(turn.y, h * torque.y / moment(0.2, 0.6), 1e-9);
   EXPECT_NEAR(turn.z, h * torque.z / moment(0.2, 0.4), 1e-9);
   EXPECT_LT(norm(free.system.momentum()), 1e-14);
+}
+
+TEST(BodyTorque, gives_a_free_body_its_angular_momentum_in_every_mode_however_far_it_turns_in_a_step) {
+  for (const IntegrationMode mode : all_modes)
+    for (const double hz : {60.0, 240.0}) {
+      FreeBox free;
+      free.system.set_mode(mode);
+      const double strength = 5;  // N m: 50 to 140 rad/s
+      for (int i = 0; i < hz; ++i) {
+        free.system.bodies().apply_torque(free.box, {0, strength, 0});
+        (void)free.system.step(1 / hz);
+      }
+      const Vec3 reached = free.system.bodies().angular_momentum(free.box);
+      EXPECT_NEAR(norm(reached - Vec3{0, strength, 0}), 0, 1e-4 * strength) << "mode " << int(mode) << ", " << hz << " Hz";
+      EXPECT_LT(norm(free.system.momentum()), 1e-10);
+    }
+}
+
+TEST(BodyTorque, of_any_direction_turns_any_body_to_round_off_in_energy_keeping) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
+    System system{SystemOptions{.gravity = {}}};
+    const BodyId body = system.bodies().create();
+    for (unsigned i = 0; i < 3 + seed % 5; ++i)
+      system.particles().create(body, {number(), number(), number()}, 1.5 + number(), {});
+    Vec3 sum;
+    double worst_load = 0;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 torque{20 * number(), 20 * number(), 20 * number()};
+      system.bodies().apply_torque(body, torque);
+      system.bodies().apply_force(body, {0, 3, 0}, system.bodies().center_of_mass(body) + Vec3{0, 0, 2});
+      sum += (1.0 / 60) * (torque + Vec3{-6, 0, 0});
+      (void)system.step(1.0 / 60);
+      worst_load = std::max(worst_load, norm(system.bodies().net_torque(body) - torque - Vec3{-6, 0, 0}));
+    }
+    EXPECT_LT(norm(system.bodies().angular_momentum(body) - sum), 1e-9) << seed;
+    EXPECT_LT(worst_load, 0.1) << "the load from outside, to the tolerance of the solve";
+    EXPECT_NEAR(system.energy().kinetic, system.energy().external_work, 1e-5 * system.energy().kinetic);
+  }
+}
+
+TEST(BodyTorque, wakes_a_sleeping_body_and_ends_with_it) {
+  FreeBox free;
+  free.system.set_rest({.after = 0.02});
+  for (int i = 0; i < 10; ++i) (void)free.system.step(0.01);
+  ASSERT_EQ(free.system.bodies().kind(free.box), BodyKind::resting);
+  free.system.bodies().apply_torque(free.box, {0, 1, 0});
+  const Snapshot pending = free.system.snapshot();
+  (void)free.system.step(0.01);
+  EXPECT_NEAR(free.system.bodies().angular_momentum(free.box).y, 0.01, 1e-9);
+  free.system.restore(pending);
+  (void)free.system.step(0.01);
+  EXPECT_NEAR(free.system.bodies().angular_momentum(free.box).y, 0.01, 1e-9) << "a snapshot has the torque";
+  free.system.bodies().apply_torque(free.box, {0, 1, 0});
+  free.system.bodies().destroy(free.box);
+  EXPECT_EQ(free.system.validate(), std::vector<std::string>{});
 }
 
 TEST(BodyTorque, about_the_line_of_all_particles_is_refused_and_across_it_is_not) {

@@ -68,15 +68,5 @@ TEST(Noise, always_has_the_same_bits) {
   EXPECT_EQ(turbulent_velocity({{1, 0, 0}, 1, 1, 3, 0, 5}, {1e300, 0, 0}, 0), (Vec3{1, 0, 0})) << "far out";
 }
 
-TEST(Field, drag_towards_a_wind_is_exact_for_a_free_particle_and_never_overshoots) {
-  for (const double drag : {1e-9, 0.1, 10.0, 1e6}) {
-    FieldState s;
-    s.velocity = {3, 0, 0}, s.mass = 0.2, s.h = 0.01;
-    const Vec3 f = drag_towards({1, 0, 0}, drag, s);
-    const double v = s.velocity.x + s.h / s.mass * f.x;
-    EXPECT_NEAR(v, 1 + 2 * std::exp(-drag * s.h / s.mass), 1e-12);
-  }
-}
-
 }  // namespace
 }  // namespace iota::laws
