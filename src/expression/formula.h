@@ -60,7 +60,9 @@ class Formula {
     double value = 0;
   };
 
-  explicit Formula(std::vector<std::string> inputs) : inputs_(std::move(inputs)) {}
+  /// `seldom`: inputs that errors list only for a text that has one of them.
+  explicit Formula(std::vector<std::string> inputs, std::vector<std::string> seldom = {})
+      : inputs_(std::move(inputs)), seldom_(std::move(seldom)) {}
 
   Node constant(double value);
   Node input(std::uint32_t number);
@@ -75,6 +77,7 @@ class Formula {
   bool depends_on(Node node, std::uint32_t input) const;
 
   const std::vector<std::string>& inputs() const { return inputs_; }
+  const std::vector<std::string>& seldom() const { return seldom_; }
   const Entry& operator[](Node node) const { return entries_[node]; }
   std::size_t size() const { return entries_.size(); }
 
@@ -82,7 +85,7 @@ class Formula {
   Node intern(const Entry&);
   Node derive(const Entry&, std::span<const Node> derivatives);
 
-  std::vector<std::string> inputs_;
+  std::vector<std::string> inputs_, seldom_;
   std::vector<Entry> entries_;
   std::map<std::tuple<Op, Node, Node, Node, std::uint64_t>, Node> known_;
 };
@@ -102,6 +105,9 @@ struct Definition {
 /// where(condition, a, b); pi. Throws ExpressionError for anything else, unknown names (with the nearest known one), more
 /// than 100 levels of nesting or 20 000 nodes.
 std::vector<Definition> parse(std::string_view text, Formula& formula);
+
+/// Throws std::invalid_argument for a parameter that a text does not have.
+void require_mentioned(std::string_view text, std::span<const std::string> parameters);
 
 /// The word of `known` nearest to `word`; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> known);

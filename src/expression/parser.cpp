@@ -44,6 +44,14 @@ constexpr std::array functions{
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/// Whether a text has a name.
+bool mentions(std::string_view text, std::string_view name) {
+  const auto is_in_a_word = [&](std::size_t at) { return at < text.size() && (is_letter(text[at]) || is_digit(text[at])); };
+  for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1))
+    if (!(at > 0 && is_in_a_word(at - 1)) && !is_in_a_word(at + name.size())) return true;
+  return false;
+}
+
 std::string show(std::string_view text, std::size_t position) {
   const std::size_t before = text.substr(0, position).rfind('\n');
   const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
@@ -241,13 +249,18 @@ class Parser {
     if (found != inputs.end()) return guarded(formula_.input(static_cast<std::uint32_t>(found - inputs.begin())));
     if (name == "pi") return formula_.constant(std::numbers::pi);
 
-    std::vector<std::string> known = inputs;
+    const auto& seldom = formula_.seldom();
+    const auto is_mentioned = [&](const std::string& word) { return mentions(text_, word); };
+    const bool lists_all = std::any_of(seldom.begin(), seldom.end(), is_mentioned);
+    std::vector<std::string> known;
+    for (const std::string& input : inputs)
+      if (lists_all || std::find(seldom.begin(), seldom.end(), input) == seldom.end()) known.push_back(input);
     for (const auto& d : names_) known.push_back(d.name);
     std::string text = "unknown name '" + name + "'";
     for (const Function& f : functions)
       if (f.name == name) text = "'" + name + "' is a function: write " + name + "(...)";
     if (const std::string near = nearest(name, known); !near.empty()) text += "; did you mean '" + near + "'?";
-    text += known.empty() ? "" : " Known are";
+    text += known.empty() ? "" : text.back() == '?' ? " Known are" : ". Known are";
     for (std::size_t i = 0; i < known.size(); ++i) text += (i ? ", " : " ") + known[i];
     fail(text, start);
   }
@@ -297,6 +310,12 @@ class Parser {
 ExpressionError::ExpressionError(const std::string& problem, std::string_view text, std::size_t at)
     : std::invalid_argument("expression, at character " + std::to_string(at + 1) + ": " + problem + show(text, at)),
       position(at) {}
+
+void require_mentioned(std::string_view text, std::span<const std::string> parameters) {
+  for (const std::string& parameter : parameters)
+    if (!mentions(text, parameter))
+      throw std::invalid_argument("the expression '" + std::string(text) + "' has no parameter '" + parameter + "'");
+}
 
 std::vector<Definition> parse(std::string_view text, Formula& formula) { return Parser(text, formula).definitions(); }
 

@@ -5,6 +5,7 @@
 
 #include <iota/reports.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace iota::held {
@@ -12,9 +13,11 @@ namespace iota::held {
 void HeldForces::begin_step(StepReport& report) {
   book_edits();
   in_step_ = true;
+  error_.begin(model_);
   take_laws(report);
   take_scripts(report);
   take_fields(report);
+  report.error = std::max(report.error, error_.estimate(model_, report.dt));
 }
 
 void HeldForces::end_step() {
@@ -29,7 +32,7 @@ void HeldForces::end_step() {
 double HeldForces::look_ahead(double h) const { return model_.steps_to_end_point() ? 0 : h / 2; }
 
 void HeldForces::forget() {
-  batches_.forget(), sets_.forget();
+  batches_.forget(), sets_.forget(), error_.forget();
   energy_is_known_ = false;
 }
 

@@ -49,7 +49,7 @@ bool compile_all(const Table& table, IsValid is_valid, Compile compile) {
     if (!good) return;
     try {
       compile(slot);
-    } catch (const expression::ExpressionError&) {
+    } catch (const std::invalid_argument&) {
       good = false;
     }
   });

@@ -37,6 +37,7 @@ FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) :
   inputs.insert(inputs.end(), parameters.begin(), parameters.end());
   Formula formula(std::move(inputs));
   const auto definitions = expression::parse(text, formula);
+  expression::require_mentioned(text, std::span(formula.inputs()).subspan(field_variable_count));
   const Node zero = formula.constant(0);
   std::array<Node, 3> force;
   force.fill(zero);

@@ -61,7 +61,9 @@ PairLaw::PairLaw(std::uint32_t number) : number_(number) {
 PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
   std::vector<std::string> inputs(std::begin(variables), std::end(variables));
   inputs.insert(inputs.end(), parameters.begin(), parameters.end());
-  Formula formula(std::move(inputs));
+  std::vector<std::string> of_normals;
+  for (const Variable cosine : cosines) of_normals.emplace_back(variables[cosine]);
+  Formula formula(std::move(inputs), std::move(of_normals));
   std::vector<Definition> definitions;
   try {
     definitions = expression::parse(text, formula);
@@ -69,6 +71,8 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
     if (text.find('=') != std::string_view::npos) throw;
     throw expression::ExpressionError("write 'energy = ...' (J) or 'force = ...' (N, positive pushes apart)", text, 0);
   }
+
+  expression::require_mentioned(text, std::span(formula.inputs()).subspan(variable_count));
 
   const Node zero = formula.constant(0);
   Node energy = zero, force = zero, drag = zero;

@@ -43,6 +43,26 @@ TEST(Expression, definitions_may_use_earlier_ones) {
   EXPECT_EQ(walk(f, all[1].node, {9, 0, 5, 7}), 10);
 }
 
+TEST(Expression, errors_offer_the_names_that_are_possible_there) {
+  const auto message = [](const char* text) {
+    Formula f({"r", "cos_p"}, {"cos_p"});
+    try {
+      (void)parse(text, f);
+    } catch (const ExpressionError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message("y = x").find("unknown name 'x'. Known are r\n"), std::string::npos) << message("y = x");
+  EXPECT_NE(message("y = x*cos_p").find("Known are r, cos_p\n"), std::string::npos) << message("y = x*cos_p");
+}
+
+TEST(Expression, refuses_a_parameter_that_the_text_does_not_have) {
+  const std::string names[] = {"k", "z0"};
+  require_mentioned("y = k*r + z0", names);
+  for (const char* text : {"y = k*r", "y = k*z01 + az0"}) EXPECT_THROW(require_mentioned(text, names), std::invalid_argument);
+}
+
 TEST(Expression, errors_point_at_the_place_and_suggest) {
   EXPECT_EQ(error_of("energy = 0.5*k*(r - lenght)^2"),
             "expression, at character 21: unknown name 'lenght'; did you mean 'length'? Known are r, v, k, length\n"
