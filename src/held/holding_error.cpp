@@ -30,7 +30,7 @@ double HoldingError::estimate(const model::Model& model, double h) {
     if (const auto* const part = model.pushes_by_velocity.find(slot); part && !is_single) now_[slot] -= part->force;
     const double mass = model.ring_mass(slot), length = is_single ? 1 : body.first_row.length;
     if (known_ < 2 || !(mass > 0)) return;
-    worst = std::max(worst, norm(now_[slot] - 2 * last_[slot] + earlier_[slot]) / (48 * mass * length));
+    worst = std::max(worst, norm(now_[slot] - 2 * last_[slot] + earlier_[slot]) / (24 * mass * length));
   });
   earlier_.swap(last_), last_.swap(now_);
   ++known_;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double round_off_of_energy = 1e-14;
 constexpr double of_motion = 1e-9;  // of the kinetic energy: what the tolerance of a solve may make
+constexpr double most_held = 0.05;  // of the kinetic energy: the error of a force that is held over a step
 constexpr double finest = 1e-12;    // of a length: motion below it is round-off
 
 /// The energy of motions below the round-off of places, J. A body at rest has this much.
@@ -47,6 +48,7 @@ struct Solved {
   }
 
   double external_work() const;
+  double holding_error() const;
   double work_of_drives() const;
   void add_dissipation(StepEnergy&, std::span<const double> multipliers_before) const;
   template <class C>
@@ -80,6 +82,14 @@ double Solved::external_work() const {
   for (std::size_t i = 0; i < problem.force.size(); ++i) work += dot(problem.force[i], end()[i] - start()[i]);
   for (const BodyTorque& t : problem.torques) work += t.work(start(), end(), stage.is_mid_point());
   return work;
+}
+
+// Of attracting poles by the end-point rule: as of held forces, it counts as work from outside.
+double Solved::holding_error() const {
+  double error = 0;
+  for (const auto& f : problem.items_of<RadialForce>())
+    error += f.holding_error(f.arm.value(start()), f.arm.value(end()), force_stage());
+  return error;
 }
 
 // The work of moving targets, lambda dg/dt, J. A motor that does not reach its speed counts as a drive behind a slipping
@@ -206,6 +216,10 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
   step.add_dissipation(energy, multipliers_before);
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
+  if (!stage.is_mid_point()) {  // a larger error is made energy: the step is halved
+    const double most = most_held * std::min(kinetic, energy.kinetic);
+    energy.external_work += std::clamp(step.holding_error(), -most, most);
+  }
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();
   if (energy.gained() > energy.round_off)

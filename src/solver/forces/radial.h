@@ -11,7 +11,9 @@
 namespace iota::solver {
 
 /// Any law between two points. With r = |e|, n = e/r, T = U'(r) - push(r) the pull, D the damping and c the drag:
-///   end point: F = -T(r1) n1 + D(r0, n.(e1-e0)/h) n - c (e1-e0)/h, n as Dashpot says
+///   end point: F = -T(r1) n1 + D(r0, n.(e1-e0)/h) n - c (e1-e0)/h, n as Dashpot says; with -T(r0) n0, held at the start, where
+///   that attracts and U''(r0) < 0. At the end of a step an attracting pole has a second root beside the pole, in which Newton's
+///   method caught two bodies for good.
 ///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
 ///   of the elastic part is exactly minus the change of energy (Gonzalez 1996).
 /// If r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
@@ -30,7 +32,8 @@ struct RadialForce {
     if (s.midpoint)
       f = (-pull_between(r0, r1).value / (r0 + r1 + tiny)) * (e0 + e1);
     else
-      f = (-pull(r1).value / (r1 + tiny)) * e1;
+      f = !s.instant && attracts_more_nearby(r0) ? (-pull(r0).value / (r0 + tiny)) * e0
+                                                 : (-pull(r1).value / (r1 + tiny)) * e1;
     if (has_dashpot()) f += dashpot_force(e0, e1, s);
     if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
     return f;
@@ -54,7 +57,9 @@ struct RadialForce {
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0), r1 = norm(e1);
     const Vec3 n1 = (1 / (r1 + tiny)) * e1;
-    const Slope p = s.midpoint ? pull_between(r0, r1) : pull(r1);
+    const Slope p = s.midpoint                 ? pull_between(r0, r1)
+                    : attracts_more_nearby(r0) ? Slope{}
+                                               : pull(r1);
     const double length = s.midpoint ? r0 + r1 + tiny : r1 + tiny;
     double along = p.slope, across = p.value / length;
     if (s.clamp) along = std::max(along, 0.0), across = std::max(across, 0.0);
@@ -70,11 +75,24 @@ struct RadialForce {
     return k;
   }
 
+  bool attracts_more_nearby(double r) const {
+    const laws::Elastic u = law->elastic(at(r), parameters.data());
+    return u.curvature < 0 && u.slope > 0;
+  }
+  /// What the work of a force that is held at the start of a step differs by from the change of its energy, J.
+  double holding_error(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const double r0 = norm(e0);
+    if (s.midpoint || s.instant || !attracts_more_nearby(r0)) return 0;
+    return energy(e1) - energy(e0) - law->elastic(at(r0), parameters.data()).slope / (r0 + tiny) * dot(e0, e1 - e0);
+  }
+
   /// Work by the part of the force without an energy, J.
   double push_work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_push()) return 0;
     const double r0 = norm(e0), r1 = norm(e1);
     if (s.midpoint) return law->push(at((r0 + r1) / 2), parameters.data()).value * (r1 - r0);
+    if (!s.instant && attracts_more_nearby(r0))
+      return law->push(at(r0), parameters.data()).value / (r0 + tiny) * dot(e0, e1 - e0);
     return law->push(at(r1), parameters.data()).value / (r1 + tiny) * dot(e1, e1 - e0);
   }
 
