@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "scenes/chain.h"
 #include "scenes/dice.h"
+#include "scenes/held_promises.h"
 #include "scenes/measured_scene.h"
 
 #include <iota/system.h>
@@ -362,8 +363,8 @@ Complaint check_rescue(std::uint64_t seed) {
 }  // namespace
 
 const char* name_of(Promise promise) {
-  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict",
-                             "order",  "turns",      "bounds",  "rescue"};
+  constexpr std::array names{"energy", "velocities", "momenta", "force", "conflict", "order",
+                             "turns",  "bounds",     "rescue",  "field", "torque"};
   return names[static_cast<std::size_t>(promise)];
 }
 
@@ -378,6 +379,8 @@ std::optional<std::string> break_promise(Promise promise, std::uint64_t seed) {
     case Promise::turns: return check_turns(seed);
     case Promise::bounds: return check_bounds(seed);
     case Promise::rescue: return check_rescue(seed);
+    case Promise::field: return check_field(seed);
+    case Promise::torque: return check_torque(seed);
     case Promise::count: break;
   }
   return {};

@@ -18,6 +18,8 @@ enum class Promise : std::uint8_t {
   turns,       ///< are those of the bodies: shafts, gears and screws at 0.01 to 10 turns a step
   bounds,      ///< motors at their largest torque and friction do the work torque times angle
   rescue,      ///< momenta of what nothing holds stay in steps that are not solved, too
+  field,       ///< moves a particle or a pendulum as the equation of motion says, to the order of the mode
+  torque,      ///< times its time is the angular momentum that a free body gets
   count
 };
 const char* name_of(Promise);

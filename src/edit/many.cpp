@@ -347,7 +347,8 @@ void apply(Editor& e, const AssignBodies& c) {
     return;
   }
   if (c.quantity == torque)
-    for (std::size_t i = 0; i < count; ++i) ingredient::Pushes::add_torque(e.model, c.bodies[i].slot, vector_in(row(i)));
+    for (std::size_t i = 0; i < count; ++i)
+      ingredient::Pushes::add_torque(e.model, c.bodies[i].slot, vector_in(row(i)));
   if (c.quantity == force || c.quantity == torque) {
     for (const auto& [particle, share] : forces) apply(e, ApplyForce{particle, share});
     return;

@@ -46,7 +46,9 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Whether a text has a name.
 bool mentions(std::string_view text, std::string_view name) {
-  const auto is_in_a_word = [&](std::size_t at) { return at < text.size() && (is_letter(text[at]) || is_digit(text[at])); };
+  const auto is_in_a_word = [&](std::size_t at) {
+    return at < text.size() && (is_letter(text[at]) || is_digit(text[at]));
+  };
   for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1))
     if (!(at > 0 && is_in_a_word(at - 1)) && !is_in_a_word(at + name.size())) return true;
   return false;

@@ -35,8 +35,8 @@ Vec3 spread_torque(const Model& model, std::uint32_t body, const Vec3& torque, P
 
 void Pushes::check_torque(const Model& model, std::uint32_t body, const Vec3& torque) {
   constexpr double round_off = 1e-9;
-  const Vec3 reached = spread_torque(
-      model, body, torque, [&](std::uint32_t p) { return model.position(p); }, [](auto&&...) {});
+  const Vec3 reached =
+      spread_torque(model, body, torque, [&](std::uint32_t p) { return model.position(p); }, [](auto&&...) {});
   if (!(norm(reached - torque) <= round_off * norm(torque)))
     throw std::invalid_argument(
         text("a torque of ", text_of(torque), " N m cannot act on body ", body,

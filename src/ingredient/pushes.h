@@ -33,7 +33,7 @@ class Pushes : public NoAnswers {
     SideTable<Push> pushes;                        ///< of rings
     SideTable<PushByVelocity> pushes_by_velocity;  ///< of rings; empty between steps, and not saved
 
-    SideTable<Torque> torques;                     ///< of bodies
+    SideTable<Torque> torques;  ///< of bodies
 
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {

@@ -29,7 +29,8 @@ FieldState state_of(const ParticleArrays& a, std::size_t i, double t) {
 }  // namespace
 
 FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {
-  FieldLawList::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy, depends_on_velocity_ = Law::has_drag; });
+  FieldLawList::visit(number_,
+                      [&]<class Law>() { has_energy_ = Law::has_energy, depends_on_velocity_ = Law::has_drag; });
 }
 
 FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {

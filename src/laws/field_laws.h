@@ -44,9 +44,7 @@ struct Wind : NoEnergy {
   static constexpr const char* name = "wind";
   static constexpr Parameter parameters[] = {
       {"velocity_x", 0}, {"velocity_y", 0}, {"velocity_z", 0}, {"drag", 0.1, Range::not_negative}};
-  static Vec3 force(const FieldState& s, const double* p) {
-    return p[3] * (Vec3{p[0], p[1], p[2]} - s.velocity);
-  }
+  static Vec3 force(const FieldState& s, const double* p) { return p[3] * (Vec3{p[0], p[1], p[2]} - s.velocity); }
 };
 
 /// Drag (N s/m) relative to a turbulent current; see Turbulence.

@@ -14,10 +14,10 @@ namespace iota::laws {
 /// the step of a free particle of mass m exact under a constant force: a drag of any size never reverses a motion, and its
 /// terminal velocity is right. (The Bernoulli function of Scharfetter and Gummel 1969.) Second order, as theta(0) = 1/2.
 struct VelocityPart {
-  Vec3 turning;       ///< a, N s/m
-  Mat3 drag;          ///< S, symmetric; a drag is negative, N s/m
-  double mass = 1;    ///< m, kg
-  Mat3 drag_at_end;   ///< S theta, of a step
+  Vec3 turning;      ///< a, N s/m
+  Mat3 drag;         ///< S, symmetric; a drag is negative, N s/m
+  double mass = 1;   ///< m, kg
+  Mat3 drag_at_end;  ///< S theta, of a step
   bool turns = false;
 
   VelocityPart() = default;
@@ -31,7 +31,9 @@ struct VelocityPart {
   /// Before a step of h seconds.
   void begin(double h) { drag_at_end = weighted_by_theta(drag, h / mass); }
 
-  Vec3 force(const Vec3& v0, const Vec3& v1) const { return turn(0.5 * (v0 + v1)) + drag * v0 + drag_at_end * (v1 - v0); }
+  Vec3 force(const Vec3& v0, const Vec3& v1) const {
+    return turn(0.5 * (v0 + v1)) + drag * v0 + drag_at_end * (v1 - v0);
+  }
   Vec3 turn(const Vec3& v) const { return cross(turning, v); }
   Vec3 at_an_instant(const Vec3& v) const { return turn(v) + drag * v; }
   /// Derivative of the force by v1.
@@ -43,7 +45,9 @@ struct VelocityPart {
   }
   static Mat3 weighted_by_theta(const Mat3& s, double time_by_mass) {
     const auto weighted = [&](double value) {
-      return value == 0 ? 0 : value * theta(std::isfinite(time_by_mass) ? value * time_by_mass : std::copysign(1e300, value));
+      return value == 0
+                 ? 0
+                 : value * theta(std::isfinite(time_by_mass) ? value * time_by_mass : std::copysign(1e300, value));
     };
     if (s.m[0][1] == 0 && s.m[0][2] == 0 && s.m[1][2] == 0) {
       const bool is_alike = s.m[0][0] == s.m[1][1] && s.m[0][0] == s.m[2][2];

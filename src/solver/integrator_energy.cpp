@@ -70,7 +70,8 @@ struct WorkOfTorques {
     for (const BodyTorque& t : problem.torques) {
       const auto end = [&](std::uint32_t i) { return problem.position[i]; };
       const auto start = [&](std::uint32_t i) { return problem.position[i] - h * problem.velocity[i]; };
-      const Vec3 before = t.turning(start, [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; });
+      const Vec3 before =
+          t.turning(start, [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; });
       const Vec3 after = t.turning(end, [&](std::uint32_t i) { return problem.velocity[i]; });
       const BodyTorque::Forces forces = t.forces(end);
       missing += 0.5 * h * dot(t.torque, before), most += h * norm(t.torque) * (norm(before) + norm(after));
@@ -80,8 +81,9 @@ struct WorkOfTorques {
   static double of_end(const Problem& problem, double h) {
     double sum = 0;
     for (const BodyTorque& t : problem.torques)
-      sum += 0.5 * h * dot(t.torque, t.turning([&](std::uint32_t i) { return problem.position[i]; },
-                                               [&](std::uint32_t i) { return problem.velocity[i]; }));
+      sum += 0.5 * h *
+             dot(t.torque, t.turning([&](std::uint32_t i) { return problem.position[i]; },
+                                     [&](std::uint32_t i) { return problem.velocity[i]; }));
     return sum;
   }
 };

@@ -36,7 +36,7 @@ class Newton {
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
   void place_forces_by_velocity(Problem& problem) const { assembly_.place_forces_by_velocity(problem); }
-  void add_times_to(StepTimes* times) { assembly_.add_times_to(times); }                 ///< see Assembly
+  void add_times_to(StepTimes* times) { assembly_.add_times_to(times); }  ///< see Assembly
 
   /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.

@@ -65,8 +65,7 @@ Power calc_power(const Problem& problem) {
       power.dissipated += f.dissipation(before, e, ForceStage::at_an_instant());
       if constexpr (std::is_same_v<F, RadialForce>)
         power.external += f.push_work(before, e, ForceStage::at_an_instant());
-      if constexpr (std::is_same_v<F, VelocityForce>)
-        power.external += f.work(before, e, ForceStage::at_an_instant());
+      if constexpr (std::is_same_v<F, VelocityForce>) power.external += f.work(before, e, ForceStage::at_an_instant());
     }
   });
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {

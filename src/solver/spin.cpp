@@ -202,17 +202,18 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
     const Vec3 e1 = f.arm.value(problem.position.data()), e0 = start(f.arm.nodes[1]) - start(f.arm.nodes[0]);
     parts.of(f.arm.nodes[0]).lost += cross(e1, h * f.force(e0, e1, stage)) + f.spin * (e1 - e0);
   }
-  const auto add_dashpots = [&](const auto& forces) {  // whose moment should be zero
+  const auto add_moments = [&](const auto& forces) {  // which should be zero
     for (const auto& f : forces) {
       const auto nodes = std::span(f.arm.nodes).first(f.arm.count);
       const std::uint32_t part = parts.part_of[nodes.front()];
-      if (!f.has_dashpot() || std::any_of(nodes.begin(), nodes.end(), [&](auto i) { return parts.part_of[i] != part; }))
+      if (!f.may_act_across() ||
+          std::any_of(nodes.begin(), nodes.end(), [&](auto i) { return parts.part_of[i] != part; }))
         continue;
       const Vec3 e1 = f.arm.value(problem.position.data()), e0 = e1 - h * f.arm.rate(problem.velocity.data());
-      parts.parts[part].lost += cross(e1, h * f.dashpot_force(e0, e1, stage));
+      parts.parts[part].lost += cross(e1, h * f.force_across(e0, e1, stage));
     }
   };
-  add_dashpots(problem.items_of<SpringForce>()), add_dashpots(problem.items_of<RadialForce>());
+  add_moments(problem.items_of<SpringForce>()), add_moments(problem.items_of<RadialForce>());
   bool any = false;
   for (Part& part : parts.parts) {
     part.is_due = part.is_kept && part.mass > 0;

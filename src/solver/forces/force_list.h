@@ -38,6 +38,9 @@ struct SpringForce {
     const Dashpot dashpot(e0, e1, s, length == 0);
     return (-damping / s.h * dashpot.along) * dashpot.n;
   }
+  /// What an end-point step takes along the line at its start, and not at its end, where it takes moments.
+  bool may_act_across() const { return has_dashpot(); }
+  Vec3 force_across(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return dashpot_force(e0, e1, s); }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!has_dashpot()) return 0;
     const double along = Dashpot(e0, e1, s, length == 0).along;
@@ -111,9 +114,8 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
 
 /// The list of implicit forces.
 template <template <class> class Pool>
-using ForcePools =
-    std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>, Pool<GyroscopicForce>,
-               Pool<VelocityForce>>;
+using ForcePools = std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>,
+                              Pool<GyroscopicForce>, Pool<VelocityForce>>;
 
 static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce> &&
               ImplicitForce<RadialForce> && ImplicitForce<GyroscopicForce> && ImplicitForce<VelocityForce>);

@@ -45,6 +45,14 @@ struct RadialForce {
     return law->damping(at(norm(s.instant ? e1 : e0), dashpot.along / s.h), parameters.data()).value * dashpot.n;
   }
 
+  /// See SpringForce.
+  bool may_act_across() const { return has_dashpot() || law->has_energy(); }
+  Vec3 force_across(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    Vec3 f = has_dashpot() ? dashpot_force(e0, e1, s) : Vec3{};
+    if (const double r0 = norm(e0); attracts_more_nearby(r0)) f -= (pull(r0).value / (r0 + tiny)) * e0;
+    return f;
+  }
+
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_damping() && !law->has_drag()) return 0;
     const double r0 = norm(s.instant ? e1 : e0), along = Dashpot(e0, e1, s).along;
@@ -57,9 +65,7 @@ struct RadialForce {
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0), r1 = norm(e1);
     const Vec3 n1 = (1 / (r1 + tiny)) * e1;
-    const Slope p = s.midpoint                 ? pull_between(r0, r1)
-                    : attracts_more_nearby(r0) ? Slope{}
-                                               : pull(r1);
+    const Slope p = s.midpoint ? pull_between(r0, r1) : attracts_more_nearby(r0) ? Slope{} : pull(r1);
     const double length = s.midpoint ? r0 + r1 + tiny : r1 + tiny;
     double along = p.slope, across = p.value / length;
     if (s.clamp) along = std::max(along, 0.0), across = std::max(across, 0.0);

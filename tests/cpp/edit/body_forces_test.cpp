@@ -62,7 +62,8 @@ TEST(BodyTorque, gives_a_free_body_its_angular_momentum_in_every_mode_however_fa
         (void)free.system.step(1 / hz);
       }
       const Vec3 reached = free.system.bodies().angular_momentum(free.box);
-      EXPECT_NEAR(norm(reached - Vec3{0, strength, 0}), 0, 1e-4 * strength) << "mode " << int(mode) << ", " << hz << " Hz";
+      EXPECT_NEAR(norm(reached - Vec3{0, strength, 0}), 0, 1e-4 * strength)
+          << "mode " << int(mode) << ", " << hz << " Hz";
       EXPECT_LT(norm(free.system.momentum()), 1e-10);
     }
 }

@@ -60,7 +60,8 @@ TEST(Expression, errors_offer_the_names_that_are_possible_there) {
 TEST(Expression, refuses_a_parameter_that_the_text_does_not_have) {
   const std::string names[] = {"k", "z0"};
   require_mentioned("y = k*r + z0", names);
-  for (const char* text : {"y = k*r", "y = k*z01 + az0"}) EXPECT_THROW(require_mentioned(text, names), std::invalid_argument);
+  for (const char* text : {"y = k*r", "y = k*z01 + az0"})
+    EXPECT_THROW(require_mentioned(text, names), std::invalid_argument);
 }
 
 TEST(Expression, errors_point_at_the_place_and_suggest) {

@@ -19,7 +19,7 @@ TEST_P(Promises, are_kept_in_random_scenes) {
 INSTANTIATE_TEST_SUITE_P(All, Promises,
                          testing::Values(Promise::energy, Promise::velocities, Promise::momenta, Promise::force,
                                          Promise::conflict, Promise::order, Promise::turns, Promise::bounds,
-                                         Promise::rescue),
+                                         Promise::rescue, Promise::field, Promise::torque),
                          [](const auto& info) { return name_of(info.param); });
 
 }  // namespace

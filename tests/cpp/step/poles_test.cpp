@@ -29,8 +29,8 @@ TEST(AttractingPoles, do_not_catch_the_bodies_of_a_figure_of_eight) {
       EXPECT_EQ(report.unconverged, 0) << "mode " << int(mode) << ", step " << i;
       EXPECT_LT(report.energy.lost, 1.3) << "of 1.3 J";
       for (std::size_t k = 0; k < 3; ++k)
-        nearest = std::min(nearest, norm(system.particles().position(bodies[k]) -
-                                         system.particles().position(bodies[(k + 1) % 3])));
+        nearest = std::min(
+            nearest, norm(system.particles().position(bodies[k]) - system.particles().position(bodies[(k + 1) % 3])));
     }
     EXPECT_GT(nearest, 0.1) << "mode " << int(mode);
   }

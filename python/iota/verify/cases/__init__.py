@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All verifications, in the order of the report. A new one is a function that takes a Run, and a line here."""
 
-from iota.verify.cases import accuracy, chains, classical, conservation, linkages, newton, sizes, sleep, tops
+from iota.verify.cases import accuracy, chains, classical, conservation, held, linkages, newton, sizes, sleep, tops
 from iota.verify.run import Case
 
 CASES = [
@@ -23,6 +23,7 @@ CASES = [
         classical.spring_chain,
         classical.orbit,
         classical.oscillator,
+        held.held_forces,
         conservation.momenta,
         accuracy.angular_momentum,
         conservation.energy,

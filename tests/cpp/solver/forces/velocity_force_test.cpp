@@ -34,7 +34,8 @@ TEST(VelocityForce, has_the_stiffness_that_differences_give) {
       const std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
       for (int c = 0; c < 3; ++c) {
         const double step = 1e-3;  // it is linear
-        const Vec3 slope = (-0.5 / step) * (f.force(e0, e1 + step * axes[c], stage) - f.force(e0, e1 - step * axes[c], stage));
+        const Vec3 slope =
+            (-0.5 / step) * (f.force(e0, e1 + step * axes[c], stage) - f.force(e0, e1 - step * axes[c], stage));
         for (int r = 0; r < 3; ++r) EXPECT_NEAR(k.m[r][c], dot(axes[r], slope), 1e-8 * (1 + norm(slope)));
       }
     }
