@@ -123,8 +123,9 @@ std::optional<std::string> check_field(std::uint64_t seed) {
     return text("accurate is ", errors[2], " m off at ", 4 * hz, " Hz, and tells ", told);
   const bool is_end_point = mode == IntegrationMode::plausible || mode == IntegrationMode::robust;
   const double order = is_end_point ? 2 : 4, most = is_end_point ? 0.2 : 0.05, least = is_end_point ? 1e-4 : 1e-5;
+  const double slack = is_end_point ? 2.5 : 1.7;  // where two errors nearly cancel in the coarser steps
   const double expected = std::max(errors[0] / (order * order), errors[1] / order);
-  if (mode != IntegrationMode::accurate && errors[1] < most && errors[2] > 1.7 * expected + least)
+  if (mode != IntegrationMode::accurate && errors[1] < most && errors[2] > slack * expected + least)
     return text("in mode ", int(mode), " the errors are ", errors[0], ", ", errors[1], " and ", errors[2], " m from ",
                 hz, " Hz on");
   return {};
