@@ -98,7 +98,7 @@ void Contacts::take(Model& model, std::uint32_t body, std::span<const Found> fou
       has_changed = has_changed || c.count != static_cast<std::uint32_t>(b.rank) || c.points != points;
       c.points = points, c.count = static_cast<std::uint32_t>(b.rank);
       const Vec3 arm = half.back(f.touch.place - f.touch.center);
-      c.center = weights.of_place(f.touch.center), c.place = weights.of_place(f.touch.center + arm);
+      c.center = weights.of(f.touch.center), c.place = weights.of(f.touch.center + arm);
       c.origin = f.touch.origin, c.normal = f.touch.normal, c.radius = f.touch.radius;
       c.friction = std::sqrt(model.material(body)->friction * model.material(f.other)->friction);
       const Vec3 velocity = place_of(c, c.center, [&](std::uint32_t p) { return model.velocity(p); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/mat3.h"
+#include "model/basis_weights.h"
 #include "model/restructure.h"
 
 #include <algorithm>
@@ -37,31 +38,6 @@ double distance_from_span(Vec3 r, const std::array<Vec3, 3>& axes, int count) {
   for (int i = 0; i < count; ++i) r -= dot(r, axes[i]) * axes[i];
   return norm(r);
 }
-
-/// Affine coordinates in a body's basis points, by the Gram matrix of the vectors from the first to the others.
-class BasisWeights {
- public:
-  BasisWeights(const Structure& model, std::uint32_t body_slot) {
-    const Body& body = model.bodies[body_slot];
-    origin_ = model.position(body.basis[0]);
-    for (int i = 1; i < body.rank; ++i) vectors_[i - 1] = model.position(body.basis[i]) - origin_;
-    Mat3 gram;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors_[i], vectors_[j]);
-    gram_ = symmetric_eigen(gram);
-  }
-  /// The weights of the point nearest to `place` in the span of the basis.
-  std::array<double, 4> of(const Vec3& place) const {
-    const Vec3 r = place - origin_;
-    const Vec3 c = solve_semidefinite(gram_, {dot(vectors_[0], r), dot(vectors_[1], r), dot(vectors_[2], r)}, 1e-15);
-    return {1 - c.x - c.y - c.z, c.x, c.y, c.z};
-  }
-
- private:
-  Vec3 origin_;
-  std::array<Vec3, 3> vectors_;
-  SymmetricEigen gram_;
-};
 
 }  // namespace
 

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/basis_weights.h"
 
-#include "math/mat3.h"
-
 namespace iota::model {
 
-BasisWeights::BasisWeights(const Structure& structure, std::uint32_t slot) {
-  const Body& body = structure.bodies[slot];
-  origin_ = structure.position(body.basis[0]);
-  std::array<Vec3, 3> vectors;
-  for (int k = 1; k < body.rank; ++k)
-    vectors[static_cast<std::size_t>(k - 1)] = structure.position(body.basis[static_cast<std::size_t>(k)]) - origin_;
+BasisWeights::BasisWeights(const Structure& model, std::uint32_t body_slot) {
+  const Body& body = model.bodies[body_slot];
+  origin_ = model.position(body.basis[0]);
+  for (int i = 1; i < body.rank; ++i) vectors_[i - 1] = model.position(body.basis[i]) - origin_;
   Mat3 gram;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors[i], vectors[j]);
-  const SymmetricEigen eigen = symmetric_eigen(gram);
-  const auto solve = [&](const Vec3& v) {
-    return solve_semidefinite(eigen, {dot(vectors[0], v), dot(vectors[1], v), dot(vectors[2], v)}, 1e-12);
-  };
-  const Vec3 x = solve({1, 0, 0}), y = solve({0, 1, 0}), z = solve({0, 0, 1});
-  duals_ = {Vec3{x.x, y.x, z.x}, Vec3{x.y, y.y, z.y}, Vec3{x.z, y.z, z.z}};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors_[i], vectors_[j]);
+  gram_ = symmetric_eigen(gram);
+}
+
+std::array<double, 4> BasisWeights::of(const Vec3& place) const {
+  const Vec3 r = place - origin_;
+  const Vec3 c = solve_semidefinite(gram_, {dot(vectors_[0], r), dot(vectors_[1], r), dot(vectors_[2], r)}, 1e-15);
+  return {1 - c.x - c.y - c.z, c.x, c.y, c.z};
 }
 
 }  // namespace iota::model

@@ -92,8 +92,8 @@ ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, 
   for (int r = 0; r < C::rows; ++r)
     if (C::is_tangent(r)) g[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r));
   const ConeState next =
-      c.switch_state(pool.states.cone(k * C::rows), pool.multiplier(k), g, natural_compliances(problem, c, stage, x).data(),
-                     stage.tolerance * c.reference_length());
+      c.switch_state(pool.states.cone(k * C::rows), pool.multiplier(k), g,
+                     natural_compliances(problem, c, stage, x).data(), stage.tolerance * c.reference_length());
   // Positions and impulses have no friction.
   return stage.is_projection() && next.mode != ConeState::Mode::open ? ConeState{ConeState::Mode::slips, 1} : next;
 }

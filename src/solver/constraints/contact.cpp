@@ -9,8 +9,8 @@ namespace iota::solver {
 namespace {
 
 /// The friction that would hold the point at its present slip: z = lambda + (s - c_t lambda) / k.
-struct Trial {
-  Trial(const ContactConstraint& c, const double* multipliers, const double* g, const double* compliances)
+struct TrialFriction {
+  TrialFriction(const ContactConstraint& c, const double* multipliers, const double* g, const double* compliances)
       : natural(std::max(compliances[1], compliances[2])) {
     for (std::size_t i = 0; i < 2; ++i)
       force[i] = multipliers[1 + i] + (g[1 + i] - c.compliance * multipliers[1 + i]) / natural;
@@ -37,7 +37,7 @@ ConeState ContactConstraint::switch_state(ConeState now, const double* multiplie
   if (now.mode == ConeState::Mode::open && !(g[0] < -tolerance)) return now;
   const double push = -multipliers[0];
   if (natural[0] * push - (g[0] + compliance_of(0) * push) < -tolerance) return {ConeState::Mode::open};
-  const Trial trial(*this, multipliers, g, natural);
+  const TrialFriction trial(*this, multipliers, g, natural);
   const double beyond = trial.natural * (trial.size - largest_friction(multipliers));
   if (now.slips()) return beyond < -tolerance ? ConeState{} : now;
   return beyond > tolerance ? slips : ConeState{};
@@ -51,7 +51,7 @@ ConeEquations ContactConstraint::equations(ConeState state, const double* multip
     e.value[r] = g[r] - soft * multipliers[r], e.by_multiplier[r][r] = -soft;
   }
   if (!state.slips()) return e;
-  const Trial trial(*this, multipliers, g, natural);
+  const TrialFriction trial(*this, multipliers, g, natural);
   const double k = trial.natural;
   const double bound = state.direction == 0 ? 0 : largest_friction(multipliers);
   const double d[2] = {trial.size > 0 ? trial.force[0] / trial.size : 0,

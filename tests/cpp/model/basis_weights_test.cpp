@@ -25,8 +25,8 @@ TEST(BasisWeights, give_back_places_in_the_span_of_the_basis_and_the_nearest_one
     };
     Vec3 inside;
     for (int k = 0; k < rank; ++k) inside += ((k + 1.0) / (rank * (rank + 1) / 2.0)) * corners[k];
-    EXPECT_LT(norm(sum(weights.of_place(inside)) - inside), 1e-12) << rank;
-    const Vec3 outside{3, -2, 1}, nearest = sum(weights.of_place(outside));
+    EXPECT_LT(norm(sum(weights.of(inside)) - inside), 1e-12) << rank;
+    const Vec3 outside{3, -2, 1}, nearest = sum(weights.of(outside));
     for (int k = 1; k < rank; ++k) EXPECT_NEAR(dot(outside - nearest, corners[k] - corners[0]), 0, 1e-10) << rank;
   }
 }
