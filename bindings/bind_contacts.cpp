@@ -29,7 +29,8 @@ void bind_material(nb::module_& module) {
           nb::kw_only(), "friction"_a = Material{}.friction)
       .def_ro("friction", &Material::friction)
       .def(
-          "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator())
+          "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator(),
+          nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__hash__", [](const Material& self) { return std::hash<double>{}(self.friction); })
       .def("__repr__", [](const Material& self) { return text("Material(friction=", self.friction, ")"); });
 }
@@ -72,7 +73,9 @@ void bind_contacts(nb::module_& module) {
   def_pickled(impact, &Impact::position, &Impact::speed);
   impact.def_ro("position", &Impact::position, "World, m.")
       .def_ro("speed", &Impact::speed, "Of the approach, m/s.")
-      .def("__eq__", [](const Impact& a, const Impact& b) { return a == b; }, nb::is_operator());
+      .def(
+          "__eq__", [](const Impact& a, const Impact& b) { return a == b; }, nb::is_operator(),
+          nb::sig("def __eq__(self, other: object, /) -> bool"));
   nb::class_<ContactView>(module, "ContactPoint", "A place where a body touches another one, see `Body.contacts`.",
                           nb::type_slots(handle_slots<ContactView>))
       .def_prop_ro(

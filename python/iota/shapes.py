@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import copyreg
+from collections.abc import Callable
 from typing import Any, get_args
 
 from iota._core import Mesh, Shape
@@ -34,7 +35,7 @@ def from_json(data: dict[str, Any]) -> Shape:
     return shape
 
 
-def _pickled(shape: Shape) -> tuple[type[Any], tuple[Any, ...]]:
+def _pickled(shape: Shape) -> tuple[Callable[..., Shape], tuple[Any, ...]]:
     if isinstance(shape, Mesh):
         return _mesh, (shape.vertices, shape.triangles, shape.closed)
     return type(shape), tuple(getattr(shape, name) for name in shape.sizes)

@@ -39,7 +39,7 @@ class Outlines {
     place(body);
     return tree_[body];
   }
-  /// Where it was placed last.
+  /// As it was placed last.
   const Outline& described(std::uint32_t body) const { return tree_[body]; }
   ///@}
 

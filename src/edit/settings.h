@@ -30,7 +30,7 @@ struct SetUsualRadius {
   static constexpr bool keeps_energy = true;
   double value;
 };
-/// Of all bodies that can move and have no material of their own.
+/// The material of all bodies that can move and have none of their own.
 struct SetUsualMaterial {
   static constexpr bool keeps_energy = true;
   bool touches;

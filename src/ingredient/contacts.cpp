@@ -9,12 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace iota::ingredient {
 
 namespace {
 
-/// Of the natural compliance of a row, h^2 sum w^2/m. The first makes the forces of a box on four corners unique, and lets
+/// Shares of the natural compliance of a row, h^2 sum w^2/m. The first makes the forces of a box on four corners unique, and lets
 /// it sink by 1e-8 of the way that it would fall in a step. The second keeps Newton's method from cycling between sticking
 /// and slipping corners; a contact that sticks yields by a hundredth of that way, once (docs/contact.md).
 constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
@@ -28,13 +29,22 @@ Vec3 place_of(const Contact& c, const std::array<double, 4>& weights, const auto
   return sum;
 }
 
+bool has_basis(const Contact& c, const model::Body& body) {
+  return c.count == body.rank && std::equal(body.basis.begin(), body.basis.begin() + body.rank, c.points.begin());
+}
+
+void take_basis(Contact& c, const model::Body& body) {
+  c.points = {}, c.count = body.rank;
+  std::copy_n(body.basis.begin(), body.rank, c.points.begin());
+}
+
 /// The turn of a body in the first half of a step of the mid-point rule, by tan(w h/2).
 class HalfTurn {
  public:
   HalfTurn(const Vec3& spin, double h) : tangent_(0.5 * h * norm(spin)), axis_(spin) {
     if (tangent_ > 0) axis_ = (1 / norm(spin)) * spin;
   }
-  /// Where the point of the body is now that will be at `arm` in the middle of the step. It is a little further out, so
+  /// The place now of the point of the body that will be at `arm` in the middle of the step. It is a little further out, so
   /// that its chord is as long as the way that the body rolls in this time: else what rolls slips by w^2 h^2/8 of it.
   Vec3 back(const Vec3& arm) const {
     const Vec3 along = dot(axis_, arm) * axis_, across = arm - along;
@@ -93,10 +103,8 @@ void Contacts::take(Model& model, std::uint32_t body, std::span<const Found> fou
                                         : *known;
       has_changed = has_changed || is_new;
       Contact& c = model.contacts[slot];
-      std::array<std::uint32_t, 4> points{};
-      std::copy_n(b.basis.begin(), b.rank, points.begin());
-      has_changed = has_changed || c.count != static_cast<std::uint32_t>(b.rank) || c.points != points;
-      c.points = points, c.count = static_cast<std::uint32_t>(b.rank);
+      has_changed = has_changed || !has_basis(c, b);
+      take_basis(c, b);
       const Vec3 arm = half.back(f.touch.place - f.touch.center);
       c.center = weights.of(f.touch.center), c.place = weights.of(f.touch.center + arm);
       c.origin = f.touch.origin, c.normal = f.touch.normal, c.radius = f.touch.radius;
@@ -130,6 +138,25 @@ void Contacts::forget_body(Model& model, std::uint32_t body) {
     model.contacts.destroy(slot);
     if (of != body) model.touch_rows(of);
   }
+}
+
+void Contacts::drop(Model& model, std::uint32_t particle) { end(model, model.particles[particle].body); }
+
+void Contacts::absorb(Model& model, std::uint32_t q, std::uint32_t) { drop(model, q); }
+
+// The body may have another basis, in the same place.
+void Contacts::prepare(Model& model, std::uint32_t body) {
+  const model::Body& b = model.bodies[body];
+  std::optional<model::BasisWeights> weights;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot, const Contact& seen) {
+    if (has_basis(seen, b)) return;
+    Contact& c = model.contacts[slot];
+    const auto position = [&](std::uint32_t p) { return model.position(p); };
+    const Vec3 center = place_of(c, c.center, position), place = place_of(c, c.place, position);
+    if (!weights) weights.emplace(model, body);
+    take_basis(c, b);
+    c.center = weights->of(center), c.place = weights->of(place);
+  });
 }
 
 bool Contacts::holds(const Model& model, std::uint32_t particle) {

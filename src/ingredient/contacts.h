@@ -47,6 +47,9 @@ class Contacts : public NoAnswers {
   static bool holds(const Model&, std::uint32_t particle);
   static void forget_body(Model&, std::uint32_t body);
   static void inertia_changed(Model& model, std::uint32_t body) { end(model, body); }
+  static void absorb(Model&, std::uint32_t q, std::uint32_t p);
+  static void drop(Model&, std::uint32_t particle);
+  static void prepare(Model&, std::uint32_t body);
 
   struct Found {
     std::uint32_t other;
@@ -59,7 +62,7 @@ class Contacts : public NoAnswers {
   };
   /// Replaces the contacts of a body for a step. Those that it had before keep their forces.
   static void take(Model&, std::uint32_t body, std::span<const Found>, const Motion&);
-  /// Where it touches, m.
+  /// The place where it touches, m.
   static Vec3 place(const Model&, const Contact&);
   /// The hardest of those that began to carry in the last step.
   static Impact hardest_impact(const Model&);

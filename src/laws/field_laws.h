@@ -23,7 +23,7 @@ struct FieldState {
 struct NoEnergy {
   static constexpr bool has_energy = false, has_drag = false;
   static double energy(const FieldState&, const double*) { return 0; }  ///< J; the force is its negative gradient
-  /// Of a field with a drag: N s/m, minus the derivative of the force by the velocity.
+  /// The drag of a field that has one: N s/m, minus the derivative of the force by the velocity.
   static double drag(const double* p) { return p[3]; }
 };
 

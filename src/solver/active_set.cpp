@@ -201,7 +201,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   return changed;
 }
 
-// Of 40 hinges with friction 37 stick at the start of a fall: a beam, whose rows switched for hundreds of iterations (590
+// Most of 40 hinges with friction stick at the start of a fall: a beam, whose rows switched for hundreds of iterations (590
 // medians of the time without friction, and the step was given up). Rows that yield by a part of their natural compliance
 // find their sides in two iterations, for any number of hinges; less and less of it leads to the sides without it.
 void ActiveSet::soften(Problem& problem, const Stage& stage, const Vec3* x) {

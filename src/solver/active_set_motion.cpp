@@ -18,7 +18,7 @@ double little(const C& c, double size, double rate, double h) {
   return 1e-6 * (size + std::abs(rate)) + 1e-9 * c.reference_length() / h;
 }
 
-/// Of a one-sided row: the direction in which it opens.
+/// The direction in which a one-sided row opens.
 int opening(const RowLaw& law) { return law.upper == 0 ? 1 : -1; }
 
 }  // namespace

@@ -43,7 +43,7 @@ class Assembly {
   void follow(Problem&);
   /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
   bool place_forces(Problem&) const;
-  /// Those that are loaded anew for each step. Each is on points of one body, which are coupled.
+  /// Forces that are loaded anew for each step. Each is on points of one body, which are coupled.
   void place_forces_by_velocity(Problem&) const;
   /// From now on adds the times of forces, factors and solutions to `times`; null: they are not measured.
   void add_times_to(StepTimes* times) { times_ = times; }

@@ -84,7 +84,7 @@ double Solved::external_work() const {
   return work;
 }
 
-// Of attracting poles by the end-point rule: as of held forces, it counts as work from outside.
+// The work of attracting poles by the end-point rule, as that of held forces, counts as work from outside.
 double Solved::holding_error() const {
   double error = 0;
   for (const auto& f : problem.items_of<RadialForce>())

@@ -10,7 +10,7 @@ namespace iota::solver {
 
 namespace {
 
-/// What turns about an axis: the angle of its points in the step, and the one that their velocities say.
+/// Points that turn about an axis: the angle of its points in the step, and the one that their velocities say.
 class Turning {
  public:
   Turning(const Vec3& axis, const Vec3& center, const Vec3& velocity, const Vec3& chord, double h)
@@ -96,7 +96,7 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
     if (piece.kinetic - 0.5 * dot(spin, piece.angular) <= same * piece.kinetic)
       turn_part(pieces_, k, unit(hangs ? problem.gravity : piece.angular));
   }
-  // What turns about an axle at rest, its center of mass on it. It keeps the angular momentum of a free piece only if this is
+  // Bodies that turn about an axle at rest, its center of mass on it. It keeps the angular momentum of a free piece only if this is
   // along the axle.
   if (are_members_due_) find_velocities(problem, members_);
   for (std::uint32_t k = 0; k < members_.parts.size() && are_members_due_; ++k) {

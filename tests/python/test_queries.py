@@ -264,7 +264,7 @@ def test_an_obstacle_is_a_static_body_that_nothing_is_tied_to_and_that_no_sum_co
     ]
     state = system.snapshot()
     for edit in refused:
-        with pytest.raises(ValueError, match=r"obstacle|no particles|shape"):
+        with pytest.raises(ValueError, match=r"obstacle|no particles|shape|static"):
             edit()
     assert system.snapshot() == state, "what is refused changes nothing"
     with system.edit():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the ground of a world is."""
+"""The height and the material of the ground of a world."""
 
 from __future__ import annotations
 

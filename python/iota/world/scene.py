@@ -111,12 +111,13 @@ class Scene(Part):
 
     def keep_ground(self, height: float | None = None) -> None:
         """Makes the ground, if there is none: the script may have restored a state of before it. height: m; None: the former."""
-        if not isinstance(self._system, System):
+        system: object = self._system
+        if not isinstance(system, System):
             self._height = self._height if height is None else height
             return
         if self._ground is not None and self._ground.alive and self._ground.name == GROUND:  # as in nearly each step
             return
-        self._ground = next(filter(_is_ground, self._system.obstacles), None)
+        self._ground = next(filter(_is_ground, system.obstacles), None)
         if self._ground is None and height is not None:
             self._height = height
         if self._ground is None and self._height is not None:
@@ -124,7 +125,7 @@ class Scene(Part):
             self._ground.name = GROUND
         if self._ground is not None:
             self._ground.material = self._ground.material or MATERIAL
-            self._system.usual_material = self._system.usual_material or MATERIAL
+            system.usual_material = system.usual_material or MATERIAL
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between

@@ -38,7 +38,7 @@ struct SpringForce {
     const Dashpot dashpot(e0, e1, s, length == 0);
     return (-damping / s.h * dashpot.along) * dashpot.n;
   }
-  /// What an end-point step takes along the line at its start, and not at its end, where it takes moments.
+  /// Forces that an end-point step takes along the line at its start, and not at its end, where it takes moments.
   bool may_act_across() const { return has_dashpot(); }
   Vec3 force_across(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return dashpot_force(e0, e1, s); }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {

@@ -85,7 +85,7 @@ struct RadialForce {
     const laws::Elastic u = law->elastic(at(r), parameters.data());
     return u.curvature < 0 && u.slope > 0;
   }
-  /// What the work of a force that is held at the start of a step differs by from the change of its energy, J.
+  /// The difference of the work of a force that is held at the start of a step from the change of its energy, J.
   double holding_error(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0);
     if (s.midpoint || s.instant || !attracts_more_nearby(r0)) return 0;

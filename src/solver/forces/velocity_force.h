@@ -21,7 +21,7 @@ struct VelocityForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     return s.instant ? part.at_an_instant(e1 - e0) : part.force(start, at_end(e0, e1, s));
   }
-  /// Of the drag alone, J. The turning part does none by the mean velocity; by the end-point rule, which moves a place by
+  /// The energy that the drag alone takes, J. The turning part does none by the mean velocity; by the end-point rule, which moves a place by
   /// the velocity at the end, it is that of the scheme's own error.
   double work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Vec3 f = force(e0, e1, s);

@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """All verifications, in the order of the report. A new one is a function that takes a Run, and a line here."""
 
-from iota.verify.cases import accuracy, chains, classical, conservation, held, linkages, newton, sizes, sleep, tops
+from iota.verify.cases import (
+    accuracy,
+    chains,
+    classical,
+    conservation,
+    contact,
+    held,
+    linkages,
+    newton,
+    sizes,
+    sleep,
+    tops,
+)
 from iota.verify.run import Case
 
 CASES = [
@@ -33,5 +45,6 @@ CASES = [
         sizes.masses,
         sizes.conflicts,
         sleep.sleep,
+        contact.contact,
     )
 ]

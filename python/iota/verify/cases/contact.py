@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rest, sliding and rolling on obstacles against closed forms."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+import iota
+from iota.verify.run import Run
+
+G = 9.81  # m/s2
+
+
+def _on_a_slope(angle: float, friction: float) -> iota.System:
+    """Level ground, and gravity turned instead."""
+    system = iota.System(gravity=(G * math.sin(angle), -G * math.cos(angle), 0))
+    material = iota.Material(friction=friction)
+    system.obstacle(iota.HalfSpace((0, 1, 0)), material=material)
+    system.usual_material = material
+    return system
+
+
+def _step(system: iota.System, seconds: float, dt: float) -> None:
+    for _ in range(round(seconds / dt)):
+        report = system.step(dt)
+        assert report.unconverged == 0
+
+
+def contact(run: Run) -> None:
+    """Contact with the ground.
+
+    Boxes, balls and cylinders on a plane with Coulomb friction, by rows of the same solve as joints. Expected values are
+    closed forms: the way of a sliding box, the speed at which a sliding ball begins to roll, the angles at which a box slides
+    and a tower tips, the weight on four corners.
+    """
+    dt = run.size(1 / 240, 1 / 120)
+    _sliding(run, dt)
+    _rolling(run, dt)
+    _slopes(run, dt)
+    _resting(run, dt)
+
+
+def _sliding(run: Run, dt: float) -> None:
+    for friction in (0.1, 0.5, 1.0):
+        system = _on_a_slope(0, friction)
+        box = system.body(shape=iota.Box((0.4, 0.1, 0.4)), position=(0, 0.05, 0), velocity=(2, 0, 0))
+        _step(system, 2.5, dt)
+        way = 2**2 / (2 * friction * G)
+        run.near(f"way of a box at 2 m/s, friction {friction}, m", box.center_of_mass.x, way, 1e-3)
+        run.at_most(f"its speed afterwards, friction {friction}, m/s", abs(box.velocity), 1e-6)
+
+
+def _rolling(run: Run, dt: float) -> None:
+    speeds: dict[str, list[float]] = {}
+    shapes: dict[str, tuple[iota.Shape, float]] = {
+        "ball": (iota.Sphere(0.1), 2 / 5),
+        "cylinder": (iota.Cylinder(0.1, 0.2), 1 / 2),
+    }
+    across = (0, math.sqrt(0.5), 0, math.sqrt(0.5))  # the axis along z
+    for name, (shape, inertia) in shapes.items():
+        system = _on_a_slope(0, 0.3)
+        body = system.body(shape=shape, position=(0, 0.1, 0), orientation=across, velocity=(2, 0, 0))
+        for _ in range(round(1.5 / dt)):
+            system.step(dt)
+            speeds.setdefault(name, []).append(body.velocity.x)
+        run.near(f"speed of a {name} that slid at 2 m/s and rolls, m/s", speeds[name][-1], 2 / (1 + inertia), 1e-4)
+        before = body.velocity.x
+        _step(system, run.size(10, 2), dt)
+        run.near(f"the {name}'s speed later, of that", body.velocity.x / before, 1, 1e-5)
+        run.near(f"height of the {name}'s center, m", body.center_of_mass.y, 0.1, 1e-6)
+
+    def draw(figure: Any) -> None:
+        axes = figure.subplots()
+        for name, (_, inertia) in shapes.items():
+            (line,) = axes.plot(dt * np.arange(len(speeds[name])), speeds[name], label=name)
+            axes.axhline(2 / (1 + inertia), color=line.get_color(), ls=":", lw=1)
+        axes.set(xlabel="time, s", ylabel="speed, m/s")
+        axes.legend()
+
+    run.picture("contact", "What slides begins to roll; dotted: the speed by its inertia.", draw, size=(5, 3))
+
+
+def _slopes(run: Run, dt: float) -> None:
+    limit = math.atan(0.6)
+    for share, name in ((0.999, "below"), (1.01, "above")):
+        angle = share * limit
+        system = _on_a_slope(angle, 0.6)
+        box = system.body(shape=iota.Box((0.4, 0.1, 0.4)), position=(0, 0.05, 0))
+        _step(system, 2, dt)
+        way = max(0.0, 2 * G * (math.sin(angle) - 0.6 * math.cos(angle)))
+        run.near(f"way on a slope {name} the angle of friction in 2 s, m", box.center_of_mass.x, way, 2e-3)
+    tips = math.atan(0.1 / 0.4)
+    for share, stands in ((0.995, True), (1.005, False)):
+        system = _on_a_slope(share * tips, 0.6)
+        tower = system.body(shape=iota.Box((0.1, 0.4, 0.1)), position=(0, 0.2, 0))
+        _step(system, 5, dt)
+        name = f"height of a tower at {share} of the angle at which it tips, m"
+        run.near(name, tower.center_of_mass.y, 0.2 if stands else 0.05, 1e-5)
+
+
+def _resting(run: Run, dt: float) -> None:
+    for size in (0.01, 1.0, 30.0):
+        system = _on_a_slope(0, 0.5)
+        box = system.body(shape=iota.Box((size, size, size)), position=(0, size / 2, 0))
+        _step(system, 3, dt)
+        run.at_most(f"a cube of {size} m sinks, of its size", abs(box.center_of_mass.y / size - 0.5), 1e-8)
+        forces = [point.force.y / (box.mass * G) for point in box.contacts]
+        run.near(f"least share of its weight on a corner, {size} m", min(forces, default=0), 0.25, 1e-3)
+        run.near(f"largest share, {size} m", max(forces, default=0), 0.25, 1e-3)

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of mode accurate by forces that are held over a step: against the motion at a tenth of the step.
+#include "held/holding_error.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota {
+namespace {
+
+TEST(HoldingError, of_a_field_that_changes_over_a_step_is_told_of_second_order_and_only_in_mode_accurate) {
+  const auto told = [](IntegrationMode mode, double h) {
+    System system({.gravity = {}, .mode = mode});
+    const BodyId rod = system.bodies().create();
+    (void)system.particles().create(rod, {0, 0, 0}, 1, {1, 0, 0});
+    (void)system.particles().create(rod, {0, 1, 0}, 1, {1, 0, 0});
+    (void)system.fields().create("fx = -30*x");
+    double largest = 0;
+    for (int i = 0; i < std::lround(1 / h); ++i) largest = std::max(largest, system.step(h).error);
+    return largest;
+  };
+  const double coarse = told(IntegrationMode::accurate, 1.0 / 60), fine = told(IntegrationMode::accurate, 1.0 / 120);
+  EXPECT_GT(coarse, 1e-4);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
+  EXPECT_EQ(told(IntegrationMode::energy_keeping, 1.0 / 60), 0);
+}
+
+}  // namespace
+}  // namespace iota
