@@ -28,9 +28,9 @@ Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
 
 double size_of(const Form& form) { return form.is_endless ? 1 : norm(form.box.high - form.box.low); }
 
-/// The plane that touches a solid nearest to a place. A place on the surface says nothing about the normal: a place further
-/// out does.
-std::optional<Plane> plane_of(const Solid& solid, const Vec3& place) {
+/// The plane that touches a solid nearest to a place of a body, whose middle is outside. A place on the surface says nothing
+/// about the normal: a place a little nearer to the middle does. An open mesh has its outside where the middle is.
+std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3& middle) {
   const Form& form = *solid.form;
   const Quaternion back = conjugate(solid.turn);
   const Vec3 local = rotate(back, place - solid.position);
@@ -39,19 +39,17 @@ std::optional<Plane> plane_of(const Solid& solid, const Vec3& place) {
     return Plane{solid.position, normal};
   }
   const auto closest = [&](const Vec3& p) { return form.mesh ? form.mesh->closest(p) : shape::closest(form.shape, p); };
-  const auto is_within = [&](const Vec3& p) {
-    return form.mesh ? form.mesh->is_within(p) : shape::is_within(form.shape, p);
-  };
   const double size = size_of(form);
-  Vec3 point = closest(local), away = local - point;
-  const bool is_inside = is_within(local);
+  const Vec3 point = closest(local), outwards = rotate(back, middle - solid.position) - point;
+  Vec3 away = local - point;
   if (!(norm(away) > vanishing * size)) {
-    const Vec3 outwards = point - 0.5 * (form.box.low + form.box.high);
-    if (!(norm(outwards) > 0)) return {};
-    const Vec3 further = point + (offset * size / norm(outwards)) * outwards;
+    if (!(norm(outwards) > vanishing * size)) return {};
+    const Vec3 further = point + std::min(1.0, offset * size / norm(outwards)) * outwards;
     away = further - closest(further);
-    if (is_within(further) || !(norm(away) > vanishing * size)) return {};
-  } else if (is_inside) {
+    if (!(norm(away) > 0)) return {};
+  } else if (form.mesh && !form.mesh->is_closed() ? dot(away, outwards) < 0
+             : form.mesh                          ? form.mesh->is_within(local)
+                                                  : shape::is_within(form.shape, local)) {
     away = -1.0 * away;
   }
   return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away))};
@@ -67,8 +65,8 @@ std::optional<Plane> plane_of(const Line& line, const Vec3& place) {
   return Plane{middle + line.radius * normal, normal};
 }
 
-/// The plane of the part that is nearest to a place.
-std::optional<Plane> plane_of(const Outline& other, const Vec3& place) {
+/// The plane of the part that is nearest to a place of a body.
+std::optional<Plane> plane_of(const Outline& other, const Vec3& place, const Vec3& middle) {
   std::optional<Plane> best;
   double least = 0;
   const auto take = [&](const std::optional<Plane>& plane) {
@@ -76,7 +74,7 @@ std::optional<Plane> plane_of(const Outline& other, const Vec3& place) {
     const double apart = dot(plane->normal, place - plane->origin);
     if (!best || apart < least) best = plane, least = apart;
   };
-  for (const Solid& solid : other.solids) take(plane_of(solid, place));
+  for (const Solid& solid : other.solids) take(plane_of(solid, place, middle));
   for (const Line& line : other.lines) take(plane_of(line, place));
   return best;
 }
@@ -154,8 +152,10 @@ const std::vector<Vec3>& TouchFinder::corners_of(const std::shared_ptr<const For
 
 void TouchFinder::find(const Outline& body, const Vec3& spin, const Outline& other, double within,
                        std::vector<Touch>& found) {
+  Vec3 middle;
+  for (const Line& line : body.lines) middle += (0.5 / static_cast<double>(body.lines.size())) * (line.a + line.b);
   const auto look = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius) {
-    const std::optional<Plane> plane = plane_of(other, center);
+    const std::optional<Plane> plane = plane_of(other, center, middle);
     if (!plane) return;
     const double gap = dot(plane->normal, center - plane->origin) - radius;
     if (!(gap <= within)) return;
@@ -163,13 +163,14 @@ void TouchFinder::find(const Outline& body, const Vec3& spin, const Outline& oth
         {part, feature, center, center - radius * plane->normal, plane->origin, plane->normal, radius, gap});
   };
   for (const Solid& solid : body.solids) {
+    middle = solid.position + rotate(solid.turn, 0.5 * (solid.form->box.low + solid.form->box.high));
     const auto to_world = [&](const Vec3& local) { return solid.position + rotate(solid.turn, local); };
     if (solid.form->mesh) {
       const std::vector<Vec3>& corners = corners_of(solid.form);
       for (std::uint32_t k = 0; k < corners.size(); ++k) look(solid.number, k, to_world(corners[k]), 0);
       continue;
     }
-    const std::optional<Plane> plane = plane_of(other, solid.position);
+    const std::optional<Plane> plane = plane_of(other, middle, middle);
     if (!plane) continue;
     const Vec3 down = rotate(conjugate(solid.turn), -1.0 * plane->normal);
     visit_features(solid.form->shape, down, rotate(conjugate(solid.turn), spin), [&](const Feature& feature) {

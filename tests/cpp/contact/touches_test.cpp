@@ -62,6 +62,23 @@ TEST(Touches, of_a_corner_on_a_face_know_its_normal) {
   }
 }
 
+TEST(Touches, of_a_corner_behind_an_open_mesh_are_on_the_side_of_the_middle_of_the_body) {
+  Outline floor;
+  floor.solids.push_back(
+      {make_open_form({{{-2, 0, -2}, {-2, 0, 2}, {2, 0, -2}, {2, 0, 2}}, {{0, 1, 2}, {1, 3, 2}}}), 1, {}, {}});
+  TouchFinder finder;
+  for (const double height : {0.0, 1e-3, -1e-3})
+    for (const double side : {1.0, -1.0}) {
+      std::vector<Touch> found;
+      finder.find(outline_of(Box{{0.2, 0.2, 0.2}}, {0.3, side * (0.1 + height), 0.2}, {}), {}, floor, 0.01, found);
+      ASSERT_EQ(found.size(), 4u) << height;
+      for (const Touch& touch : found) {
+        EXPECT_LT(norm(touch.normal - Vec3{0, side, 0}), 1e-9);
+        EXPECT_NEAR(touch.gap, height, 1e-12);
+      }
+    }
+}
+
 TEST(Touches, of_lines_are_at_their_ends_each_once) {
   const Outline ground = outline_of(HalfSpace{{0, 1, 0}}, {}, {});
   Outline rods;
