@@ -107,7 +107,8 @@ double finite_positive(double value, const char* name, const char* unit) {
 
 double finite_not_negative(double value, const char* name, const char* unit) {
   if (!(std::isfinite(value) && value >= 0))
-    raise_value(std::string(name) + " must be finite and at least 0 " + unit + ", not " + number_text(value));
+    raise_value(std::string(name) + " must be finite and at least 0" + (*unit ? " " : "") + unit + ", not " +
+                number_text(value));
   return value;
 }
 

@@ -19,17 +19,6 @@ constexpr double close = 1e-6;  ///< of a line's radius: a ray that comes so nea
 constexpr int most_marches = 1000;
 constexpr std::uint32_t fineness = 24;  ///< of the triangles of a torus: 0.9 % of its wire, 0.03 % of its radius inside
 
-Vec3 nearest_of_segment(const Vec3& a, const Vec3& b, const Vec3& place) {
-  const Vec3 along = b - a;
-  const double squared = dot(along, along);
-  return squared > 0 ? a + std::clamp(dot(place - a, along) / squared, 0.0, 1.0) * along : a;
-}
-
-/// Whether a place in its frame is inside.
-bool holds(const Form& form, const Vec3& local) {
-  return form.mesh ? form.mesh->is_within(local) : shape::is_within(form.shape, local);
-}
-
 double reach_of(const Bounds& box) {
   const auto most = [](double a, double b) { return std::max(std::abs(a), std::abs(b)); };
   return norm({most(box.low.x, box.high.x), most(box.low.y, box.high.y), most(box.low.z, box.high.z)});
@@ -42,7 +31,7 @@ std::optional<double> meet(const Line& line, const Vec3& from, const Vec3& unit,
   double gone = std::max(std::min(first, last) - line.radius, 0.0);
   for (int march = 0; march < most_marches && gone <= end; ++march) {
     const Vec3 place = from + gone * unit;
-    const double apart = norm(place - nearest_of_segment(line.a, line.b, place)) - line.radius;
+    const double apart = norm(place - nearest_of_middle(line, place)) - line.radius;
     if (apart <= close * line.radius) return gone;
     gone += apart;
   }
@@ -68,7 +57,7 @@ bool is_overlapped(const Solid& solid, const Solid& probe) {
   const auto local = [&](const Vec3& direction) {
     return rotate(back, support_of_probe(probe, rotate(solid.turn, direction)) - solid.position);
   };
-  if (holds(form, middle)) return true;
+  if (is_within(form, middle)) return true;
   if (const geometry::TriangleTree* const tree = form.mesh ? form.mesh.get() : form.surface.get()) {
     bool is_met = false;
     tree->near(middle, reach_of(probe.form->box), [&](const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -100,6 +89,20 @@ Bounds box_of(const Solid& solid) {
 }
 
 }  // namespace
+
+Vec3 closest(const Form& form, const Vec3& place) {
+  return form.mesh ? form.mesh->closest(place) : shape::closest(form.shape, place);
+}
+
+bool is_within(const Form& form, const Vec3& place) {
+  return form.mesh ? form.mesh->is_within(place) : shape::is_within(form.shape, place);
+}
+
+Vec3 nearest_of_middle(const Line& line, const Vec3& place) {
+  const Vec3 along = line.b - line.a;
+  const double squared = dot(along, along);
+  return squared > 0 ? line.a + std::clamp(dot(place - line.a, along) / squared, 0.0, 1.0) * along : line.a;
+}
 
 bool is_convex(const Shape& shape) {
   // Shapes that are not have triangles of their own, as a hull would close their holes.
@@ -137,12 +140,12 @@ Near near(const Outline& outline, const Vec3& place) {
   for (const Solid& solid : outline.solids) {
     const Form& form = *solid.form;
     const Vec3 local = rotate(conjugate(solid.turn), place - solid.position);
-    const Vec3 point = form.mesh ? form.mesh->closest(local) : shape::closest(form.shape, local);
-    const double apart = holds(form, local) ? -norm(local - point) : norm(local - point);
+    const Vec3 point = closest(form, local);
+    const double apart = is_within(form, local) ? -norm(local - point) : norm(local - point);
     if (apart < best.distance) best = {apart, solid.position + rotate(solid.turn, point)};
   }
   for (const Line& line : outline.lines) {
-    const Vec3 middle = nearest_of_segment(line.a, line.b, place), away = place - middle;
+    const Vec3 middle = nearest_of_middle(line, place), away = place - middle;
     const double length = norm(away);
     if (length - line.radius >= best.distance) continue;
     best = {length - line.radius, middle + line.radius * (length > 0 ? (1 / length) * away : Vec3{0, 1, 0})};

@@ -31,6 +31,10 @@ std::shared_ptr<const Form> make_open_form(Mesh);
 /// Whether each line between two points of a shape is in it.
 bool is_convex(const Shape&);
 
+/// The nearest point of its surface, and whether a place is inside; in its frame.
+Vec3 closest(const Form&, const Vec3& place);
+bool is_within(const Form&, const Vec3& place);
+
 struct Solid {
   std::shared_ptr<const Form> form;
   std::uint32_t number = 0;  ///< of the owner
@@ -44,6 +48,9 @@ struct Line {
   double radius = 0;
   Vec3 a, b;  ///< its ends
 };
+
+/// The point of its middle line that is nearest to a place.
+Vec3 nearest_of_middle(const Line&, const Vec3& place);
 
 /// The union of its parts.
 struct Outline {

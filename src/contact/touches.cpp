@@ -38,28 +38,22 @@ std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3&
     const Vec3 normal = rotate(solid.turn, unit(half->normal));
     return Plane{solid.position, normal};
   }
-  const auto closest = [&](const Vec3& p) { return form.mesh ? form.mesh->closest(p) : shape::closest(form.shape, p); };
   const double size = size_of(form);
-  const Vec3 point = closest(local), outwards = rotate(back, middle - solid.position) - point;
+  const Vec3 point = closest(form, local), outwards = rotate(back, middle - solid.position) - point;
   Vec3 away = local - point;
   if (!(norm(away) > vanishing * size)) {
     if (!(norm(outwards) > vanishing * size)) return {};
     const Vec3 further = point + std::min(1.0, offset * size / norm(outwards)) * outwards;
-    away = further - closest(further);
+    away = further - closest(form, further);
     if (!(norm(away) > 0)) return {};
-  } else if (form.mesh && !form.mesh->is_closed() ? dot(away, outwards) < 0
-             : form.mesh                          ? form.mesh->is_within(local)
-                                                  : shape::is_within(form.shape, local)) {
+  } else if (form.mesh && !form.mesh->is_closed() ? dot(away, outwards) < 0 : is_within(form, local)) {
     away = -1.0 * away;
   }
   return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away))};
 }
 
 std::optional<Plane> plane_of(const Line& line, const Vec3& place) {
-  const Vec3 along = line.b - line.a;
-  const double squared = dot(along, along);
-  const Vec3 middle =
-      squared > 0 ? line.a + std::clamp(dot(place - line.a, along) / squared, 0.0, 1.0) * along : line.a;
+  const Vec3 middle = nearest_of_middle(line, place);
   if (!(norm(place - middle) > 0)) return {};
   const Vec3 normal = unit(place - middle);
   return Plane{middle + line.radius * normal, normal};

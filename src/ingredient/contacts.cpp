@@ -56,6 +56,12 @@ class HalfTurn {
   Vec3 axis_;
 };
 
+void set_weights(solver::ContactConstraint& row, const Contact& c) {
+  row.weights = {};
+  std::copy(c.center.begin(), c.center.end(), row.weights[0].begin());
+  std::copy(c.place.begin(), c.place.end(), row.weights[1].begin());
+}
+
 /// Whether only contacts hold a body: easing out an overlap might pull others out of their places.
 bool is_on_its_own(const Model& model, std::uint32_t body) {
   if (model.articulates[model.bodies[body].articulate].count != 1) return false;
@@ -175,6 +181,7 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
         row.nodes[i] = node;
       }
       row.count = c.count;
+      set_weights(row, c);  // they tell the problem which arms are places of the world: Problem::set_origin
       problem.add(row, {owner, {}, slot});
     });
 }
@@ -185,10 +192,9 @@ void Contacts::load(const Model& model, const IslandNodes&, double h, Problem& p
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
-    row.weights = {};
+    set_weights(row, c);
     double of_center = 0, of_place = 0, size = 0;
     for (std::uint32_t k = 0; k < c.count; ++k) {
-      row.weights[0][k] = c.center[k], row.weights[1][k] = c.place[k];
       of_center += c.center[k] * c.center[k] / problem.mass[row.nodes[k]];
       of_place += c.place[k] * c.place[k] / problem.mass[row.nodes[k]];
       size = std::max(size, norm(problem.position[row.nodes[k]] - problem.position[row.nodes[0]]));
@@ -229,25 +235,32 @@ Impact Contacts::hardest_impact(const Model& model) {
   return hardest;
 }
 
+namespace {
+
+/// visit(contact): of all bodies, or of one.
+template <class Visit>
+void for_each_contact(const Scope& scope, Visit visit) {
+  const auto& contacts = scope.model.contacts;
+  const auto each = [&](std::uint32_t, const Contact& c) { visit(c); };
+  if (scope.is_whole())
+    contacts.for_each(each);
+  else
+    scope.for_each_body([&](std::uint32_t body, const model::Body&) { contacts.for_each_of(body, each); });
+}
+
+}  // namespace
+
 double Contacts::worst_gap(const Scope& scope) {
   solver::Largest worst;
-  const Model& model = scope.model;
-  if (model.contacts.size() == 0) return 0;
-  scope.for_each_body([&](std::uint32_t body, const model::Body&) {
-    model.contacts.for_each_of(body, [&](std::uint32_t, const Contact& c) {
-      const Vec3 center = place_of(c, c.center, [&](std::uint32_t p) { return model.position(p); });
-      worst.add(std::max(0.0, c.radius + c.depth - dot(c.normal, center - c.origin)));
-    });
+  for_each_contact(scope, [&](const Contact& c) {
+    const Vec3 center = place_of(c, c.center, [&](std::uint32_t p) { return scope.model.position(p); });
+    worst.add(std::max(0.0, c.radius + c.depth - dot(c.normal, center - c.origin)));
   });
   return worst.value;
 }
 
 void Contacts::add_energy(const Scope& scope, Energies& sum) {
-  const Model& model = scope.model;
-  if (model.contacts.size() == 0) return;
-  scope.for_each_body([&](std::uint32_t body, const model::Body&) {
-    model.contacts.for_each_of(body, [&](std::uint32_t, const Contact& c) { sum.potential += c.energy; });
-  });
+  for_each_contact(scope, [&](const Contact& c) { sum.potential += c.energy; });
 }
 
 void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {

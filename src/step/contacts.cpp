@@ -36,12 +36,8 @@ void keep_the_outermost(std::vector<contact::Touch>& touches, double size) {
 
 }  // namespace
 
-/// A lower bound.
 double ContactFinder::Obstacle::distance(const Vec3& place) const {
-  if (is_half_space) return dot(normal, place - origin);
-  const auto outside = [](double x, double low, double high) { return std::max({low - x, x - high, 0.0}); };
-  return norm({outside(place.x, box.low.x, box.high.x), outside(place.y, box.low.y, box.high.y),
-               outside(place.z, box.low.z, box.high.z)});
+  return is_half_space ? dot(normal, place - origin) : geometry::distance(box, place);
 }
 
 void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outlines) {

@@ -21,8 +21,8 @@ class ContactFinder {
     std::uint32_t body;
     geometry::Bounds box;
     bool is_half_space;
-    Vec3 origin, normal;  ///< of a half-space
-    double distance(const Vec3&) const;
+    Vec3 origin, normal;                 ///< of a half-space
+    double distance(const Vec3&) const;  ///< m, at most
   };
   void list_obstacles(model::Model&, contact::Outlines&);
   void find_of(model::Model&, contact::Outlines&, std::uint32_t body, double h);

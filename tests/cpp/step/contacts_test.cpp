@@ -53,6 +53,23 @@ TEST(Contacts, let_a_box_rest_where_it_lies) {
     }
 }
 
+TEST(Contacts, are_the_same_far_from_the_origin) {
+  for (const double far : {1e5, 1e7}) {
+    SCOPED_TRACE(far);
+    const Vec3 at{far, far, far};
+    System system;
+    const BodyId below = system.bodies().create_obstacle(HalfSpace{{0, 1, 0}}, at, {});
+    system.bodies().set_material(below, Material{0.5});
+    const BodyId box =
+        make_solid(system, Box{{0.4, 0.2, 0.4}}, {.position = at + Vec3{0, 0.1, 0}, .velocity = {1, 0, 0}});
+    const BodyId ball =
+        make_solid(system, Sphere{0.1}, {.position = at + Vec3{2, 0.1, 0}, .velocity = {1, 0, 0}, .spin = {0, 0, -10}});
+    run_for(system, 1, 1.0 / 120);
+    EXPECT_LT(norm(system.bodies().center_of_mass(box) - at - Vec3{1 / g, 0.1, 0}), 1e-4);
+    EXPECT_LT(norm(system.bodies().center_of_mass(ball) - at - Vec3{3, 0.1, 0}), 1e-6);
+  }
+}
+
 TEST(Contacts, stop_a_sliding_box_after_the_way_that_friction_says) {
   for (const double friction : {0.1, 0.4, 0.8}) {
     System system;

@@ -4,6 +4,7 @@
 
 #include "solver/integrator.h"
 #include "tests/cpp/allocations.h"
+#include "tests/cpp/solver/constraints/cone_derivatives.h"
 #include "tests/cpp/solver/small_problem.h"
 
 #include <gtest/gtest.h>
@@ -193,20 +194,10 @@ TEST(Contact, has_equations_with_the_derivatives_that_finite_differences_say) {
     c.friction = 0.1 + 0.05 * number(), c.normal_compliance = 0.01, c.compliance = 0.02;
     using Mode = ConeState::Mode;
     for (const ConeState state : {ConeState{}, ConeState{Mode::slips, 1}, ConeState{Mode::slips, 0}}) {
-      double at[6];
+      std::array<double, 6> at;
       for (double& value : at) value = number();
       at[0] = -std::abs(at[0]), at[1] += 1;
-      const ConeEquations e = c.equations(state, at, at + 3, natural);
-      for (std::size_t k = 0; k < 6; ++k) {
-        constexpr double small = 1e-6;
-        double moved[6];
-        std::copy(at, at + 6, moved);
-        moved[k] += small;
-        const ConeEquations after = c.equations(state, moved, moved + 3, natural);
-        for (std::size_t r = 0; r < 3; ++r)
-          EXPECT_NEAR((after.value[r] - e.value[r]) / small, k < 3 ? e.by_multiplier[r][k] : e.by_value[r][k - 3],
-                      1e-5);
-      }
+      expect_derivatives(c, state, at, natural);
     }
   }
 }
