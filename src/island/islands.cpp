@@ -437,8 +437,9 @@ void Islands::note_suspects(const Model& model) {
 void Islands::renew_pulls(const Model& model) {
   for (const std::uint32_t body : touched_.local.pulled) {
     if (!model.bodies.is_alive(body)) continue;
-    Home* const home = places_[model.bodies[body].articulate].home;  // null: it will be built, with its pulls
-    if (home && !home->island.renew_pulls(model, node_of_ring_)) drop(*home);
+    Home* const home = places_[model.bodies[body].articulate].home;
+    if (!home || !home->is_built) continue;  // it will be built, with its pulls
+    if (!home->island.renew_pulls(model, node_of_ring_)) drop(*home);
   }
 }
 
@@ -456,6 +457,7 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
     const auto carry_along = [&](Island& island) { island.carry_along(model, moved_by_[i]); };
     if (i >= fresh_.size()) return borrow(model, fresh_loose_[i - fresh_.size()], carry_along);
     fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_);
+    fresh_[i]->is_built = true;
     carry_along(fresh_[i]->island);
   });
   for (std::size_t i = 0; i < count; ++i)
@@ -463,6 +465,10 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
 }
 
 void Islands::validate(const Model& model, model::Audit& audit) const {
+  std::vector<const Home*> built(fresh_.begin(), fresh_.end());
+  std::sort(built.begin(), built.end());
+  audit.require(std::adjacent_find(built.begin(), built.end()) == built.end(),
+                "the latest update has built an island twice");
   if (!knows_all_ || model.is_touched()) return;
   model.articulates.for_each([&](std::uint32_t a, const model::Articulate& articulate) {
     const Home* const home = places_[a].home;

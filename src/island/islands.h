@@ -122,10 +122,11 @@ class Islands {
     std::uint32_t unit = none;               ///< while units are grouped
     bool is_changed = false;                 ///< it must follow
     bool has_followed = false;
+    bool is_built = false;  ///< until then its island is still that of its earlier owner
 
     void clear() {
       articulates.clear(), touched.clear(), leaving.clear(), suspects.clear();
-      leader = unit = none, suspected_at = 0, is_changed = has_followed = false;
+      leader = unit = none, suspected_at = 0, is_changed = has_followed = is_built = false;
     }
     /// Whether it is assembled anew as quickly as it could follow.
     bool is_small() const { return island.size() <= 24; }

@@ -138,7 +138,13 @@ std::string System::queued_edits() { return edit::queued_edits(); }
 
 bool System::is_stepping() const { return core_->door.is_stepping(); }
 
-std::vector<std::string> System::validate() const { return ingredient::validate(core_->model); }
+std::vector<std::string> System::validate() const {
+  std::vector<std::string> complaints = ingredient::validate(core_->model);
+  model::Audit of_islands(core_->model);
+  core_->islands.validate(core_->model, of_islands);
+  for (std::string& each : std::move(of_islands).complaints()) complaints.push_back(std::move(each));
+  return complaints;
+}
 
 std::uint64_t System::state_hash() const { return core_->model.hash(); }
 

@@ -9,10 +9,13 @@
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
+#include <iota/system.h>
 
 #include <algorithm>
 #include <random>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace iota::island {
@@ -243,6 +246,50 @@ TEST(Islands, are_the_connected_sets_of_bodies_whatever_comes_and_goes) {
     for (std::size_t i = 0; i < rods.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
         ASSERT_EQ(room.are_together(rods[i], rods[j]), group[i] == group[j]) << round << ' ' << i << ' ' << j;
+  }
+}
+
+// Grips on bodies whose island is new in the same update. With threads it was built by two of them at once.
+TEST(Islands, are_built_once_where_bodies_are_held_cut_and_joined_at_once) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+    System system;
+    ParticleId last{};
+    for (int i = 0; i < 20; ++i) {
+      const BodyId body = system.bodies().create();
+      const Vec3 start{0.1 * i, 0.01 * i, 0};
+      const ParticleId p = system.particles().create(body, start, 0.05);
+      if (i > 0) (void)system.edits().combine(last, p);
+      last = system.particles().create(body, start + Vec3{0.1, 0.01, 0}, 0.05);
+    }
+    std::vector<GripId> grips;
+    const auto edit = [&] {
+      const std::vector<ParticleId> points = system.particles().ids();
+      const std::vector<BodyId> bodies = system.bodies().ids();
+      const ParticleId p = points[random() % points.size()], q = points[random() % points.size()];
+      const BodyId body = bodies[random() % bodies.size()];
+      switch (random() % 6) {
+        case 0:
+        case 1: (void)system.edits().combine(p, q); break;
+        case 2: (void)system.edits().separate(p, q); break;
+        case 3: grips.push_back(system.grips().create(body, {}, {number(), number(), number()})); break;
+        case 4: system.bodies().set_velocity(body, {number(), number(), number()}); break;
+        default:
+          if (grips.empty()) break;
+          system.grips().destroy(grips.back());
+          grips.pop_back();
+      }
+    };
+    for (int step = 0; step < 100; ++step) {
+      for (std::size_t edits = random() % 4; edits > 0; --edits) try {
+          edit();
+          ASSERT_EQ(system.validate(), std::vector<std::string>{}) << seed << ' ' << step;
+        } catch (const std::invalid_argument&) {  // they are one already, or share nothing
+        }
+      (void)system.step(1.0 / 120);
+      ASSERT_EQ(system.validate(), std::vector<std::string>{}) << seed << ' ' << step;
+    }
   }
 }
 
