@@ -33,7 +33,13 @@ class OutlineTree {
     within = visit_endless(within, visit);
     tree_.near(place, within, [&](std::uint32_t number) { return visit(number, entries_[number].outline); });
   }
-  /// The same along a ray.
+  /// Calls visit(number) with each shown outline whose box overlaps this one, endless ones too. See for_each_pair.
+  template <class Visit>
+  void overlapping(const geometry::Bounds& box, Visit visit) const {
+    for (const std::uint32_t number : endless_) visit(number);
+    tree_.overlapping(box, visit);
+  }
+  /// As `near`, along a ray.
   template <class Visit>
   void along(const Vec3& from, const Vec3& unit, double within, Visit visit) const {
     within = visit_endless(within, visit);

@@ -153,8 +153,7 @@ void TouchFinder::find(const Outline& body, const Vec3& spin, const Outline& oth
     if (!plane) return;
     const double gap = dot(plane->normal, center - plane->origin) - radius;
     if (!(gap <= within)) return;
-    found.push_back(
-        {part, feature, center, center - radius * plane->normal, plane->origin, plane->normal, radius, gap});
+    found.push_back({.part = part, .feature = feature, .center = center, .place = center - radius * plane->normal, .origin = plane->origin, .normal = plane->normal, .radius = radius, .gap = gap});
   };
   for (const Solid& solid : body.solids) {
     middle = solid.position + rotate(solid.turn, 0.5 * (solid.form->box.low + solid.form->box.high));

@@ -13,6 +13,8 @@
 
 namespace iota::ingredient {
 
+using contact::TouchForm;
+
 namespace {
 
 /// Shares of the natural compliance of a row, h^2 sum w^2/m. The first makes the forces of a box on four corners unique, and lets
@@ -23,20 +25,42 @@ constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// left alone.
 constexpr double easing_time = 0.1, deepest = 0.1;
 
-Vec3 place_of(const Contact& c, const std::array<double, 4>& weights, const auto& position) {
+enum Arm : std::size_t { center, place, normal, first_tangent, second_tangent };
+
+/// The sum of f(point) over some points, by their weights in an arm.
+Vec3 sum_over(const Contact& c, Arm arm, std::uint32_t first, std::uint32_t last, const auto& f) {
   Vec3 sum;
-  for (std::uint32_t i = 0; i < c.count; ++i) sum += weights[i] * position(c.points[i]);
+  for (std::uint32_t i = first; i < last; ++i) sum += c.weights[arm][i] * f(c.points[i]);
   return sum;
 }
-
-bool has_basis(const Contact& c, const model::Body& body) {
-  return c.count == body.rank && std::equal(body.basis.begin(), body.basis.begin() + body.rank, c.points.begin());
+auto positions_of(const Model& model) {
+  return [&model](std::uint32_t p) { return model.position(p); };
 }
 
-void take_basis(Contact& c, const model::Body& body) {
-  c.points = {}, c.count = body.rank;
-  std::copy_n(body.basis.begin(), body.rank, c.points.begin());
+Vec3 unit_or(const Vec3& v, const Vec3& other) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : other;
 }
+
+/// Whether it moves, by itself or by the script, so that its points are in the rows of its contacts.
+bool has_points(const model::Body& body) { return body.kind != BodyKind::static_; }
+
+bool has_basis(const Contact& c, const model::Body& p, const model::Body& q) {
+  const std::uint32_t of_q = has_points(q) ? q.rank : 0;
+  return c.of_p == p.rank && c.point_count == p.rank + of_q && std::equal(c.points.begin(), c.points.begin() + p.rank, p.basis.begin()) &&
+         std::equal(c.points.begin() + p.rank, c.points.begin() + c.point_count, q.basis.begin());
+}
+
+void take_basis(Contact& c, const model::Body& p, const model::Body& q) {
+  c.points = {}, c.point_count = c.of_p = p.rank;
+  std::copy_n(p.basis.begin(), p.rank, c.points.begin());
+  if (!has_points(q)) return;
+  std::copy_n(q.basis.begin(), q.rank, c.points.begin() + c.point_count);
+  c.point_count += q.rank;
+}
+
+/// Whether it is a plane of the world.
+bool is_of_world(const Contact& c) { return c.point_count == c.of_p; }
 
 /// The turn of a body in the first half of a step of the mid-point rule, by tan(w h/2).
 class HalfTurn {
@@ -56,14 +80,9 @@ class HalfTurn {
   Vec3 axis_;
 };
 
-void set_weights(solver::ContactConstraint& row, const Contact& c) {
-  row.weights = {};
-  std::copy(c.center.begin(), c.center.end(), row.weights[0].begin());
-  std::copy(c.place.begin(), c.place.end(), row.weights[1].begin());
-}
-
 /// Whether only contacts hold a body: easing out an overlap might pull others out of their places.
 bool is_on_its_own(const Model& model, std::uint32_t body) {
+  if (!is_free(model.bodies[body].kind)) return true;
   if (model.articulates[model.bodies[body].articulate].count != 1) return false;
   bool is_held = false;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -75,139 +94,277 @@ bool is_on_its_own(const Model& model, std::uint32_t body) {
   return !is_held;
 }
 
-bool is_same(const Contact& c, const Contacts::Found& found) {
-  return c.other == found.other && c.part == found.touch.part && c.feature == found.touch.feature;
+void touch(Model& model, const Contact& c) {
+  for (const std::uint32_t body : {c.p, c.q})
+    if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.touch_rows(body);
+}
+
+void destroy(Model& model, std::uint32_t slot) {
+  const Contact c = model.contacts[slot];
+  model.contacts.destroy(slot);
+  touch(model, c);
+}
+
+bool is_same(const Contact& c, std::uint32_t p, const contact::Touch& t) {
+  return c.p == p && c.part == t.part && c.feature == t.feature && c.other_part == t.other_part &&
+         c.other_feature == t.other_feature;
+}
+
+/// The slots of the contacts of two bodies. Of a table with a thousand things only the shorter list is looked at.
+void find_between(const Model& model, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& slots) {
+  slots.clear();
+  const auto& contacts = model.contacts;
+  std::uint32_t at_a = contacts.heads[a].first, at_b = contacts.heads[b].first;
+  const auto step = [&](std::uint32_t link) { return contacts[link / 2].next[link % 2]; };
+  while (at_a != none && at_b != none) at_a = step(at_a), at_b = step(at_b);
+  const std::uint32_t shorter = at_a == none ? a : b, other = at_a == none ? b : a;
+  for (std::uint32_t link = contacts.heads[shorter].first; link != none; link = step(link))
+    if (contacts[link / 2].at(1 - link % 2) == other) slots.push_back(link / 2);
+  std::sort(slots.begin(), slots.end());
+}
+
+/// The basis weights of the two bodies of a contact, computed when they are asked for.
+class Sides {
+ public:
+  Sides(const Model& model, std::uint32_t p, std::uint32_t q) : model_(model), bodies_{p, q} {}
+  std::array<double, 4> of(int side, const Vec3& place) {
+    if (side == 1 && !has_points(model_.bodies[bodies_[1]])) return {};
+    auto& weights = weights_[side];
+    if (!weights) weights.emplace(model_, bodies_[side]);
+    return weights->of(place);
+  }
+
+ private:
+  const Model& model_;
+  std::uint32_t bodies_[2];
+  std::optional<model::BasisWeights> weights_[2];
+};
+
+/// The places of a contact of two bodies.
+struct Places {
+  Vec3 center, origin, point, other_point;
+
+  /// With the basis and the directions of the contact.
+  void set(Contact& c, const model::Body& p, const model::Body& q, Sides& sides) const {
+    c.weights = {};
+    const auto set_arm = [&](Arm arm, const Vec3& of_p, const Vec3& of_q) {
+      const std::array<double, 4> plus = sides.of(0, of_p), minus = sides.of(1, of_q);
+      std::copy_n(plus.begin(), c.of_p, c.weights[arm].begin());
+      for (std::uint32_t i = c.of_p; i < c.point_count; ++i) c.weights[arm][i] = -minus[i - c.of_p];
+    };
+    set_arm(Arm::center, center, origin), set_arm(Arm::place, point, other_point);
+    c.origin = origin;
+    // Directions turn with a body of three dimensions: what depends only on places of both keeps angular momentum.
+    const bool with_q = q.rank == 4;
+    c.turns = !is_of_world(c) && (with_q || (p.rank == 4 && c.form != TouchForm::face));
+    if (!c.turns) return;
+    const std::array directions{&c.normal, &c.first, &c.second};
+    const Vec3& from = with_q ? origin : center;
+    const std::array<double, 4> start = sides.of(with_q, from);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<double, 4> end = sides.of(with_q, from + *directions[k]);
+      for (std::size_t i = 0; i < 4; ++i) c.weights[Arm::normal + k][(with_q ? c.of_p : 0) + i] = end[i] - start[i];
+    }
+  }
+};
+
+Vec3 velocity_at(const Model& model, const Contact& c, std::uint32_t first, std::uint32_t last) {
+  return sum_over(c, Arm::center, first, last, [&](std::uint32_t p) { return model.velocity(p); });
+}
+
+/// The geometry of a touch. The origin is below the center, so that a normal that turns makes no torque by itself.
+void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const Vec3& spin_p, const Vec3& spin_q, double h,
+                  Sides& sides) {
+  const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
+  take_basis(c, p, q);
+  c.form = t.form, c.axis = t.axis;
+  c.normal = t.normal, c.first = any_perpendicular(c.normal), c.second = cross(c.normal, c.first);
+  c.radius = t.radius, c.ball = std::clamp(dot(t.normal, t.center - t.place), 0.0, std::max(0.0, t.radius));
+  const bool is_round = t.form == TouchForm::round;
+  Places places;
+  places.center = t.center;
+  places.origin = is_round ? t.origin : t.center - (t.gap + t.radius) * t.normal;
+  places.point = t.center + HalfTurn(spin_p, h).back(t.place - t.center);
+  // If the gap closes in this step, the two points are at one place in its middle.
+  places.other_point = t.place - 0.5 * t.gap * t.normal;
+  places.set(c, p, q, sides);
+  if (is_of_world(c)) return;
+  // The point of q that touches in the middle of the step.
+  const Vec3 closing = velocity_at(model, c, 0, c.point_count), along = closing - dot(closing, t.normal) * t.normal;
+  if (is_round)
+    places.other_point = t.origin + HalfTurn(spin_q, h).back(places.other_point - t.origin) +
+                         (0.5 * h * (t.radius - c.ball) / t.radius) * along;
+  else
+    places.other_point += 0.5 * h * along;
+  places.set(c, p, q, sides);
 }
 
 }  // namespace
 
-void Contacts::take(Model& model, std::uint32_t body, std::span<const Found> found, const Motion& motion) {
-  const model::Body& b = model.bodies[body];
-  bool has_changed = false;
+void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch> touches,
+                    const Motion& motion) {
+  if (touches.empty()) return;
   thread_local std::vector<std::uint32_t> former;
-  former.clear();
-  model.contacts.for_each_of(body, [&](std::uint32_t slot, const Contact&) { former.push_back(slot); });
-  for (const std::uint32_t slot : former)
-    if (std::none_of(found.begin(), found.end(), [&](const Found& f) { return is_same(model.contacts[slot], f); }))
-      model.contacts.destroy(slot), has_changed = true;
-  if (!found.empty()) {
-    const model::BasisWeights weights(model, body);
-    const HalfTurn half(motion.spin, motion.h);
-    for (const Found& f : found) {
-      const auto known = std::find_if(former.begin(), former.end(), [&](std::uint32_t slot) {
-        return model.contacts.is_alive(slot) && is_same(model.contacts[slot], f);
-      });
-      const bool is_new = known == former.end();
-      if (is_new && f.touch.gap < -deepest * motion.size) continue;
-      const std::uint32_t slot = is_new ? model.contacts
-                                              .create({.body = body,
-                                                       .other = f.other,
-                                                       .part = f.touch.part,
-                                                       .feature = f.touch.feature,
-                                                       .depth = std::min(0.0, f.touch.gap)})
-                                              .slot
-                                        : *known;
-      has_changed = has_changed || is_new;
-      Contact& c = model.contacts[slot];
-      has_changed = has_changed || !has_basis(c, b);
-      take_basis(c, b);
-      const Vec3 arm = half.back(f.touch.place - f.touch.center);
-      c.center = weights.of(f.touch.center), c.place = weights.of(f.touch.center + arm);
-      c.origin = f.touch.origin, c.normal = f.touch.normal, c.radius = f.touch.radius;
-      c.friction = std::sqrt(model.material(body)->friction * model.material(f.other)->friction);
-      const Vec3 velocity = place_of(c, c.center, [&](std::uint32_t p) { return model.velocity(p); });
-      c.approach = c.force == Vec3{} ? std::max(0.0, -dot(c.normal, velocity)) : 0;
-      if (c.depth < 0)
-        c.depth = std::max(std::min(0.0, f.touch.gap),
-                           is_on_its_own(model, body) ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
-    }
+  find_between(model, first, second, former);
+  const double friction = std::sqrt(model.material(first)->friction * model.material(second)->friction);
+  const bool is_eased = is_on_its_own(model, first) && is_on_its_own(model, second);
+  Sides sides[2]{{model, first, second}, {model, second, first}};
+  for (const contact::Touch& t : touches) {
+    const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;
+    const auto known = std::find_if(former.begin(), former.end(),
+                                    [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
+    const bool is_new = known == former.end();
+    if (is_new && t.gap < -deepest * motion.size) continue;
+    Contact fresh;
+    fresh.p = p, fresh.q = q;
+    fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part, fresh.other_feature = t.other_feature;
+    fresh.depth = std::min(0.0, t.gap);
+    const std::uint32_t slot = is_new ? model.contacts.create(fresh) : *known;
+    Contact& c = model.contacts[slot];
+    const bool has_changed = is_new || !has_basis(c, model.bodies[p], model.bodies[q]);
+    set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
+    c.friction = friction;
+    c.found_in = model.step + 1;
+    const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
+    const double kept = norm(across);
+    c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
+    c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, velocity_at(model, c, 0, c.point_count)));
+    if (c.depth < 0)
+      c.depth = std::max(std::min(0.0, t.gap), is_eased ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
+    if (has_changed) touch(model, c);
   }
-  if (has_changed) model.touch_rows(body);
+}
+
+namespace {
+
+template <class Test>
+void end_if(Model& model, std::uint32_t body, Test test) {
+  if (model.contacts.size() == 0) return;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+    if (test(model.contacts[slot])) destroy(model, slot);
+  });
+}
+
+}  // namespace
+
+void Contacts::end_old(Model& model, std::uint32_t body) {
+  end_if(model, body, [&](const Contact& c) { return c.found_in != model.step + 1; });
 }
 
 void Contacts::end(Model& model, std::uint32_t body) {
-  if (model.contacts.size() == 0) return;
-  std::vector<std::uint32_t> ended;
-  model.contacts.for_each_of(body, [&](std::uint32_t slot, const Contact&) { ended.push_back(slot); });
-  for (const std::uint32_t slot : ended) model.contacts.destroy(slot);
-  if (!ended.empty()) model.touch_rows(body);
+  end_if(model, body, [](const Contact&) { return true; });
 }
 
-void Contacts::forget_body(Model& model, std::uint32_t body) {
-  if (model.contacts.size() == 0) return;
-  std::vector<std::uint32_t> ended;
-  model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    if (c.body == body || c.other == body) ended.push_back(slot);
-  });
-  for (const std::uint32_t slot : ended) {
-    const std::uint32_t of = model.contacts[slot].body;
-    model.contacts.destroy(slot);
-    if (of != body) model.touch_rows(of);
-  }
-}
+void Contacts::forget_body(Model& model, std::uint32_t body) { end(model, body); }
 
 void Contacts::drop(Model& model, std::uint32_t particle) { end(model, model.particles[particle].body); }
 
 void Contacts::absorb(Model& model, std::uint32_t q, std::uint32_t) { drop(model, q); }
 
-// The body may have another basis, in the same place.
+// A body may have another basis, in the same place.
 void Contacts::prepare(Model& model, std::uint32_t body) {
-  const model::Body& b = model.bodies[body];
-  std::optional<model::BasisWeights> weights;
-  model.contacts.for_each_of(body, [&](std::uint32_t slot, const Contact& seen) {
-    if (has_basis(seen, b)) return;
+  if (model.contacts.size() == 0) return;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot) {
     Contact& c = model.contacts[slot];
-    const auto position = [&](std::uint32_t p) { return model.position(p); };
-    const Vec3 center = place_of(c, c.center, position), place = place_of(c, c.place, position);
-    if (!weights) weights.emplace(model, body);
-    take_basis(c, b);
-    c.center = weights->of(center), c.place = weights->of(place);
+    const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
+    if (has_basis(c, p, q)) return;
+    const auto side = [&](Arm arm, bool of_q) {
+      return of_q ? -1.0 * sum_over(c, arm, c.of_p, c.point_count, positions_of(model))
+                  : sum_over(c, arm, 0, c.of_p, positions_of(model));
+    };
+    const Places places{side(Arm::center, false), is_of_world(c) ? c.origin : side(Arm::center, true),
+                        side(Arm::place, false), side(Arm::place, true)};
+    Sides sides(model, c.p, c.q);
+    take_basis(c, p, q);
+    places.set(c, p, q, sides);
   });
 }
 
 bool Contacts::holds(const Model& model, std::uint32_t particle) {
-  return model.contacts.has_any(model.particles[particle].body);
+  return model.contacts.ends_at(model.particles[particle].body);
+}
+
+bool Contacts::ties_any(const Model& model) { return model.contacts.size() > 0; }
+
+// The first particle of a body answers for all of them.
+void Contacts::visit_tied(const Model& model, std::uint32_t particle, Visit visit) {
+  const std::uint32_t body = model.particles[particle].body;
+  if (model.contacts.size() == 0 || model.bodies[body].first != particle || !has_points(model.bodies[body])) return;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+    const Contact& c = model.contacts[slot];
+    const std::uint32_t other = c.p == body ? c.q : c.p;
+    if (has_points(model.bodies[other])) visit(other);
+  });
 }
 
 void Contacts::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   if (model.contacts.size() == 0) return;
+  std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
-    model.contacts.for_each_of(body, [&](std::uint32_t slot, const Contact& c) {
-      solver::ContactConstraint row;
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        const std::uint32_t node = map.node_of(c.points[i]);
-        if (node == none) return;  // inactive
-        row.nodes[i] = node;
-      }
-      row.count = c.count;
-      set_weights(row, c);  // they tell the problem which arms are places of the world: Problem::set_origin
-      problem.add(row, {owner, {}, slot});
-    });
+    if (has_points(model.bodies[body])) model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
+  sort_unique(slots);
+  for (const std::uint32_t slot : slots) {
+    const Contact& c = model.contacts[slot];
+    solver::ContactConstraint row;
+    bool is_here = true, moves = false;
+    for (std::uint32_t i = 0; i < c.point_count; ++i) {
+      row.nodes[i] = map.node_of(c.points[i]);
+      is_here = is_here && row.nodes[i] != none;
+      moves = moves || (is_here && !map.is_pinned(row.nodes[i]));
+    }
+    const auto nodes = std::span(row.nodes).first(c.point_count);
+    const auto has_node = [&](std::uint32_t node) { return std::find(nodes.begin(), nodes.begin() + c.of_p, node) != nodes.begin() + c.of_p; };
+    // Inactive, or hinged to each other meanwhile.
+    if (!is_here || !moves || std::any_of(nodes.begin() + c.of_p, nodes.end(), has_node)) continue;
+    row.count = c.point_count;
+    row.first_side = c.of_p < c.point_count ? c.of_p : 0;
+    row.weights = c.weights;  // they tell which arms are places of the world: Problem::set_origin
+    problem.add(row, {owner, {}, slot});
+  }
 }
 
-void Contacts::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
+namespace {
+
+/// c_n and c_t for a step of h seconds, without the softness.
+std::array<double, 2> natural_compliances(const solver::ContactConstraint& row, const IslandNodes& nodes, double h,
+                                          const Problem& problem) {
+  std::array<double, 2> sum{};
+  for (std::uint32_t i = 0; i < row.count; ++i)
+    if (!nodes.pinned[row.nodes[i]])
+      for (std::size_t arm = 0; arm < 2; ++arm)
+        sum[arm] += h * h * row.weights[arm][i] * row.weights[arm][i] / problem.mass[row.nodes[i]];
+  return sum;
+}
+
+/// The extent of the body with the point.
+double size_of(const solver::ContactConstraint& row, const Contact& c, const Problem& problem) {
+  double size = 0;
+  for (std::uint32_t i = 1; i < c.of_p; ++i)
+    size = std::max(size, norm(problem.position[row.nodes[i]] - problem.position[row.nodes[0]]));
+  return size;
+}
+
+}  // namespace
+
+void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
   if (!problem.has_used<solver::ContactConstraint>()) return;
   auto& rows = problem.pool_of<solver::ContactConstraint>();
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
-    set_weights(row, c);
-    double of_center = 0, of_place = 0, size = 0;
-    for (std::uint32_t k = 0; k < c.count; ++k) {
-      of_center += c.center[k] * c.center[k] / problem.mass[row.nodes[k]];
-      of_place += c.place[k] * c.place[k] / problem.mass[row.nodes[k]];
-      size = std::max(size, norm(problem.position[row.nodes[k]] - problem.position[row.nodes[0]]));
-    }
-    const Vec3 first = any_perpendicular(c.normal), second = cross(c.normal, first);
-    row.set_world_plane(c.origin - problem.origin, c.normal, first, second);
+    row.weights = c.weights;
+    row.set_world_place(is_of_world(c) ? c.origin - problem.origin : Vec3{});
+    row.set_directions(c.turns ? std::array<Vec3, 3>{} : std::array{c.normal, c.first, c.second});
     row.radius = c.radius + c.depth;
+    row.is_round = c.form == TouchForm::round && row.radius > 0, row.axis = c.axis;
     row.friction = c.friction;
-    row.normal_compliance = normal_softness * h * h * of_center;
-    row.compliance = tangent_softness * h * h * of_place;
-    row.reference = std::max({size, c.radius, 1e-9});
+    const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
+    row.normal_compliance = normal_softness * of_center;
+    row.compliance = tangent_softness * of_place;
+    row.reference = std::max({size_of(row, c, problem), c.radius, 1e-9});
     double* const l = rows.multiplier(i);
-    l[0] = -dot(c.force, c.normal), l[1] = -dot(c.force, first), l[2] = -dot(c.force, second);
+    l[0] = -c.push, l[1] = -dot(c.drag, c.first), l[2] = -dot(c.drag, c.second);
   });
 }
 
@@ -218,44 +375,54 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
     const double* const l = rows.multiplier(i);
     const solver::ContactConstraint& row = rows.items[i];
     Contact& c = model.contacts[key.slot];
-    c.force = -(l[0] * row.constant[2] + l[1] * row.constant[3] + l[2] * row.constant[4]);
+    const auto arm = [&](Arm which) { return row.arm(which, problem.position.data(), 1); };
+    if (c.turns) c.first = arm(Arm::first_tangent), c.second = arm(Arm::second_tangent);
+    if (c.turns && !row.is_round) c.normal = arm(Arm::normal);
+    if (row.is_round) c.normal = unit_or(row.across(arm(Arm::center)), c.normal);
+    c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = solver::strain_energy(row, l);
   });
 }
 
 Vec3 Contacts::place(const Model& model, const Contact& c) {
-  return place_of(c, c.center, [&](std::uint32_t p) { return model.position(p); }) - c.radius * c.normal;
+  return sum_over(c, Arm::center, 0, c.of_p, positions_of(model)) - c.ball * c.normal;
 }
 
 Impact Contacts::hardest_impact(const Model& model) {
   Impact hardest;
   model.contacts.for_each([&](std::uint32_t, const Contact& c) {
-    if (c.approach > hardest.speed && c.force != Vec3{}) hardest = {place(model, c), c.approach};
+    if (c.approach > hardest.speed && c.carries()) hardest = {place(model, c), c.approach};
   });
   return hardest;
 }
 
 namespace {
 
-/// visit(contact): of all bodies, or of one.
+/// visit(contact): of all bodies, or of those whose point one body is.
 template <class Visit>
 void for_each_contact(const Scope& scope, Visit visit) {
   const auto& contacts = scope.model.contacts;
-  const auto each = [&](std::uint32_t, const Contact& c) { visit(c); };
-  if (scope.is_whole())
-    contacts.for_each(each);
-  else
-    scope.for_each_body([&](std::uint32_t body, const model::Body&) { contacts.for_each_of(body, each); });
+  if (contacts.size() == 0) return;
+  if (scope.is_whole()) return contacts.for_each([&](std::uint32_t, const Contact& c) { visit(c); });
+  scope.for_each_body([&](std::uint32_t body, const model::Body&) {
+    contacts.for_each_of(body, [&](std::uint32_t slot) {
+      if (contacts[slot].p == body) visit(contacts[slot]);
+    });
+  });
+}
+
+/// The gap at the end of the last step, m.
+double gap_of(const Model& model, const Contact& c) {
+  const Vec3 d = sum_over(c, Arm::center, 0, c.point_count, positions_of(model)) - (is_of_world(c) ? c.origin : Vec3{});
+  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
+  return dot(c.normal, d) - c.radius;
 }
 
 }  // namespace
 
 double Contacts::worst_gap(const Scope& scope) {
   solver::Largest worst;
-  for_each_contact(scope, [&](const Contact& c) {
-    const Vec3 center = place_of(c, c.center, [&](std::uint32_t p) { return scope.model.position(p); });
-    worst.add(std::max(0.0, c.radius + c.depth - dot(c.normal, center - c.origin)));
-  });
+  for_each_contact(scope, [&](const Contact& c) { worst.add(std::max(0.0, c.depth - gap_of(scope.model, c))); });
   return worst.value;
 }
 
@@ -264,21 +431,28 @@ void Contacts::add_energy(const Scope& scope, Energies& sum) {
 }
 
 void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
-  step.model.contacts.for_each_of(body, [&](std::uint32_t, const Contact& c) {
-    const Vec3 push = dot(c.force, c.normal) * c.normal, friction = c.force - push;
-    const Vec3 place = place_of(c, c.place, [&](std::uint32_t p) { return step.place(p); });
-    const BodyId part = step.model.part_at(body, place);
-    for (std::uint32_t i = 0; i < c.count; ++i)
-      reader.take({.particle = c.points[i], .force = c.center[i] * push + c.place[i] * friction, .part = part});
+  if (step.model.contacts.size() == 0) return;
+  const auto place = [&](std::uint32_t p) { return step.place(p); };
+  step.model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+    const Contact& c = step.model.contacts[slot];
+    const std::uint32_t first = c.p == body ? 0 : c.of_p, last = c.p == body ? c.of_p : c.point_count;
+    const Vec3 arm = c.radius * c.normal;
+    const double of_normal = c.form == TouchForm::round ? 0 : 1;
+    const BodyId part = step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
+    for (std::uint32_t i = first; i < last; ++i)
+      reader.take({.particle = c.points[i],
+                   .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::normal][i] * arm) +
+                            c.weights[Arm::place][i] * c.drag,
+                   .part = part});
   });
 }
 
 void Contacts::check_links(const Model& model, model::Audit& audit) {
+  audit.check_ends("contact", model.contacts, model.bodies);
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    audit.require(model.bodies.is_alive(c.body) && model.bodies.is_alive(c.other), "contact ", slot,
-                  " is of no living bodies");
-    audit.require(c.count >= 1 && c.count <= c.points.size(), "contact ", slot, " refers to ", c.count, " points");
-    for (std::uint32_t i = 0; i < std::min<std::size_t>(c.count, c.points.size()); ++i)
+    audit.require(c.of_p >= 1 && c.of_p <= c.point_count && c.point_count <= c.points.size(), "contact ", slot, " refers to ", c.point_count,
+                  " points");
+    for (std::uint32_t i = 0; i < std::min<std::size_t>(c.point_count, c.points.size()); ++i)
       audit.require(model.particles.is_alive(c.points[i]), "contact ", slot,
                     " refers to a particle that does not exist");
   });
@@ -286,20 +460,18 @@ void Contacts::check_links(const Model& model, model::Audit& audit) {
 
 void Contacts::validate(const Model& model, model::Audit& audit) {
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    bool is_listed = false;
-    model.contacts.for_each_of(c.body, [&](std::uint32_t other, const Contact&) { is_listed |= other == slot; });
-    audit.require(is_listed, "contact ", slot, " is not listed at its body");
-    for (std::uint32_t i = 0; i < c.count; ++i)
-      audit.require(model.particles[c.points[i]].body == c.body, "contact ", slot,
+    audit.require(c.p != c.q && has_points(model.bodies[c.p]), "contact ", slot, " is of one body, or of static ones");
+    for (std::uint32_t i = 0; i < c.point_count; ++i)
+      audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
-    audit.require(is_finite(c.force) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
+    audit.require(is_finite(c.force()) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
                   "contact ", slot, " has no valid plane, force or friction");
   });
 }
 
 std::string Contacts::name_of_row(const Model& model, solver::ItemKey key) const {
   const Contact& c = model.contacts[key.slot];
-  return text("contact of body ", c.body, " with body ", c.other);
+  return text("contact of body ", c.p, " with body ", c.q);
 }
 
 }  // namespace iota::ingredient

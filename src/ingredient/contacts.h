@@ -2,8 +2,8 @@
 #pragma once
 
 #include "contact/touch.h"
-#include "ingredient/body_table.h"
 #include "ingredient/ingredient.h"
+#include "model/end_table.h"
 
 #include <iota/materials.h>
 
@@ -12,31 +12,42 @@
 
 namespace iota::ingredient {
 
-/// A place where a body is near an obstacle, or touches it.
-struct Contact {
-  std::uint32_t body = none, other = none;  ///< the second one is static
-  std::uint32_t part = 0, feature = 0;      ///< see contact::Touch
-  std::array<std::uint32_t, 4> points{};    ///< the basis of the body
-  std::uint32_t count = 0;
-  std::array<double, 4> center{}, place{};  ///< weights of the points: see contact::Touch
-  Vec3 origin, normal;                      ///< of the plane
+/// A place where two bodies are near each other, or touch: body p with a point, body q with a plane. See contact::Touch.
+struct Contact : model::Ends {
+  std::uint32_t part = 0, feature = 0, other_part = 0, other_feature = 0;
+  contact::TouchForm form = contact::TouchForm::face;
+  std::array<std::uint32_t, 8> points{};  ///< the basis of p, then that of q, unless q is static
+  std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
+  /// Of the points in the arms of solver::ContactConstraint.
+  std::array<std::array<double, 8>, 5> weights{};
+  Vec3 origin;                 ///< of the plane, in the world
+  Vec3 normal, first, second;  ///< arms 2 to 4 now: they turn with a body, or keep their direction
+  Vec3 axis;                   ///< see contact::Touch
+  bool turns = false;          ///< arms 3 and 4 do, and arm 2 if it counts
   double radius = 0, friction = 0;
-  double depth = 0;     ///< of an overlap that was there before the contact, m, not positive: it only shrinks
-  Vec3 force;           ///< on the body in the last step, N
-  double energy = 0;    ///< of its elastic strain, J
-  double approach = 0;  ///< speed towards the plane before the step, if it carried nothing in the one before, m/s
+  double ball = 0;     ///< part of the radius that is p's
+  double depth = 0;    ///< of an overlap that was there before the contact, m, not positive: it only shrinks
+  double push = 0;     ///< force along the normal on p in the last step, N
+  Vec3 drag;           ///< force of friction on it, N
+  double energy = 0;   ///< of its elastic strain, J
+  double approach = 0; ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
+  std::uint64_t found_in = 0;  ///< step
+
+  Vec3 force() const { return push * normal + drag; }
+  bool carries() const { return push != 0 || drag != Vec3{}; }
 };
 
-/// Contacts of bodies with obstacles: bounded rows with Coulomb friction, see solver/constraints/contact.h. The step finds
-/// them before it solves (src/step/contacts.h); in a table they keep their forces for the next step.
+/// Contacts of two bodies: bounded rows with Coulomb friction, see solver/constraints/contact.h. The step finds them before it
+/// solves (src/step/contacts.h); in a table they keep their forces for the next step. The second body is another one that
+/// moves, and then both are solved together, or a static one.
 class Contacts : public NoAnswers {
  public:
   struct Tables {
-    BodyTable<Contact, Id<"contact">> contacts;
+    model::EndTable<Contact, Id<"contact">> contacts;  ///< the ends are bodies
 
     template <class Archive>
-    void archive(Archive& ar, const Structure&) {
-      contacts.archive(ar);
+    void archive(Archive& ar, const Structure& structure) {
+      contacts.archive(ar, structure.bodies.slot_count());
     }
   };
   static void validate(const Model&, model::Audit&);
@@ -45,29 +56,29 @@ class Contacts : public NoAnswers {
   static void add_energy(const Scope&, Energies&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
+  static void visit_tied(const Model&, std::uint32_t particle, Visit);
+  static bool ties_any(const Model&);
   static void forget_body(Model&, std::uint32_t body);
   static void inertia_changed(Model& model, std::uint32_t body) { end(model, body); }
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static void prepare(Model&, std::uint32_t body);
 
-  struct Found {
-    std::uint32_t other;
-    contact::Touch touch;
-  };
   struct Motion {
-    double size;  ///< of the body, m
-    Vec3 spin;    ///< rad/s
-    double h;     ///< of the step, s
+    double size;                ///< of the smaller body, m
+    Vec3 spins[2];              ///< of both, rad/s
+    double h;                   ///< of the step, s
   };
-  /// Replaces the contacts of a body for a step. Those that it had before keep their forces.
-  static void take(Model&, std::uint32_t body, std::span<const Found>, const Motion&);
-  /// The place where it touches, m.
+  /// The contacts of two bodies for a step. Those that they had before keep their forces.
+  static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch>, const Motion&);
+  /// Ends all contacts of a body that were not taken in this step.
+  static void end_old(Model&, std::uint32_t body);
+  /// Ends all contacts of a body.
+  static void end(Model&, std::uint32_t body);
+  /// The place where the bodies touch, m.
   static Vec3 place(const Model&, const Contact&);
   /// The hardest of those that began to carry in the last step.
   static Impact hardest_impact(const Model&);
-  /// Ends all contacts of a body.
-  static void end(Model&, std::uint32_t body);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);

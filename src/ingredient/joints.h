@@ -52,6 +52,9 @@ class Joints : public NoAnswers {
   static bool ties_any(const Model&);
   static void visit_tied(const Model&, std::uint32_t particle, Visit);
   static bool ties_to_world(const Model&, std::uint32_t body);
+  /// Whether a joint, surfaces or a coupling hold a particle's body at another one, so that these may overlap. Distances
+  /// do not.
+  static bool join(const Model&, std::uint32_t particle, std::uint32_t other);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);

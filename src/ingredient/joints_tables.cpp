@@ -118,20 +118,43 @@ void Joints::take_over(Model& restored, Model& before) {
 
 bool Joints::ties_any(const Model& model) { return model.constraints.size() > 0; }
 
-void Joints::visit_tied(const Model& model, std::uint32_t particle, Visit visit) {
-  model.for_each_constraint_of(particle, [&](std::uint32_t slot, int place) {
-    const Constraint& c = model.constraints[slot];
-    if (!c.active || (place != a_origin && place != b_origin)) return;
-    if (const std::uint32_t other = body_of_side(model, c, place == a_origin ? 1 : 0); other != none) visit(other);
-    for_each_coupling_of(model, c, [&](std::uint32_t coupling) {
-      if (!model.constraints[coupling].active) return;
-      for_each_term(model, model.constraints[coupling], [&](const CoupledTerm& term) {
-        for (const int side : {0, 1})
-          if (const std::uint32_t body = body_of_side(model, model.constraints[term.joint], side); body != none)
-            visit(body);
-      });
+namespace {
+
+/// visit(body): of those that an active joint and its couplings tie to the body of one of its sides.
+void visit_other_sides(const Model& model, const Constraint& c, int side, Visit visit) {
+  if (const std::uint32_t other = body_of_side(model, c, 1 - side); other != none) visit(other);
+  for_each_coupling_of(model, c, [&](std::uint32_t coupling) {
+    if (!model.constraints[coupling].active) return;
+    for_each_term(model, model.constraints[coupling], [&](const CoupledTerm& term) {
+      for (const int side_of_term : {0, 1})
+        if (const std::uint32_t body = body_of_side(model, model.constraints[term.joint], side_of_term); body != none)
+          visit(body);
     });
   });
+}
+
+/// visit(constraint, side): of the active ones with an origin at a particle.
+template <class VisitSide>
+void for_each_side_at(const Model& model, std::uint32_t particle, VisitSide visit) {
+  model.for_each_constraint_of(particle, [&](std::uint32_t slot, int place) {
+    const Constraint& c = model.constraints[slot];
+    if (c.active && (place == a_origin || place == b_origin)) visit(c, place == a_origin ? 0 : 1);
+  });
+}
+
+}  // namespace
+
+void Joints::visit_tied(const Model& model, std::uint32_t particle, Visit visit) {
+  for_each_side_at(model, particle, [&](const Constraint& c, int side) { visit_other_sides(model, c, side, visit); });
+}
+
+bool Joints::join(const Model& model, std::uint32_t particle, std::uint32_t other) {
+  bool any = false;
+  for_each_side_at(model, particle, [&](const Constraint& c, int side) {
+    if (info(c.kind).form != Form::distance)
+      visit_other_sides(model, c, side, [&](std::uint32_t body) { any = any || body == other; });
+  });
+  return any;
 }
 
 bool Joints::ties_to_world(const Model& model, std::uint32_t body) {

@@ -30,7 +30,11 @@ class Audit {
   void check_lists(const char* what, const std::vector<std::uint32_t>& firsts, std::uint32_t link_count,
                    IsAlive is_alive, Next next, Previous previous);
   template <class T, class IdType>
-  void check_ends(const char* what, const EndTable<T, IdType>& items);
+  void check_ends(const char* what, const EndTable<T, IdType>& items) {
+    check_ends(what, items, model_.particles);
+  }
+  template <class T, class IdType>
+  void check_ends(const char* what, const EndTable<T, IdType>& items, const auto& owners);
   /// The text in an array of characters has its end in it.
   template <std::size_t n>
   void require_text(const char* what, std::uint32_t slot, const std::array<char, n>& characters) {
@@ -111,11 +115,10 @@ void Audit::check_lists(const char* what, const std::vector<std::uint32_t>& firs
 }
 
 template <class T, class IdType>
-void Audit::check_ends(const char* what, const EndTable<T, IdType>& items) {
+void Audit::check_ends(const char* what, const EndTable<T, IdType>& items, const auto& owners) {
   items.for_each([&](std::uint32_t slot, const T& item) {
     for (std::uint32_t end = 0; end < T::count; ++end)
-      require(model_.particles.is_alive(item.at(end)), what, " ", slot, " joins ", item.at(end),
-              ", which does not live");
+      require(owners.is_alive(item.at(end)), what, " ", slot, " joins ", item.at(end), ", which does not live");
   });
   std::vector<std::uint32_t> firsts;
   items.heads.for_each([&](std::uint32_t, const ListHead& head) { firsts.push_back(head.first); });

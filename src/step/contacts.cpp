@@ -56,42 +56,136 @@ void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outli
   std::sort(obstacles_.begin(), obstacles_.end(), [](const Obstacle& a, const Obstacle& b) { return a.body < b.body; });
 }
 
-void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h) {
-  if (model.materials.is_empty() && model.contacts.size() == 0) return;
-  outlines.describe();
-  list_obstacles(model, outlines);
-  model.bodies.for_each([&](std::uint32_t body, const model::Body& b) {
-    if (b.kind == BodyKind::resting) return;
-    if (b.kind == BodyKind::dynamic && model.material(body) && outlines.reach(body) >= 0)
-      find_of(model, outlines, body, h);
-    else
-      ingredient::Contacts::end(model, body);
+void ContactFinder::list_movers(model::Model& model, const contact::Outlines& outlines) {
+  movers_.clear();
+  mover_of_.resize(model.bodies.slot_count());
+  model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
+    mover_of_[slot] = model::none;
+    if (body.kind == BodyKind::static_) return;
+    const bool touches = body.kind != BodyKind::inactive && outlines.reach(slot) >= 0 && model.material(slot);
+    if (!touches) return ingredient::Contacts::end(model, slot);
+    Mover mover{slot, body.kind != BodyKind::resting, body.count == 1 && outlines.described(slot).solids.empty(), outlines.reach(slot), model.position(body.first), {}, 0};
+    for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
+    for (std::size_t k = 0; k < body.rank; ++k)
+      mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
+    mover_of_[slot] = static_cast<std::uint32_t>(movers_.size());
+    movers_.push_back(mover);
   });
 }
 
-void ContactFinder::find_of(model::Model& model, contact::Outlines& outlines, std::uint32_t slot, double h) {
-  const model::Body& body = model.bodies[slot];
-  const Vec3 place = model.position(body.first);
-  const double reach = outlines.reach(slot);
-  double speed = 0;
-  for (std::size_t k = 0; k < body.rank; ++k) speed = std::max(speed, norm(model.velocity(body.basis[k])));
-  const double within = of_way * h * (speed + h * norm(model.acting_gravity())) + of_size * reach;
-  Vec3 spin;
-  near_.clear(), all_.clear();
-  for (const Obstacle& obstacle : obstacles_)
-    if (obstacle.distance(place) <= reach + within && model.bodies[obstacle.body].articulate != body.articulate)
-      near_.push_back(obstacle.body);
-  if (!near_.empty()) {
-    const contact::Outline& outline = outlines.placed(slot);
-    spin = body.rank == 4 ? model::body_angular_velocity(model, slot) : Vec3{};  // others cannot carry it
-    for (const std::uint32_t other : near_) {
-      found_.clear();
-      touches_.find(outline, spin, outlines.described(other), within, found_);
-      keep_the_outermost(found_, reach);
-      for (const contact::Touch& touch : found_) all_.push_back({other, touch});
-    }
+double ContactFinder::within(const Mover& mover, const Mover* other) const {
+  const Vec3 relative = other ? mover.velocity - other->velocity : mover.velocity;
+  const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + fall_;
+  return of_way * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
+}
+
+// Few obstacles are looked at one by one.
+void ContactFinder::find_obstacles(const model::Model& model) {
+  for (const Mover& mover : movers_) {
+    if (!mover.is_awake || model.bodies[mover.body].kind == BodyKind::scripted) continue;
+    const double reach = mover.reach + within(mover, nullptr);
+    for (const Obstacle& obstacle : obstacles_)
+      if (obstacle.distance(mover.place) <= reach) pairs_.push_back({mover.body, obstacle.body});
   }
-  if (!all_.empty() || model.contacts.has_any(slot)) ingredient::Contacts::take(model, slot, all_, {reach, spin, h});
+}
+
+void ContactFinder::find_pairs(const model::Model& model, contact::Outlines& outlines) {
+  if (std::all_of(movers_.begin(), movers_.end(), [](const Mover& mover) { return mover.is_ball; })) return;
+  const contact::OutlineTree& tree = outlines.refresh(model.step);
+  for (const Mover& mover : movers_) {
+    if (!mover.is_awake) continue;
+    const double more = within(mover, nullptr);
+    geometry::Bounds box = contact::bounds(tree[mover.body]);
+    box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
+    tree.overlapping(box, [&](std::uint32_t body) {
+      const Mover* const other = mover_of(body);
+      if (!other || body == mover.body) return;
+      if (norm(other->place - mover.place) > mover.reach + other->reach + within(mover, other)) return;
+      pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});
+    });
+  }
+}
+
+namespace {
+
+/// Whether a hinge or a joint holds one at the other.
+bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
+  const auto [fewer, other] = model.bodies[a].count <= model.bodies[b].count ? std::pair(a, b) : std::pair(b, a);
+  bool any = false;
+  model.for_each_particle_of(fewer, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    if (any) return;
+    if (model.rings[particle.ring].count > 1)
+      model.for_each_in_ring(particle.ring, [&](std::uint32_t q) { any = any || model.particles[q].body == other; });
+    if (particle.uses > 0) any = any || ingredient::Joints::join(model, p, other);
+  });
+  return any;
+}
+
+/// Two particles do not touch, unless they have materials of their own.
+bool are_plain(const model::Model& model, std::uint32_t a, std::uint32_t b) {
+  return !model.materials.has(a) || !model.materials.has(b);
+}
+
+
+// TODO replaced by the manifolds
+void find_both(contact::TouchFinder& finder, const contact::Outline& first, const Vec3& spin, const contact::Outline& second, const Vec3& spin2, double within, bool both, std::vector<contact::Touch>& found) {
+  const auto ball = [](const contact::Outline& o) -> std::optional<std::pair<Vec3, double>> {
+    if (o.solids.size() == 1 && o.lines.empty())
+      if (const auto* s = std::get_if<Sphere>(&o.solids[0].form->shape)) return std::pair(o.solids[0].position, s->radius);
+    return {};
+  };
+  const auto a = ball(first), b = ball(second);
+  if (a && b) {
+    const Vec3 d = a->first - b->first; const double l = norm(d);
+    if (l - a->second - b->second > within) return;
+    contact::Touch t; t.form = contact::TouchForm::round; t.center = a->first; t.origin = b->first; t.normal = (1/l)*d;
+    t.radius = a->second + b->second; t.gap = l - t.radius; t.place = t.center - a->second * t.normal;
+    found.push_back(t);
+    return;
+  }
+  finder.find(first, spin, second, within, found);
+  const auto n = found.size();
+  if (!both) return;
+  finder.find(second, spin2, first, within, found);
+  for (auto i = n; i < found.size(); ++i) found[i].is_turned = true;
+}
+}
+void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h) {
+  if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
+  outlines.describe();
+  h_ = h, fall_ = h * norm(model.acting_gravity());
+  pairs_.clear();
+  list_obstacles(model, outlines);
+  list_movers(model, outlines);
+  find_obstacles(model);
+  find_pairs(model, outlines);
+  std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  for (const Pair& pair : pairs_) touch(model, outlines, pair);
+  if (model.contacts.size() > 0)
+    for (const Mover& mover : movers_)
+      if (mover.is_awake) ingredient::Contacts::end_old(model, mover.body);
+}
+
+void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair) {
+  const auto [first, second] = pair;
+  const Mover &mover = *mover_of(first), *const other = mover_of(second);
+  if (other && mover.is_ball && other->is_ball && are_plain(model, first, second)) return;
+  if (other && !model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return;
+  if (are_joined(model, first, second)) return;
+  // Only a body with three dimensions carries a spin.
+  const auto spin = [&](std::uint32_t body) {
+    return model.bodies[body].rank == 4 ? model::body_angular_velocity(model, body) : Vec3{};
+  };
+  const Vec3 spins[2] = {spin(first), other ? spin(second) : Vec3{}};
+  const double size = other ? std::min(mover.reach, other->reach) : mover.reach;
+  found_.clear();
+  const contact::Outline& outline = outlines.placed(first);
+  if (other) (void)outlines.placed(second);
+  find_both(touches_, outline, spins[0], outlines.described(second), spins[1], within(mover, other), other != nullptr, found_);
+  keep_the_outermost(found_, size);
+  ingredient::Contacts::take(model, first, second, found_, {size, {spins[0], spins[1]}, h_});
 }
 
 }  // namespace iota::step

@@ -5,15 +5,16 @@
 #include "contact/touches.h"
 #include "ingredient/model.h"
 
+#include <utility>
 #include <vector>
 
 namespace iota::step {
 
-/// Finds the contacts of moving bodies with obstacles at the begin of a step. Both have a material; bodies that are hinged
-/// to each other do not touch.
+/// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
+/// Bodies that are hinged or jointed to each other do not touch, nor do two particles with the usual material.
 class ContactFinder {
  public:
-  /// For a step of h seconds. Costs nothing while no obstacle has a material.
+  /// For a step of h seconds. Costs nothing while nothing has a material.
   void find(model::Model&, contact::Outlines&, double h);
 
  private:
@@ -24,15 +25,34 @@ class ContactFinder {
     Vec3 origin, normal;                 ///< of a half-space
     double distance(const Vec3&) const;  ///< m, at most
   };
+  /// A body that may touch others.
+  struct Mover {
+    std::uint32_t body;
+    bool is_awake, is_ball;  ///< a particle
+    double reach;            ///< m
+    Vec3 place, velocity;    ///< of its first particle; mean
+    double spread;           ///< of the velocities of its points, m/s
+  };
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
+
   void list_obstacles(model::Model&, contact::Outlines&);
-  void find_of(model::Model&, contact::Outlines&, std::uint32_t body, double h);
+  void list_movers(model::Model&, const contact::Outlines&);
+  void find_obstacles(const model::Model&);
+  void find_pairs(const model::Model&, contact::Outlines&);
+  void touch(model::Model&, contact::Outlines&, const Pair&);
+  double within(const Mover&, const Mover* other) const;
+  const Mover* mover_of(std::uint32_t body) const {
+    return body < mover_of_.size() && mover_of_[body] < movers_.size() ? &movers_[mover_of_[body]] : nullptr;
+  }
 
   contact::TouchFinder touches_;
+  double h_ = 0, fall_ = 0;  ///< s; speed that gravity gives in this time, m/s
   // Scratch, kept for its capacity.
   std::vector<Obstacle> obstacles_;
-  std::vector<std::uint32_t> near_;
+  std::vector<Mover> movers_;
+  std::vector<std::uint32_t> mover_of_;  ///< by body slot, valid for movers
+  std::vector<Pair> pairs_;
   std::vector<contact::Touch> found_;
-  std::vector<ingredient::Contacts::Found> all_;
 };
 
 }  // namespace iota::step

@@ -218,11 +218,19 @@ void Bodies::set_material(BodyId body, const std::optional<Material>& material) 
 
 std::vector<ContactPoint> Bodies::contacts(BodyId id) const {
   const model::Model& model = core_.model;
+  const std::uint32_t body = core_.slot(id);
+  std::vector<std::uint32_t> slots;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
+  std::sort(slots.begin(), slots.end());
   std::vector<ContactPoint> points;
-  model.contacts.for_each_of(core_.slot(id), [&](std::uint32_t, const ingredient::Contact& c) {
-    if (c.force == Vec3{}) return;
-    points.push_back({model.bodies.id(c.other), ingredient::Contacts::place(model, c), c.normal, c.force});
-  });
+  for (const std::uint32_t slot : slots) {
+    const ingredient::Contact& c = model.contacts[slot];
+    if (!c.carries()) continue;
+    const bool is_point = c.p == body;
+    const double sign = is_point ? 1 : -1;
+    points.push_back({model.bodies.id(is_point ? c.q : c.p), ingredient::Contacts::place(model, c), sign * c.normal,
+                      sign * c.force()});
+  }
   return points;
 }
 

@@ -8,10 +8,11 @@
 
 namespace iota::solver {
 
-/// A place of a body against a plane fixed in another body or in the world, with Coulomb friction.
-///   arms        0: center of what touches - origin of the plane;  1: point that touches - origin;  2: normal, towards the
-///               body;  3, 4: tangents
-///   constraint  g_0 = normal . arm 0 - radius;   g_k = tangent_k . arm 1, k = 1, 2   (m)
+/// A place of a body against a plane of another body or of the world, or two round things, with Coulomb friction.
+///   arms        0: center of what touches - origin of the plane;  1: point that touches - the other body's point there;
+///               2: normal, towards the first body;  3, 4: tangents
+///   constraint  g_0 = normal . arm 0 - radius,  of round things (|d|^2 - radius^2) / (2 radius),  d arm 0 across `axis`
+///               g_k = tangent_k . arm 1,  k = 1, 2   (m)
 ///   cone        N = -lambda_0 >= 0,  |(lambda_1, lambda_2)| <= mu N   (N)
 ///     open      all multipliers are zero, g_0 >= 0
 ///     sticks    g_0 = c_n lambda_0,  s_k = c_t lambda_k,  s_k the slip since it began to stick
@@ -28,26 +29,39 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
+  bool is_round = false;  ///< the radius is that of both together, above zero
+  Vec3 axis;              ///< of round things: a unit vector along which they may slide, or zero
 
-  void set_world_plane(const Vec3& origin, const Vec3& normal, const Vec3& first, const Vec3& second) {
-    set_constant(0, -1.0 * origin), set_constant(1, -1.0 * origin);
-    set_constant(2, normal), set_constant(3, first), set_constant(4, second);
+  /// Arms 2 to 4, which do not turn with a body.
+  void set_directions(const std::array<Vec3, 3>& of) {
+    for (int k = 0; k < 3; ++k) set_constant(2 + k, of[static_cast<std::size_t>(k)]);
   }
+  void set_world_place(const Vec3& origin) { set_constant(0, -1.0 * origin), set_constant(1, -1.0 * origin); }
 
   double reference_length() const { return reference; }
+  Vec3 across(const Vec3& d) const { return d - dot(axis, d) * axis; }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
-    g[0] = dot(e[2], e[0]) - radius, g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
+    g[0] = is_round ? (dot(across(e[0]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius;
+    g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
   void calc_gradient(const Vec3* e, Vec3 (*d)[5]) const {
-    d[0][0] = e[2], d[0][2] = e[0];
+    if (is_round)
+      d[0][0] = (1 / radius) * across(e[0]);
+    else
+      d[0][0] = e[2], d[0][2] = e[0];
     d[1][1] = e[3], d[1][3] = e[1];
     d[2][1] = e[4], d[2][4] = e[1];
   }
   void calc_hessian(const Vec3*, const double* lambda, bool clamp, Mat3 (*h)[5]) const {
     for (int a = 0; a < 5; ++a)
       for (int b = a; b < 5; ++b) h[a][b] = {};
-    if (clamp) return;
-    h[0][2] = Mat3::diagonal(lambda[0]), h[1][3] = Mat3::diagonal(lambda[1]), h[1][4] = Mat3::diagonal(lambda[2]);
+    if (is_round) {
+      const double pull = clamp ? std::max(0.0, lambda[0]) : lambda[0];
+      h[0][0] = Mat3::diagonal(pull / radius) + (-pull / radius) * Mat3::outer(axis, axis);
+    } else if (!clamp) {
+      h[0][2] = Mat3::diagonal(lambda[0]);
+    }
+    if (!clamp) h[1][3] = Mat3::diagonal(lambda[1]), h[1][4] = Mat3::diagonal(lambda[2]);
   }
 
   static constexpr bool is_tangent(int r) { return r > 0; }
