@@ -74,20 +74,6 @@ bool is_overlapped(const Solid& solid, const Solid& probe) {
   return geometry::overlap([&](const Vec3& d) { return shape::support(form.shape, d); }, local);
 }
 
-/// The box around a turned box: its half edges are sums of the absolute parts of the turned ones.
-Bounds box_of(const Solid& solid) {
-  const auto [x, y, z, w] = solid.turn;
-  const Bounds& own = solid.form->box;
-  const Vec3 middle = solid.position + rotate(solid.turn, 0.5 * (own.low + own.high)),
-             half = 0.5 * (own.high - own.low);
-  const double xy = 2 * x * y, xz = 2 * x * z, yz = 2 * y * z, xw = 2 * x * w, yw = 2 * y * w, zw = 2 * z * w;
-  const Vec3 reach{
-      std::abs(1 - 2 * (y * y + z * z)) * half.x + std::abs(xy - zw) * half.y + std::abs(xz + yw) * half.z,
-      std::abs(xy + zw) * half.x + std::abs(1 - 2 * (x * x + z * z)) * half.y + std::abs(yz - xw) * half.z,
-      std::abs(xz - yw) * half.x + std::abs(yz + xw) * half.y + std::abs(1 - 2 * (x * x + y * y)) * half.z};
-  return {middle - reach, middle + reach};
-}
-
 }  // namespace
 
 Vec3 closest(const Form& form, const Vec3& place) {
@@ -185,12 +171,26 @@ double reach(const Outline& outline, const Vec3& place) {
   return std::ldexp(std::ceil(part * digits) / digits, exponent);
 }
 
+/// The box around a turned box: its half edges are sums of the absolute parts of the turned ones.
+Bounds bounds(const Solid& solid, const Vec3& anchor) {
+  const auto [x, y, z, w] = solid.turn;
+  const Bounds& own = solid.form->box;
+  const Vec3 middle = solid.position - anchor + rotate(solid.turn, 0.5 * (own.low + own.high)),
+             half = 0.5 * (own.high - own.low);
+  const double xy = 2 * x * y, xz = 2 * x * z, yz = 2 * y * z, xw = 2 * x * w, yw = 2 * y * w, zw = 2 * z * w;
+  const Vec3 reach{
+      std::abs(1 - 2 * (y * y + z * z)) * half.x + std::abs(xy - zw) * half.y + std::abs(xz + yw) * half.z,
+      std::abs(xy + zw) * half.x + std::abs(1 - 2 * (x * x + z * z)) * half.y + std::abs(yz - xw) * half.z,
+      std::abs(xz - yw) * half.x + std::abs(yz + xw) * half.y + std::abs(1 - 2 * (x * x + y * y)) * half.z};
+  return {middle - reach, middle + reach};
+}
+
 Bounds bounds(const Outline& outline) {
   constexpr double far = std::numeric_limits<double>::infinity();
   Bounds all{{far, far, far}, {-far, -far, -far}};
   for (const Solid& solid : outline.solids) {
     if (solid.form->is_endless) return {{-far, -far, -far}, {far, far, far}};
-    all = joined(all, box_of(solid));
+    all = joined(all, bounds(solid, {}));
   }
   for (const Line& line : outline.lines) {
     const Vec3 reach{line.radius, line.radius, line.radius};

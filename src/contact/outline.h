@@ -74,5 +74,7 @@ bool is_overlapped(const Outline&, const Solid& probe);
 double reach(const Outline&, const Vec3& place);
 /// The box of all parts; infinite for an endless one.
 geometry::Bounds bounds(const Outline&);
+/// The box of a solid, relative to an anchor.
+geometry::Bounds bounds(const Solid&, const Vec3& anchor);
 
 }  // namespace iota::contact

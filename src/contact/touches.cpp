@@ -1,184 +1,144 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/touches.h"
 
-#include "math/mat3.h"
-#include "shape/shape_list.h"
+#include "contact/round_pairs.h"
+#include "geometry/box_tree.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
-#include <variant>
 
 namespace iota::contact {
 
 namespace {
 
-/// Sine of the tilt of a disk below which it lies rather than rolls: the ball that touches its rim all around is then far
-/// away, so that its distance would change too much with the tilt.
-constexpr double lying = 0.5;
-constexpr std::uint32_t points_of_rim = 6;
-constexpr double vanishing = 1e-7, offset = 1e-3;  ///< of a size: see plane_of
-
-struct Plane {
-  Vec3 origin, normal;
-};
-
-Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
-
-double size_of(const Form& form) { return form.is_endless ? 1 : norm(form.box.high - form.box.low); }
-
-/// The plane that touches a solid nearest to a place of a body, whose middle is outside. A place on the surface says nothing
-/// about the normal: a place a little nearer to the middle does. An open mesh has its outside where the middle is.
-std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3& middle) {
-  const Form& form = *solid.form;
-  const Quaternion back = conjugate(solid.turn);
-  const Vec3 local = rotate(back, place - solid.position);
-  if (const auto* const half = std::get_if<HalfSpace>(&form.shape)) {
-    const Vec3 normal = rotate(solid.turn, unit(half->normal));
-    return Plane{solid.position, normal};
-  }
-  const double size = size_of(form);
-  const Vec3 point = closest(form, local), outwards = rotate(back, middle - solid.position) - point;
-  Vec3 away = local - point;
-  if (!(norm(away) > vanishing * size)) {
-    if (!(norm(outwards) > vanishing * size)) return {};
-    const Vec3 further = point + std::min(1.0, offset * size / norm(outwards)) * outwards;
-    away = further - closest(form, further);
-    if (!(norm(away) > 0)) return {};
-  } else if (form.mesh && !form.mesh->is_closed() ? dot(away, outwards) < 0 : is_within(form, local)) {
-    away = -1.0 * away;
-  }
-  return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away))};
+geometry::Bounds box_of_line(const Line& line, const Vec3& anchor) {
+  const Vec3 reach{line.radius, line.radius, line.radius};
+  return geometry::joined({line.a - anchor - reach, line.a - anchor + reach}, {line.b - anchor - reach, line.b - anchor + reach});
 }
 
-std::optional<Plane> plane_of(const Line& line, const Vec3& place) {
-  const Vec3 middle = nearest_of_middle(line, place);
-  if (!(norm(place - middle) > 0)) return {};
-  const Vec3 normal = unit(place - middle);
-  return Plane{middle + line.radius * normal, normal};
+geometry::Bounds grown(geometry::Bounds box, double by) {
+  const Vec3 reach{by, by, by};
+  return {box.low - reach, box.high + reach};
 }
 
-/// The plane of the part that is nearest to a place of a body.
-std::optional<Plane> plane_of(const Outline& other, const Vec3& place, const Vec3& middle) {
-  std::optional<Plane> best;
-  double least = 0;
-  const auto take = [&](const std::optional<Plane>& plane) {
-    if (!plane) return;
-    const double apart = dot(plane->normal, place - plane->origin);
-    if (!best || apart < least) best = plane, least = apart;
+const Vec3& anchor_of(const Outline& outline) {
+  return outline.solids.empty() ? outline.lines.front().a : outline.solids.front().position;
+}
+
+/// Lines share points, so that they may find the same touch twice.
+void drop_duplicates(std::vector<Touch>& found, std::size_t begin) {
+  const auto is_same = [](const Touch& a, const Touch& b) {
+    return a.part == b.part && a.feature == b.feature && a.other_part == b.other_part && a.other_feature == b.other_feature &&
+           a.is_turned == b.is_turned;
   };
-  for (const Solid& solid : other.solids) take(plane_of(solid, place, middle));
-  for (const Line& line : other.lines) take(plane_of(line, place));
-  return best;
-}
-
-/// A ball of the outline: its corner, its end, or the ball that touches a rim from within.
-struct Feature {
-  std::uint32_t number;
-  Vec3 center;
-  double radius;
-};
-
-/// A circle around an axis, with a wire of some radius: of a disk's rim, of a torus.
-template <class Visit>
-void visit_rim(std::uint32_t number, const Vec3& center, const Vec3& axis, double radius, double wire, const Vec3& down,
-               Visit visit) {
-  const double along = dot(down, axis), across = std::sqrt(std::max(0.0, 1 - along * along));
-  // The normal through the lowest point meets the axis in the center of a ball that touches the circle all around, so that
-  // what rolls keeps its distance.
-  if (across > lying) return visit({number, center - (radius * along / across) * axis, radius / across + wire});
-  const double least = 1e-3;
-  if (across > least) visit({number, center + (radius / across) * (down - along * axis), wire});
-  const Vec3 side = unit(any_perpendicular(axis)), third = cross(axis, side);
-  for (std::uint32_t k = 0; k < points_of_rim; ++k) {
-    const double turn = 2 * std::numbers::pi * k / points_of_rim;
-    visit({number + 1 + k, center + radius * (std::cos(turn) * side + std::sin(turn) * third), wire});
+  std::size_t end = begin;
+  for (std::size_t k = begin; k < found.size(); ++k) {
+    bool is_known = false;
+    for (std::size_t i = begin; i < end && !is_known; ++i) is_known = is_same(found[i], found[k]);
+    if (!is_known) found[end++] = found[k];
   }
-}
-
-/// visit(feature): in the shape's frame, of those that may be nearest to a plane in the direction `down`. What is round in
-/// several ways is as round as along the way that it rolls.
-template <class Visit>
-void visit_features(const Shape& shape, const Vec3& down, const Vec3& spin, Visit visit) {
-  constexpr std::uint32_t rim = 1 + points_of_rim;  // numbers
-  if (const auto* const s = std::get_if<Sphere>(&shape)) {
-    visit({0, {}, s->radius});
-  } else if (const auto* const b = std::get_if<Box>(&shape)) {
-    const Vec3 half = 0.5 * b->size - Vec3{b->rounding, b->rounding, b->rounding};
-    for (std::uint32_t k = 0; k < 8; ++k)
-      visit({k, {k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z}, b->rounding});
-  } else if (const auto* const c = std::get_if<Capsule>(&shape)) {
-    for (std::uint32_t k = 0; k < 2; ++k) visit({k, {(k ? 0.5 : -0.5) * c->length, 0, 0}, c->radius});
-  } else if (const auto* const c = std::get_if<Cylinder>(&shape)) {
-    for (std::uint32_t k = 0; k < 2; ++k)
-      visit_rim(rim * k, {(k ? 1 : -1) * (0.5 * c->length - c->rounding), 0, 0}, {1, 0, 0}, c->radius - c->rounding,
-                c->rounding, down, visit);
-  } else if (const auto* const c = std::get_if<Cone>(&shape)) {
-    visit({rim, {0.5 * c->length, 0, 0}, 0.0});
-    visit_rim(0, {-0.5 * c->length, 0, 0}, {1, 0, 0}, c->radius, 0, down, visit);
-  } else if (const auto* const t = std::get_if<Torus>(&shape)) {
-    for (std::uint32_t k = 0; k < (t->stretch > 0 ? 2u : 1u); ++k)
-      visit_rim(rim * k, {(k ? 0.5 : -0.5) * t->stretch, 0, 0}, {0, 0, 1}, t->radius, t->tube, down, visit);
-  } else if (const auto* const e = std::get_if<Ellipsoid>(&shape)) {
-    const Vec3 half = 0.5 * e->size;
-    const Vec3 scaled{half.x * down.x, half.y * down.y, half.z * down.z};
-    const Vec3 twice{half.x * scaled.x, half.y * scaled.y, half.z * scaled.z};
-    const double reach = norm(scaled);
-    // The radius of curvature, by the Hessian of the support function |A d|: along t, or the mean.
-    const Vec3 t = cross(spin, down), a{half.x * t.x, half.y * t.y, half.z * t.z};
-    const double along = dot(twice, t), squared = dot(t, t), cubed = reach * reach * reach;
-    const double radius = squared > 0 ? (dot(a, a) / reach - along * along / cubed) / squared
-                                      : 0.5 * (dot(half, half) / reach - dot(twice, twice) / cubed);
-    const double ball = std::clamp(radius, 0.0, dot(half, half) / std::min({half.x, half.y, half.z}));
-    visit({0, (1 / reach) * twice - ball * down, ball});
-  }
+  found.resize(end);
 }
 
 }  // namespace
 
-const std::vector<Vec3>& TouchFinder::corners_of(const std::shared_ptr<const Form>& form) {
-  std::erase_if(corners_, [](const auto& each) { return each.second.form.expired(); });
-  Corners& corners = corners_[form.get()];
-  if (corners.form.expired()) corners = {form, convex_hull(form->mesh->vertices()).vertices};
-  return corners.places;
+const Polytope* TouchFinder::hull_of(const std::shared_ptr<const Form>& form) {
+  const auto known = hulls_.find(form.get());
+  if (known != hulls_.end() && !known->second.form.expired()) return known->second.polytope ? &*known->second.polytope : nullptr;
+  std::erase_if(hulls_, [](const auto& each) { return each.second.form.expired(); });
+  Hull& hull = hulls_[form.get()];
+  hull.form = form;
+  hull.polytope = form->mesh->is_closed() ? try_polytope(form->mesh->mesh()) : std::nullopt;
+  return hull.polytope ? &*hull.polytope : nullptr;
 }
 
-void TouchFinder::find(const Outline& body, const Vec3& spin, const Outline& other, double within,
+TouchFinder::Part& TouchFinder::add(Parts& parts) {
+  if (parts.count == parts.parts.size()) parts.parts.emplace_back();
+  Part& part = parts.parts[parts.count++];
+  part.solid = nullptr, part.line = nullptr, part.hull = nullptr;
+  part.is_placed = false;
+  return part;
+}
+
+void TouchFinder::list(const Outline& outline, const Vec3& anchor, Parts& parts) {
+  parts.count = parts.convex = 0;
+  for (const Solid& solid : outline.solids) {
+    Part& part = add(parts);
+    part.solid = &solid;
+    if (solid.form->mesh) part.hull = hull_of(solid.form);
+    part.is_convex = part.hull || has_simple_core(solid);
+    if (part.is_convex) part.box = bounds(solid, anchor), ++parts.convex;
+  }
+  for (const Line& line : outline.lines) {
+    Part& part = add(parts);
+    part.line = &line;
+    part.is_convex = true, part.box = box_of_line(line, anchor), ++parts.convex;
+  }
+}
+
+void TouchFinder::find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way,
                        std::vector<Touch>& found) {
-  Vec3 middle;
-  for (const Line& line : body.lines) middle += (0.5 / static_cast<double>(body.lines.size())) * (line.a + line.b);
-  const auto look = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius) {
-    const std::optional<Plane> plane = plane_of(other, center, middle);
-    if (!plane) return;
-    const double gap = dot(plane->normal, center - plane->origin) - radius;
-    if (!(gap <= within)) return;
-    found.push_back({.part = part, .feature = feature, .center = center, .place = center - radius * plane->normal, .origin = plane->origin, .normal = plane->normal, .radius = radius, .gap = gap});
-  };
-  for (const Solid& solid : body.solids) {
-    middle = solid.position + rotate(solid.turn, 0.5 * (solid.form->box.low + solid.form->box.high));
-    const auto to_world = [&](const Vec3& local) { return solid.position + rotate(solid.turn, local); };
-    if (solid.form->mesh) {
-      const std::vector<Vec3>& corners = corners_of(solid.form);
-      for (std::uint32_t k = 0; k < corners.size(); ++k) look(solid.number, k, to_world(corners[k]), 0);
-      continue;
-    }
-    const std::optional<Plane> plane = plane_of(other, middle, middle);
-    if (!plane) continue;
-    const Vec3 down = rotate(conjugate(solid.turn), -1.0 * plane->normal);
-    visit_features(solid.form->shape, down, rotate(conjugate(solid.turn), spin), [&](const Feature& feature) {
-      look(solid.number, feature.number, to_world(feature.center), feature.radius);
-    });
+  for (Part* const part : {&first, &second}) {
+    if (part->is_placed) continue;
+    if (part->line)
+      place_part(*part->line, anchor, part->placed);
+    else
+      place_part(*part->solid, part->hull, anchor, part->placed);
+    part->is_placed = true;
   }
+  const ConvexPart &a = first.placed, &b = second.placed;
+  TouchWriter writer(a, b, anchor, within, found);
+  if (a.normals.empty() && b.normals.empty()) return add_touches_of_segments(writer);
+  const double radius = a.radius + b.radius;
+  const std::optional<Axis> axis = find_axis(a, b, way, within + radius);
+  if (!axis) return;
+  if (radius > 0 && axis->most_apart > 0 && add_touches_of_corners(writer, axis->most_apart)) return;
+  clipper_.add_touches(*axis, writer);
+}
+
+void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Outline& second,
+                       const Vec3& spin_of_second, double within, std::vector<Touch>& found, const Vec3& way) {
+  if ((first.solids.empty() && first.lines.empty()) || (second.solids.empty() && second.lines.empty())) return;
   const std::size_t before = found.size();
-  for (const Line& line : body.lines) {  // lines share points
-    const auto is_known = [&](std::uint32_t particle) {
-      return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
-                         [&](const Touch& touch) { return touch.part == particle; });
-    };
-    if (!is_known(line.p)) look(line.p, 0, line.a, line.radius);
-    if (!is_known(line.q)) look(line.q, 0, line.b, line.radius);
+  const Vec3 anchor = anchor_of(second);
+  list(first, anchor, first_), list(second, anchor, second_);
+  if (first_.convex < first_.count || second_.convex < second_.count)
+    find_corners(spin_of_first, spin_of_second, within, found);
+  for (std::size_t i = 0; i < first_.count; ++i) {
+    if (!first_.parts[i].is_convex) continue;
+    const geometry::Bounds box = grown(first_.parts[i].box, within);
+    for (std::size_t k = 0; k < second_.count; ++k)
+      if (second_.parts[k].is_convex && geometry::overlap(box, second_.parts[k].box))
+        find(first_.parts[i], second_.parts[k], anchor, within, way, found);
   }
+  if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
+}
+
+/// Parts that are not convex have no planes between them and others: corners of each against surfaces of the other.
+void TouchFinder::find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within,
+                               std::vector<Touch>& found) {
+  enum Which { convex, others, closed, all };
+  const auto choose = [](const Parts& parts, Which which, PartList& list) {
+    list.clear();
+    for (std::size_t k = 0; k < parts.count; ++k) {
+      const Part& part = parts.parts[k];
+      const bool is_open = part.solid && (part.solid->form->is_endless || (part.solid->form->mesh && !part.solid->form->mesh->is_closed()));
+      if (which == convex ? !part.is_convex : which == others ? part.is_convex : which == closed && is_open) continue;
+      if (part.line) list.lines.push_back(part.line);
+      if (part.solid) list.solids.push_back(part.solid);
+    }
+  };
+  const auto look = [&](Which of_first, Which of_second, const CornerFinder::Names& names) {
+    choose(first_, of_first, listed_), choose(second_, of_second, other_listed_);
+    if (names.is_turned)
+      corners_.find(other_listed_, spin_of_second, listed_, within, names, found);
+    else
+      corners_.find(listed_, spin_of_first, other_listed_, within, names, found);
+  };
+  constexpr std::uint32_t of_convex = 6u << 28;
+  look(all, others, {});
+  look(others, convex, {false, of_convex});
+  look(others, closed, {true, of_convex});
 }
 
 }  // namespace iota::contact

@@ -1,31 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contact/corner_touches.h"
+#include "contact/manifold.h"
 #include "contact/outline.h"
 #include "contact/touch.h"
 
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace iota::contact {
 
-/// Finds the touches of an outline with another one. The corners, ends and rims of the first are looked at, not those of
-/// the second: the edge of a table against the face of a box is not found. The other is met as contact::near says.
+/// Finds the touches of two outlines.
+///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
+///   Half-spaces, meshes that are not convex or open, rings   corners, ends and rims of the other outline, and those of a
+///                  mesh or ring against a convex part
 class TouchFinder {
  public:
-  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of the body, rad/s.
-  void find(const Outline& body, const Vec3& spin, const Outline& other, double within, std::vector<Touch>& found);
+  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of each body, rad/s. way: of the first
+  /// relative to the second in the coming step, m, where known: see find_axis.
+  void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
+            double within, std::vector<Touch>& found, const Vec3& way = {});
 
  private:
-  const std::vector<Vec3>& corners_of(const std::shared_ptr<const Form>&);
-
-  struct Corners {
-    std::weak_ptr<const Form> form;
-    std::vector<Vec3> places;
+  struct Part {
+    const Solid* solid = nullptr;  ///< or a line
+    const Line* line = nullptr;
+    geometry::Bounds box;
+    bool is_convex = false, is_placed = false;
+    const Polytope* hull = nullptr;
+    ConvexPart placed;
   };
-  std::map<const Form*, Corners> corners_;  ///< of meshes: the vertices of their hulls
+  /// Kept for their capacity.
+  struct Parts {
+    std::vector<Part> parts;
+    std::size_t count = 0, convex = 0;
+  };
+  struct Hull {
+    std::weak_ptr<const Form> form;
+    std::optional<Polytope> polytope;
+  };
+  void list(const Outline&, const Vec3& anchor, Parts&);
+  Part& add(Parts&);
+  const Polytope* hull_of(const std::shared_ptr<const Form>&);
+  void find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within, std::vector<Touch>& found);
+  void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
+
+  Parts first_, second_;
+  Clipper clipper_;
+  CornerFinder corners_;
+  PartList listed_, other_listed_;
+  std::map<const Form*, Hull> hulls_;  ///< of meshes
 };
 
 }  // namespace iota::contact

@@ -33,6 +33,7 @@ class TriangleTree {
 
   bool is_closed() const { return is_closed_; }
   const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
+  const Mesh& mesh() const { return mesh_; }
   /// Around all of them.
   const Bounds& box() const { return box_; }
 

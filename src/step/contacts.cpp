@@ -128,29 +128,8 @@ bool are_plain(const model::Model& model, std::uint32_t a, std::uint32_t b) {
 }
 
 
-// TODO replaced by the manifolds
-void find_both(contact::TouchFinder& finder, const contact::Outline& first, const Vec3& spin, const contact::Outline& second, const Vec3& spin2, double within, bool both, std::vector<contact::Touch>& found) {
-  const auto ball = [](const contact::Outline& o) -> std::optional<std::pair<Vec3, double>> {
-    if (o.solids.size() == 1 && o.lines.empty())
-      if (const auto* s = std::get_if<Sphere>(&o.solids[0].form->shape)) return std::pair(o.solids[0].position, s->radius);
-    return {};
-  };
-  const auto a = ball(first), b = ball(second);
-  if (a && b) {
-    const Vec3 d = a->first - b->first; const double l = norm(d);
-    if (l - a->second - b->second > within) return;
-    contact::Touch t; t.form = contact::TouchForm::round; t.center = a->first; t.origin = b->first; t.normal = (1/l)*d;
-    t.radius = a->second + b->second; t.gap = l - t.radius; t.place = t.center - a->second * t.normal;
-    found.push_back(t);
-    return;
-  }
-  finder.find(first, spin, second, within, found);
-  const auto n = found.size();
-  if (!both) return;
-  finder.find(second, spin2, first, within, found);
-  for (auto i = n; i < found.size(); ++i) found[i].is_turned = true;
-}
-}
+}  // namespace
+
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h) {
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
@@ -183,7 +162,8 @@ void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   found_.clear();
   const contact::Outline& outline = outlines.placed(first);
   if (other) (void)outlines.placed(second);
-  find_both(touches_, outline, spins[0], outlines.described(second), spins[1], within(mover, other), other != nullptr, found_);
+  const Vec3 way = h_ * (other ? mover.velocity - other->velocity : mover.velocity);
+  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other), found_, way);
   keep_the_outermost(found_, size);
   ingredient::Contacts::take(model, first, second, found_, {size, {spins[0], spins[1]}, h_});
 }

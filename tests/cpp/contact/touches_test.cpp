@@ -35,7 +35,7 @@ TEST(Touches, have_the_gap_of_the_lowest_point_of_the_shape) {
     const Vec3 down = rotate(conjugate(q), {0, -1, 0});
     const double lowest = (position + rotate(q, shape::support(shape, down))).y;
     std::vector<Touch> found;
-    finder.find(outline_of(shape, position, q), {1, 2, 3}, ground, 10, found);
+    finder.find(outline_of(shape, position, q), {1, 2, 3}, ground, {}, 10, found);
     ASSERT_FALSE(found.empty());
     double least = std::numeric_limits<double>::infinity();
     for (const Touch& touch : found) {
@@ -53,7 +53,7 @@ TEST(Touches, of_a_corner_on_a_face_know_its_normal) {
   TouchFinder finder;
   for (const double height : {0.0, 1e-12, 1e-3, -1e-3}) {
     std::vector<Touch> found;
-    finder.find(outline_of(Box{{0.2, 0.2, 0.2}}, {0.3, 0.1 + height, 0.2}, {}), {}, table, 0.01, found);
+    finder.find(outline_of(Box{{0.2, 0.2, 0.2}}, {0.3, 0.1 + height, 0.2}, {}), {}, table, {}, 0.01, found);
     ASSERT_EQ(found.size(), 4u) << height;
     for (const Touch& touch : found) {
       EXPECT_LT(norm(touch.normal - Vec3{0, 1, 0}), 1e-9);
@@ -70,7 +70,7 @@ TEST(Touches, of_a_corner_behind_an_open_mesh_are_on_the_side_of_the_middle_of_t
   for (const double height : {0.0, 1e-3, -1e-3})
     for (const double side : {1.0, -1.0}) {
       std::vector<Touch> found;
-      finder.find(outline_of(Box{{0.2, 0.2, 0.2}}, {0.3, side * (0.1 + height), 0.2}, {}), {}, floor, 0.01, found);
+      finder.find(outline_of(Box{{0.2, 0.2, 0.2}}, {0.3, side * (0.1 + height), 0.2}, {}), {}, floor, {}, 0.01, found);
       ASSERT_EQ(found.size(), 4u) << height;
       for (const Touch& touch : found) {
         EXPECT_LT(norm(touch.normal - Vec3{0, side, 0}), 1e-9);
@@ -84,7 +84,7 @@ TEST(Touches, of_lines_are_at_their_ends_each_once) {
   Outline rods;
   rods.lines = {{1, 2, 0.1, {0, 0.1, 0}, {1, 0.2, 0}}, {2, 3, 0.1, {1, 0.2, 0}, {2, 0.1, 0}}};
   std::vector<Touch> found;
-  TouchFinder().find(rods, {}, ground, 1, found);
+  TouchFinder().find(rods, {}, ground, {}, 1, found);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_NEAR(found[1].gap, 0.1, 1e-12);
 }

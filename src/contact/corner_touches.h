@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contact/outline.h"
+#include "contact/touch.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace iota::contact {
+
+/// Some parts of an outline.
+struct PartList {
+  std::vector<const Solid*> solids;
+  std::vector<const Line*> lines;
+
+  void clear() { solids.clear(), lines.clear(); }
+  bool is_empty() const { return solids.empty() && lines.empty(); }
+};
+
+/// Finds the touches of corners, ends and rims with the nearest surface: for what has neither faces nor a plane that parts it
+/// from others, such as meshes that are not convex. The edge of a table against the face of a box is not found.
+class CornerFinder {
+ public:
+  /// How the touches are named: whether the corners are those of the second outline, and a number of the planes.
+  struct Names {
+    bool is_turned = false;
+    std::uint32_t planes = 0;
+  };
+  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of the body with the corners, rad/s.
+  void find(const PartList& corners, const Vec3& spin, const PartList& planes, double within, const Names&,
+            std::vector<Touch>& found);
+
+ private:
+  const std::vector<Vec3>& corners_of(const std::shared_ptr<const Form>&);
+
+  struct Corners {
+    std::weak_ptr<const Form> form;
+    std::vector<Vec3> places;
+  };
+  std::map<const Form*, Corners> corners_;  ///< of meshes: the vertices of their hulls
+};
+
+}  // namespace iota::contact

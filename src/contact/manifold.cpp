@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/manifold.h"
+
+#include "contact/segments.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::contact {
+
+namespace {
+
+constexpr double flush_share = 1e-6;  ///< of the size: a corner that is so far beyond a side is still over the face
+constexpr double same_share = 1e-6;   ///< of the size: points so near to each other are one
+constexpr std::size_t most_face_points = 4;
+constexpr std::uint32_t side_bit = 1u << 31;  ///< a number of a side, not of an edge
+
+}  // namespace
+
+void TouchWriter::add_face(bool is_turned, const Vec3& center, const Vec3& normal, double apart,
+                           const FeatureName& of_point, const FeatureName& of_plane) {
+  const ConvexPart &point = is_turned ? second_ : first_, &plane = is_turned ? first_ : second_;
+  const double gap = apart - point.radius - plane.radius;
+  if (!(gap <= within_)) return;
+  const FeatureName &first = is_turned ? of_plane : of_point, &second = is_turned ? of_point : of_plane;
+  found_.push_back({.part = first.part,
+                    .feature = first.feature,
+                    .other_part = second.part,
+                    .other_feature = second.feature,
+                    .is_turned = is_turned,
+                    .form = TouchForm::face,
+                    .center = anchor_ + center,
+                    .place = anchor_ + center - point.radius * normal,
+                    .origin = anchor_ + center - (apart - plane.radius) * normal,
+                    .normal = normal,
+                    .axis = {},
+                    .radius = point.radius,
+                    .gap = gap});
+}
+
+void TouchWriter::add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first,
+                            const FeatureName& of_second) {
+  const double radius = first_.radius + second_.radius, gap = dot(normal, on_first - on_second) - radius;
+  if (!(gap <= within_)) return;
+  found_.push_back({.part = of_first.part,
+                    .feature = of_first.feature,
+                    .other_part = of_second.part,
+                    .other_feature = of_second.feature,
+                    .is_turned = false,
+                    .form = TouchForm::edges,
+                    .center = anchor_ + on_first,
+                    .place = anchor_ + on_first - first_.radius * normal,
+                    .origin = anchor_ + on_second,
+                    .normal = normal,
+                    .axis = {},
+                    .radius = radius,
+                    .gap = gap});
+}
+
+void TouchWriter::add_round(const Vec3& on_first, const Vec3& on_second, const Vec3& axis, const FeatureName& of_first,
+                            const FeatureName& of_second) {
+  const Vec3 between = on_first - on_second, away = between - dot(axis, between) * axis;
+  const double apart = norm(away);
+  if (!(apart > 0)) {  // any direction is as good
+    const Vec3 along = dot(axis, axis) > 0 ? axis : Vec3{1, 0, 0};
+    const Vec3 normal = cross(along, std::abs(along.y) < 0.6 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+    return add_edges(on_first, on_second, (1 / norm(normal)) * normal, of_first, of_second);
+  }
+  const std::size_t before = found_.size();
+  add_edges(on_first, on_second, (1 / apart) * away, of_first, of_second);
+  if (found_.size() > before) found_.back().form = TouchForm::round, found_.back().axis = axis;
+}
+
+void Clipper::add_touches(const Axis& axis, TouchWriter& writer) {
+  if (axis.kind != Axis::Kind::edges) return add_face_touches(axis, writer);
+  const ConvexPart &first = writer.first(), &second = writer.second();
+  const Polytope::Edge &a = first.core->edges[axis.first], &b = second.core->edges[axis.second];
+  const NearestOfSegments nearest =
+      nearest_of_segments(first.corners[a.from], first.corners[a.to], second.corners[b.from], second.corners[b.to]);
+  writer.add_edges(nearest.on_first, nearest.on_second, axis.normal, first.edge_name(axis.first), second.edge_name(axis.second));
+}
+
+void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
+  const bool is_turned = axis.kind == Axis::Kind::face_of_first;
+  const ConvexPart &owner = is_turned ? writer.first() : writer.second(), &other = is_turned ? writer.second() : writer.first();
+  const std::uint32_t face = is_turned ? axis.first : axis.second;
+  const Vec3& normal = owner.normals[face];
+  const Vec3& origin = owner.corners[owner.core->sides[owner.core->faces[face].begin].corner];
+  const double size = std::min(owner.size, other.size), radius = owner.radius + other.radius;
+  start_with_nearest(owner, face, other);
+  clip(owner, face, other);
+  points_.clear();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Corner& corner : polygon_) {
+    const double apart = dot(normal, corner.place - origin);
+    if (!(apart - radius <= writer.within())) continue;
+    const bool is_known = std::ranges::any_of(
+        points_, [&](const FacePoint& point) { return norm(point.place - corner.place) <= same_share * size; });
+    if (!is_known) points_.push_back({corner.place, apart, corner.of_point, corner.of_plane}), least = std::min(least, apart);
+  }
+  // No gap is larger than the distance.
+  constexpr double nearly = 2e-5;
+  if (axis.is_farthest && (polygon_.empty() || (axis.apart > 0 && least > axis.apart * (1 + nearly) + same_share * size))) {
+    const std::uint32_t corner = other.support(-normal);
+    points_.push_back({other.corners[corner], axis.apart, other.corner_name(corner), owner.face_name(face)});
+  }
+  keep_four(size);
+  for (const FacePoint& point : points_)
+    writer.add_face(is_turned, point.place, normal, point.apart, point.of_point, point.of_plane);
+}
+
+/// The corner, edge or face of the other part that is nearest to the plane of a face.
+void Clipper::start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other) {
+  polygon_.clear();
+  const FeatureName plane = owner.face_name(face);
+  const auto add = [&](std::uint32_t corner, std::uint32_t edge) {
+    polygon_.push_back({other.corners[corner], other.corner_name(corner), plane, edge});
+  };
+  incident_ = Polytope::none;
+  if (other.normals.empty()) {
+    for (std::uint32_t k = 0; k < other.corners.size(); ++k) add(k, 0);
+    return;
+  }
+  // One that has the nearest corner.
+  const Vec3& normal = owner.normals[face];
+  double nearest = std::numeric_limits<double>::infinity(), least = 2;
+  for (const Vec3& corner : other.corners) nearest = std::min(nearest, dot(normal, corner));
+  nearest += same_share * std::min(owner.size, other.size);
+  for (std::uint32_t f = 0; f < other.normals.size(); ++f) {
+    const double along = dot(other.normals[f], normal);
+    if (!(along < least - 1e-9)) continue;
+    const Polytope::Face& sides = other.core->faces[f];
+    bool has_nearest = other.is_box;
+    for (std::uint32_t k = sides.begin; k < sides.end && !has_nearest; ++k)
+      has_nearest = dot(normal, other.corners[other.core->sides[k].corner]) <= nearest;
+    if (has_nearest) least = along, incident_ = f;
+  }
+  const Polytope::Face& incident = other.core->faces[incident_];
+  for (std::uint32_t s = incident.begin; s < incident.end; ++s) add(other.core->sides[s].corner, other.core->sides[s].edge);
+}
+
+void Clipper::clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other) {
+  const Polytope::Face& sides = owner.core->faces[face];
+  const double tolerance = flush_share * std::min(owner.size, other.size);
+  for (std::uint32_t s = sides.begin; s < sides.end && !polygon_.empty(); ++s) {
+    const std::uint32_t next = s + 1 < sides.end ? s + 1 : sides.begin;
+    const Vec3 along = owner.corners[owner.core->sides[next].corner] - owner.corners[owner.core->sides[s].corner];
+    const Vec3 outward = cross(along, owner.normals[face]);
+    const double length = norm(outward);
+    if (length > tolerance) clip_by(owner, face, s, other, (1 / length) * outward, tolerance);
+  }
+}
+
+void Clipper::clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other,
+                      const Vec3& outward, double tolerance) {
+  const Vec3& origin = owner.corners[owner.core->sides[side].corner];
+  const auto beyond = [&](const Corner& corner) { return dot(outward, corner.place - origin); };
+  bool is_any_outside = false;
+  for (const Corner& corner : polygon_) is_any_outside = is_any_outside || beyond(corner) > tolerance;
+  if (!is_any_outside) return;
+  clipped_.clear();
+  const bool is_open = polygon_.size() <= 2;  // an edge or a corner
+  for (std::size_t k = 0; k < polygon_.size(); ++k) {
+    const Corner& now = polygon_[k];
+    const double here = beyond(now);
+    const bool is_inside = here <= tolerance;
+    if (is_inside) clipped_.push_back(now);
+    if (is_open && k + 1 == polygon_.size()) break;
+    const Corner& next = polygon_[k + 1 < polygon_.size() ? k + 1 : 0];
+    const double there = beyond(next);
+    if (is_inside == (there <= tolerance)) continue;
+    const double share = std::clamp(here / (here - there), 0.0, 1.0);
+    Corner crossing{now.place + share * (next.place - now.place), {}, {}, is_inside ? side_bit | side : now.edge};
+    if (now.edge & side_bit) {  // two sides of the face: its corner, over a face of the other part
+      const Polytope::Face& loop = owner.core->faces[face];
+      const std::uint32_t before = now.edge & ~side_bit;
+      const bool is_next = side == before + 1 || (before + 1 == loop.end && side == loop.begin);
+      crossing.of_point = other.beneath_name(incident_);
+      crossing.of_plane = owner.corner_name(owner.core->sides[is_next ? side : before].corner);
+    } else {
+      crossing.of_point = other.edge_name(now.edge);
+      crossing.of_plane = owner.side_name(side);
+    }
+    clipped_.push_back(crossing);
+  }
+  std::swap(polygon_, clipped_);
+}
+
+/// The nearest one, that which is farthest from it, and on each side of the line between them that which is farthest from the line. Of
+/// those that are equally good the first one stays.
+void Clipper::keep_four(double size) {
+  constexpr double equal = 1e-3;
+  if (points_.size() <= most_face_points) return;
+  const auto pick = [&](std::size_t begin, auto worth, double tolerance) {
+    std::size_t best = begin;
+    for (std::size_t k = begin + 1; k < points_.size(); ++k)
+      if (worth(points_[k]) > worth(points_[best]) + tolerance) best = k;
+    // The others keep their order.
+    std::rotate(points_.begin() + static_cast<std::ptrdiff_t>(begin), points_.begin() + static_cast<std::ptrdiff_t>(best),
+                points_.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+  };
+  pick(0, [](const FacePoint& p) { return -p.apart; }, same_share * size);
+  const Vec3 a = points_[0].place;
+  pick(1, [&](const FacePoint& p) { return norm(p.place - a); }, equal * size);
+  const Vec3 along = points_[1].place - a;
+  Vec3 normal;
+  double most = 0;
+  for (std::size_t k = 2; k < points_.size(); ++k) {
+    const Vec3 area = cross(along, points_[k].place - a);
+    if (norm(area) > most * (1 + equal)) normal = area, most = norm(area);
+  }
+  const auto area = [&](const FacePoint& p) { return most > 0 ? dot(normal, cross(along, p.place - a)) / most : 0.0; };
+  pick(2, area, equal * size * norm(along));
+  pick(3, [&](const FacePoint& p) { return -area(p); }, equal * size * norm(along));
+  points_.resize(most_face_points);
+}
+
+}  // namespace iota::contact

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contact/axis.h"
+#include "contact/convex_part.h"
+#include "contact/touch.h"
+
+#include <vector>
+
+namespace iota::contact {
+
+/// Makes touches of two parts, in a fixed order: those with gaps of at most `within`. They are at most four.
+class TouchWriter {
+ public:
+  TouchWriter(const ConvexPart& first, const ConvexPart& second, const Vec3& anchor, double within,
+              std::vector<Touch>& found)
+      : first_(first), second_(second), anchor_(anchor), within_(within), found_(found) {}
+
+  /// A point of the one part against a plane of the other. center: of the point's ball; apart: from the core's plane.
+  void add_face(bool is_turned, const Vec3& center, const Vec3& normal, double apart, const FeatureName& of_point,
+                const FeatureName& of_plane);
+  /// Two edges that cross, with their points that are nearest to each other.
+  void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first, const FeatureName& of_second);
+  /// Two corners, or a corner and an edge; axis: along the edge, or zero.
+  void add_round(const Vec3& on_first, const Vec3& on_second, const Vec3& axis, const FeatureName& of_first, const FeatureName& of_second);
+
+  const ConvexPart& first() const { return first_; }
+  const ConvexPart& second() const { return second_; }
+  double within() const { return within_; }
+
+ private:
+  const ConvexPart &first_, &second_;
+  const Vec3& anchor_;
+  double within_;
+  std::vector<Touch>& found_;
+};
+
+/// A point of a face, an edge or a corner that is near a face of another part.
+struct FacePoint {
+  Vec3 place;
+  double apart = 0;
+  FeatureName of_point, of_plane;
+};
+
+/// Clips what is nearest to a face of a part by the sides of this face: Sutherland, Hodgman 1974.
+class Clipper {
+ public:
+  /// The touches of two parts that are apart along an axis.
+  void add_touches(const Axis&, TouchWriter&);
+
+ private:
+  struct Corner {
+    Vec3 place;
+    FeatureName of_point, of_plane;
+    std::uint32_t edge = 0;  ///< of the way to the next one: of the part, or beyond those a side of the face
+  };
+  void add_face_touches(const Axis&, TouchWriter&);
+  void start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
+  void clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
+  void clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other, const Vec3& outward, double tolerance);
+  FeatureName name_of_point(const ConvexPart& other, std::uint32_t edge) const;
+  void keep_four(double size);
+
+  // Scratch, kept for its capacity.
+  std::vector<Corner> polygon_, clipped_;
+  std::vector<FacePoint> points_;
+  std::uint32_t incident_ = Polytope::none;
+};
+
+}  // namespace iota::contact
