@@ -38,6 +38,8 @@ class AxisSearch {
     if (is_better(of_first_, *best)) best = &of_first_;
     if (is_better(edges_, *best)) best = &edges_;
     best->axis.most_apart = most_apart_;
+    if (edges_.score > -unbounded)
+      best->axis.edges = {edges_.axis.first, edges_.axis.second, edges_.axis.normal, edges_.axis.apart};
     best->axis.is_farthest = best->axis.apart >= most_apart_ - 2 * margin_of(best->axis, size_);
     return best->axis;
   }

@@ -4,6 +4,7 @@
 #include "contact/convex_part.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace iota::contact {
@@ -17,6 +18,12 @@ struct Axis {
   double apart = 0;                     ///< m, negative: overlap
   double most_apart = 0;                ///< of all axes; never more than the distance of the cores
   bool is_farthest = true;              ///< most_apart is not along another direction
+  struct Edges {
+    std::uint32_t first = 0, second = 0;
+    Vec3 normal;
+    double apart = -std::numeric_limits<double>::infinity();
+  };
+  Edges edges;  ///< the best two
 };
 
 /// Separating axis test: the axis along which the cores are farthest apart, by the faces of both and by pairs of edges.

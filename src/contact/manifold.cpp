@@ -72,12 +72,18 @@ void TouchWriter::add_round(const Vec3& on_first, const Vec3& on_second, const V
 }
 
 void Clipper::add_touches(const Axis& axis, TouchWriter& writer) {
-  if (axis.kind != Axis::Kind::edges) return add_face_touches(axis, writer);
+  if (axis.kind == Axis::Kind::edges)
+    add_edge_touch(axis.edges, writer);
+  else
+    add_face_touches(axis, writer);
+}
+
+void Clipper::add_edge_touch(const Axis::Edges& edges, TouchWriter& writer) {
   const ConvexPart &first = writer.first(), &second = writer.second();
-  const Polytope::Edge &a = first.core->edges[axis.first], &b = second.core->edges[axis.second];
+  const Polytope::Edge &a = first.core->edges[edges.first], &b = second.core->edges[edges.second];
   const NearestOfSegments nearest =
       nearest_of_segments(first.corners[a.from], first.corners[a.to], second.corners[b.from], second.corners[b.to]);
-  writer.add_edges(nearest.on_first, nearest.on_second, axis.normal, first.edge_name(axis.first), second.edge_name(axis.second));
+  writer.add_edges(nearest.on_first, nearest.on_second, edges.normal, first.edge_name(edges.first), second.edge_name(edges.second));
 }
 
 void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
@@ -98,13 +104,19 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
         points_, [&](const FacePoint& point) { return norm(point.place - corner.place) <= same_share * size; });
     if (!is_known) points_.push_back({corner.place, apart, corner.of_point, corner.of_plane}), least = std::min(least, apart);
   }
-  // No gap is larger than the distance.
+  // The least gap is not larger than the distance: what is nearest may be beyond the face, or not on the clipped one.
   constexpr double nearly = 2e-5;
-  if (axis.is_farthest && (polygon_.empty() || (axis.apart > 0 && least > axis.apart * (1 + nearly) + same_share * size))) {
-    const std::uint32_t corner = other.support(-normal);
-    points_.push_back({other.corners[corner], axis.apart, other.corner_name(corner), owner.face_name(face)});
+  std::size_t most = most_face_points;
+  if (axis.is_farthest && (polygon_.empty() || least > axis.most_apart + nearly * std::abs(axis.most_apart) + same_share * size)) {
+    if (axis.edges.apart > axis.apart) {
+      add_edge_touch(axis.edges, writer);
+      --most;
+    } else if (polygon_.empty() || axis.apart > 0) {
+      const std::uint32_t corner = other.support(-normal);
+      points_.push_back({other.corners[corner], axis.apart, other.corner_name(corner), owner.face_name(face)});
+    }
   }
-  keep_four(size);
+  keep(most, size);
   for (const FacePoint& point : points_)
     writer.add_face(is_turned, point.place, normal, point.apart, point.of_point, point.of_plane);
 }
@@ -188,9 +200,9 @@ void Clipper::clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t
 
 /// The nearest one, that which is farthest from it, and on each side of the line between them that which is farthest from the line. Of
 /// those that are equally good the first one stays.
-void Clipper::keep_four(double size) {
+void Clipper::keep(std::size_t most_points, double size) {
   constexpr double equal = 1e-3;
-  if (points_.size() <= most_face_points) return;
+  if (points_.size() <= most_points) return;
   const auto pick = [&](std::size_t begin, auto worth, double tolerance) {
     std::size_t best = begin;
     for (std::size_t k = begin + 1; k < points_.size(); ++k)
@@ -212,7 +224,7 @@ void Clipper::keep_four(double size) {
   const auto area = [&](const FacePoint& p) { return most > 0 ? dot(normal, cross(along, p.place - a)) / most : 0.0; };
   pick(2, area, equal * size * norm(along));
   pick(3, [&](const FacePoint& p) { return -area(p); }, equal * size * norm(along));
-  points_.resize(most_face_points);
+  points_.resize(most_points);
 }
 
 }  // namespace iota::contact

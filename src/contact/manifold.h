@@ -54,12 +54,13 @@ class Clipper {
     FeatureName of_point, of_plane;
     std::uint32_t edge = 0;  ///< of the way to the next one: of the part, or beyond those a side of the face
   };
+  static void add_edge_touch(const Axis::Edges&, TouchWriter&);
   void add_face_touches(const Axis&, TouchWriter&);
   void start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
   void clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
   void clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other, const Vec3& outward, double tolerance);
   FeatureName name_of_point(const ConvexPart& other, std::uint32_t edge) const;
-  void keep_four(double size);
+  void keep(std::size_t most, double size);
 
   // Scratch, kept for its capacity.
   std::vector<Corner> polygon_, clipped_;
