@@ -44,24 +44,30 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
     g[0] = is_round ? (dot(across(e[0]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius;
     g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
-  void calc_gradient(const Vec3* e, Vec3 (*d)[5]) const {
-    if (is_round)
-      d[0][0] = (1 / radius) * across(e[0]);
-    else
-      d[0][0] = e[2], d[0][2] = e[0];
-    d[1][1] = e[3], d[1][3] = e[1];
-    d[2][1] = e[4], d[2][4] = e[1];
-  }
-  void calc_hessian(const Vec3*, const double* lambda, bool clamp, Mat3 (*h)[5]) const {
-    for (int a = 0; a < 5; ++a)
-      for (int b = a; b < 5; ++b) h[a][b] = {};
-    if (is_round) {
-      const double pull = clamp ? std::max(0.0, lambda[0]) : lambda[0];
-      h[0][0] = Mat3::diagonal(pull / radius) + (-pull / radius) * Mat3::outer(axis, axis);
-    } else if (!clamp) {
-      h[0][2] = Mat3::diagonal(lambda[0]);
+  /// The functions of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
+  void gradients(const Vec3* x, double /*fraction*/, Vec3* out) const {
+    const Vec3 d = arm(0, x, 1), slip = arm(1, x, 1), normal = arm(2, x, 1), first = arm(3, x, 1), second = arm(4, x, 1);
+    const Vec3 outward = is_round ? (1 / radius) * across(d) : normal;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto w = [&](std::size_t arm) { return weights[arm][i]; };
+      out[3 * i] = is_round ? w(0) * outward : w(0) * outward + w(2) * d;
+      out[3 * i + 1] = w(1) * first + w(3) * slip;
+      out[3 * i + 2] = w(1) * second + w(4) * slip;
     }
-    if (!clamp) h[1][3] = Mat3::diagonal(lambda[1]), h[1][4] = Mat3::diagonal(lambda[2]);
+  }
+  void curvature(const Vec3* /*x*/, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
+    const double pull = is_round ? (clamp ? std::max(0.0, lambda[0]) : lambda[0]) / radius : 0;
+    const double of_normal = is_round || clamp ? 0 : lambda[0], of_first = clamp ? 0 : lambda[1], of_second = clamp ? 0 : lambda[2];
+    const Mat3 along = pull != 0 ? Mat3::outer(axis, axis) : Mat3{};
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (std::uint32_t j = i; j < count; ++j, ++blocks) {
+        const auto mixed = [&](std::size_t a, std::size_t b) {
+          return weights[a][i] * weights[b][j] + weights[b][i] * weights[a][j];
+        };
+        const double both = pull * weights[0][i] * weights[0][j];
+        *blocks = Mat3::diagonal(both + of_normal * mixed(0, 2) + of_first * mixed(1, 3) + of_second * mixed(1, 4));
+        if (both != 0) *blocks += -both * along;
+      }
   }
 
   static constexpr bool is_tangent(int r) { return r > 0; }
