@@ -45,22 +45,29 @@ Vec3 unit_or(const Vec3& v, const Vec3& other) {
 /// Whether it moves, by itself or by the script, so that its points are in the rows of its contacts.
 bool has_points(const model::Body& body) { return body.kind != BodyKind::static_; }
 
+/// The points in the rows of its contacts.
+std::span<const std::uint32_t> points_of(const model::Body& body) {
+  return {body.basis.data(), has_points(body) ? std::size_t{body.rank} : 0};
+}
+
 bool has_basis(const Contact& c, const model::Body& p, const model::Body& q) {
-  const std::uint32_t of_q = has_points(q) ? q.rank : 0;
-  return c.of_p == p.rank && c.point_count == p.rank + of_q && std::equal(c.points.begin(), c.points.begin() + p.rank, p.basis.begin()) &&
-         std::equal(c.points.begin() + p.rank, c.points.begin() + c.point_count, q.basis.begin());
+  const auto of_p = points_of(p), of_q = points_of(q);
+  return c.of_p == of_p.size() && c.point_count == of_p.size() + of_q.size() &&
+         std::equal(of_p.begin(), of_p.end(), c.points.begin()) &&
+         std::equal(of_q.begin(), of_q.end(), c.points.begin() + c.of_p);
 }
 
 void take_basis(Contact& c, const model::Body& p, const model::Body& q) {
-  c.points = {}, c.point_count = c.of_p = p.rank;
-  std::copy_n(p.basis.begin(), p.rank, c.points.begin());
-  if (!has_points(q)) return;
-  std::copy_n(q.basis.begin(), q.rank, c.points.begin() + c.point_count);
-  c.point_count += q.rank;
+  const auto of_p = points_of(p), of_q = points_of(q);
+  c.points = {};
+  std::copy(of_q.begin(), of_q.end(), std::copy(of_p.begin(), of_p.end(), c.points.begin()));
+  c.of_p = static_cast<std::uint32_t>(of_p.size());
+  c.point_count = c.of_p + static_cast<std::uint32_t>(of_q.size());
 }
 
-/// Whether it is a plane of the world.
-bool is_of_world(const Contact& c) { return c.point_count == c.of_p; }
+/// Whether it is a plane of the world, or a point of it.
+bool has_world_plane(const Contact& c) { return c.point_count == c.of_p; }
+bool has_world_point(const Contact& c) { return c.of_p == 0; }
 
 /// The turn of a body in the first half of a step of the mid-point rule, by tan(w h/2).
 class HalfTurn {
@@ -79,6 +86,13 @@ class HalfTurn {
   double tangent_;
   Vec3 axis_;
 };
+
+/// The place of p or of q in one of the first two arms.
+Vec3 place_of(const Model& model, const Contact& c, Arm arm, bool of_q) {
+  const double sign = of_q ? -1 : 1;
+  if (of_q ? has_world_plane(c) : has_world_point(c)) return sign * (arm == Arm::center ? c.center : c.place);
+  return sign * sum_over(c, arm, of_q ? c.of_p : 0, of_q ? c.point_count : c.of_p, positions_of(model));
+}
 
 /// Whether only contacts hold a body: easing out an overlap might pull others out of their places.
 bool is_on_its_own(const Model& model, std::uint32_t body) {
@@ -128,7 +142,7 @@ class Sides {
  public:
   Sides(const Model& model, std::uint32_t p, std::uint32_t q) : model_(model), bodies_{p, q} {}
   std::array<double, 4> of(int side, const Vec3& place) {
-    if (side == 1 && !has_points(model_.bodies[bodies_[1]])) return {};
+    if (!has_points(model_.bodies[bodies_[side]])) return {};
     auto& weights = weights_[side];
     if (!weights) weights.emplace(model_, bodies_[side]);
     return weights->of(place);
@@ -153,10 +167,12 @@ struct Places {
       for (std::uint32_t i = c.of_p; i < c.point_count; ++i) c.weights[arm][i] = -minus[i - c.of_p];
     };
     set_arm(Arm::center, center, origin), set_arm(Arm::place, point, other_point);
-    c.origin = origin;
+    c.center = c.place = {};
+    if (has_world_plane(c)) c.center = -1.0 * origin, c.place = -1.0 * other_point;
+    if (has_world_point(c)) c.center = center, c.place = point;
     // Directions turn with a body of three dimensions: what depends only on places of both keeps angular momentum.
     const bool with_q = q.rank == 4;
-    c.turns = !is_of_world(c) && (with_q || (p.rank == 4 && c.form != TouchForm::face));
+    c.turns = !has_world_plane(c) && (with_q || (p.rank == 4 && !has_world_point(c) && c.form != TouchForm::face));
     if (!c.turns) return;
     const std::array directions{&c.normal, &c.first, &c.second};
     const Vec3& from = with_q ? origin : center;
@@ -188,7 +204,7 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   // If the gap closes in this step, the two points are at one place in its middle.
   places.other_point = t.place - 0.5 * t.gap * t.normal;
   places.set(c, p, q, sides);
-  if (is_of_world(c)) return;
+  if (has_world_plane(c)) return;
   // The point of q that touches in the middle of the step.
   const Vec3 closing = velocity_at(model, c, 0, c.point_count), along = closing - dot(closing, t.normal) * t.normal;
   if (is_round)
@@ -268,12 +284,8 @@ void Contacts::prepare(Model& model, std::uint32_t body) {
     Contact& c = model.contacts[slot];
     const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
     if (has_basis(c, p, q)) return;
-    const auto side = [&](Arm arm, bool of_q) {
-      return of_q ? -1.0 * sum_over(c, arm, c.of_p, c.point_count, positions_of(model))
-                  : sum_over(c, arm, 0, c.of_p, positions_of(model));
-    };
-    const Places places{side(Arm::center, false), is_of_world(c) ? c.origin : side(Arm::center, true),
-                        side(Arm::place, false), side(Arm::place, true)};
+    const Places places{place_of(model, c, Arm::center, false), place_of(model, c, Arm::center, true),
+                        place_of(model, c, Arm::place, false), place_of(model, c, Arm::place, true)};
     Sides sides(model, c.p, c.q);
     take_basis(c, p, q);
     places.set(c, p, q, sides);
@@ -318,7 +330,7 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     // Inactive, or hinged to each other meanwhile.
     if (!is_here || !moves || std::any_of(nodes.begin() + c.of_p, nodes.end(), has_node)) continue;
     row.count = c.point_count;
-    row.first_side = c.of_p < c.point_count ? c.of_p : 0;
+    row.first_side = has_world_plane(c) ? 0 : c.of_p;
     row.weights = c.weights;  // they tell which arms are places of the world: Problem::set_origin
     problem.add(row, {owner, {}, slot});
   }
@@ -337,11 +349,11 @@ std::array<double, 2> natural_compliances(const solver::ContactConstraint& row, 
   return sum;
 }
 
-/// The extent of the body with the point.
+/// The extent of the larger body.
 double size_of(const solver::ContactConstraint& row, const Contact& c, const Problem& problem) {
   double size = 0;
-  for (std::uint32_t i = 1; i < c.of_p; ++i)
-    size = std::max(size, norm(problem.position[row.nodes[i]] - problem.position[row.nodes[0]]));
+  for (std::uint32_t i = 0; i < c.point_count; ++i)
+    size = std::max(size, norm(problem.position[row.nodes[i]] - problem.position[row.nodes[i < c.of_p ? 0 : c.of_p]]));
   return size;
 }
 
@@ -354,7 +366,8 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
     row.weights = c.weights;
-    row.set_world_place(is_of_world(c) ? c.origin - problem.origin : Vec3{});
+    const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
+    row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
     row.set_directions(c.turns ? std::array<Vec3, 3>{} : std::array{c.normal, c.first, c.second});
     row.radius = c.radius + c.depth;
     row.is_round = c.form == TouchForm::round && row.radius > 0, row.axis = c.axis;
@@ -385,7 +398,7 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
 }
 
 Vec3 Contacts::place(const Model& model, const Contact& c) {
-  return sum_over(c, Arm::center, 0, c.of_p, positions_of(model)) - c.ball * c.normal;
+  return place_of(model, c, Arm::center, false) - c.ball * c.normal;
 }
 
 Impact Contacts::hardest_impact(const Model& model) {
@@ -413,7 +426,7 @@ void for_each_contact(const Scope& scope, Visit visit) {
 
 /// The gap at the end of the last step, m.
 double gap_of(const Model& model, const Contact& c) {
-  const Vec3 d = sum_over(c, Arm::center, 0, c.point_count, positions_of(model)) - (is_of_world(c) ? c.origin : Vec3{});
+  const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
   if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
   return dot(c.normal, d) - c.radius;
 }
@@ -450,7 +463,7 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
 void Contacts::check_links(const Model& model, model::Audit& audit) {
   audit.check_ends("contact", model.contacts, model.bodies);
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    audit.require(c.of_p >= 1 && c.of_p <= c.point_count && c.point_count <= c.points.size(), "contact ", slot, " refers to ", c.point_count,
+    audit.require(c.point_count >= 1 && c.of_p <= c.point_count && c.point_count <= c.points.size(), "contact ", slot, " refers to ", c.point_count,
                   " points");
     for (std::uint32_t i = 0; i < std::min<std::size_t>(c.point_count, c.points.size()); ++i)
       audit.require(model.particles.is_alive(c.points[i]), "contact ", slot,
@@ -460,7 +473,7 @@ void Contacts::check_links(const Model& model, model::Audit& audit) {
 
 void Contacts::validate(const Model& model, model::Audit& audit) {
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    audit.require(c.p != c.q && has_points(model.bodies[c.p]), "contact ", slot, " is of one body, or of static ones");
+    audit.require(c.p != c.q && (has_points(model.bodies[c.p]) || has_points(model.bodies[c.q])), "contact ", slot, " is of one body, or of static ones");
     for (std::uint32_t i = 0; i < c.point_count; ++i)
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");

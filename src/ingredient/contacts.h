@@ -16,11 +16,11 @@ namespace iota::ingredient {
 struct Contact : model::Ends {
   std::uint32_t part = 0, feature = 0, other_part = 0, other_feature = 0;
   contact::TouchForm form = contact::TouchForm::face;
-  std::array<std::uint32_t, 8> points{};  ///< the basis of p, then that of q, unless q is static
+  std::array<std::uint32_t, 8> points{};  ///< the basis of p, then that of q, of those that are not static
   std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
   /// Of the points in the arms of solver::ContactConstraint.
   std::array<std::array<double, 8>, 5> weights{};
-  Vec3 origin;                 ///< of the plane, in the world
+  Vec3 center, place;          ///< of a static body instead: the constants of the first two arms, in the world
   Vec3 normal, first, second;  ///< arms 2 to 4 now: they turn with a body, or keep their direction
   Vec3 axis;                   ///< see contact::Touch
   bool turns = false;          ///< arms 3 and 4 do, and arm 2 if it counts
@@ -38,8 +38,8 @@ struct Contact : model::Ends {
 };
 
 /// Contacts of two bodies: bounded rows with Coulomb friction, see solver/constraints/contact.h. The step finds them before it
-/// solves (src/step/contacts.h); in a table they keep their forces for the next step. The second body is another one that
-/// moves, and then both are solved together, or a static one.
+/// solves (src/step/contacts.h); in a table they keep their forces for the next step. Two that move
+/// are solved together; one of them may be static.
 class Contacts : public NoAnswers {
  public:
   struct Tables {

@@ -36,7 +36,6 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   void set_directions(const std::array<Vec3, 3>& of) {
     for (int k = 0; k < 3; ++k) set_constant(2 + k, of[static_cast<std::size_t>(k)]);
   }
-  void set_world_place(const Vec3& origin) { set_constant(0, -1.0 * origin), set_constant(1, -1.0 * origin); }
 
   double reference_length() const { return reference; }
   Vec3 across(const Vec3& d) const { return d - dot(axis, d) * axis; }

@@ -63,7 +63,7 @@ class Contacts : public testing::TestWithParam<Scheme> {
   }
   ContactConstraint make(double friction, double step, double radius = 0) const {
     ContactConstraint c;
-    c.set_world_place({}), c.set_directions({{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}});
+    c.set_directions({{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}}});
     c.friction = friction, c.radius = radius, c.reference = 0.1;
     const double natural = step * step / mass;
     c.normal_compliance = 1e-8 * natural, c.compliance = 1e-2 * natural;
