@@ -11,7 +11,8 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double gjk_exactness = 1e-15;  ///< of the squared extent
+constexpr double touching_squared = 1e-30;  ///< of the squared extent
+constexpr double surely_apart = 1e-12;     ///< of the extent
 constexpr int most_gjk_steps = 100;
 
 struct GjkCorner {
@@ -103,7 +104,7 @@ bool has(const GjkSimplex& s, const GjkCorner& corner) {
 
 }  // namespace
 
-Closest closest(SupportOf first, SupportOf second, const Vec3& start) {
+Closest closest(SupportOf first, SupportOf second, const Vec3& start, double exactness) {
   const auto support = [&](const Vec3& direction) {
     const Support a = first(direction), b = second(-1.0 * direction);
     return GjkCorner{a.place - b.place, a.place, b.place, a.number, b.number};
@@ -112,20 +113,25 @@ Closest closest(SupportOf first, SupportOf second, const Vec3& start) {
   simplex.corners[0] = support(dot(start, start) > 0 ? -1.0 * start : Vec3{1, 0, 0});
   simplex.count = 1;
   Vec3 nearest = reduce(simplex);
-  double extent = dot(nearest, nearest);
+  double extent = dot(nearest, nearest), apart = 0;  // squared; along the best plane between the sets
   bool is_inside = false;
   for (int step = 0; step < most_gjk_steps; ++step) {
     const double squared = dot(nearest, nearest);
-    is_inside = simplex.count == 4 || squared <= gjk_exactness * extent;
+    is_inside = squared <= touching_squared * extent;
     if (is_inside) break;
     const GjkCorner farther = support(-1.0 * nearest);
     extent = std::max(extent, dot(farther.place, farther.place));
-    if (squared - dot(nearest, farther.place) <= gjk_exactness * squared || has(simplex, farther)) break;
+    const double along = dot(nearest, farther.place);
+    apart = std::max(apart, along / std::sqrt(squared));
+    if (squared - along <= exactness * squared || has(simplex, farther)) break;
     GjkSimplex next = simplex;
     next.corners[next.count++] = farther;
     const Vec3 point = reduce(next);
-    if (next.count < 4 && dot(point, point) >= squared) break;  // round-off
+    // With a plane between the sets the origin is not inside: round-off.
+    is_inside = next.count == 4 && !(apart > surely_apart * std::sqrt(extent));
+    if (!is_inside && (next.count == 4 || dot(point, point) >= squared)) break;
     simplex = next, nearest = point;
+    if (is_inside) break;
   }
   Closest result;
   result.count = static_cast<std::uint32_t>(simplex.count);

@@ -25,7 +25,7 @@ struct Closest {
   std::uint32_t count = 0;  ///< of the supports whose mean the points are
   std::array<std::uint32_t, 4> first{}, second{};  ///< their numbers
 };
-/// start: a first guess of the vector from the second set to the first.
-Closest closest(SupportOf first, SupportOf second, const Vec3& start);
+/// start: a first guess of the vector from the second set to the first. exactness: of the squared distance.
+Closest closest(SupportOf first, SupportOf second, const Vec3& start, double exactness = 1e-15);
 
 }  // namespace iota::contact

@@ -16,15 +16,18 @@ struct FeatureName {
   friend bool operator==(const FeatureName&, const FeatureName&) = default;
 };
 
-/// A convex part of an outline at its place: all points within `radius` of a polytope, its core. A ball has a point as its
-/// core, a capsule and a rod a segment, a rounded box a smaller box. Places are relative to an anchor, so that they are
-/// precise far from the origin of the world.
+/// A convex part of an outline at its place: all points within `radius` of its core. A ball has a point as its core, a
+/// capsule and a rod a segment, a rounded box a smaller box. Places are relative to an anchor, so that they are precise far
+/// from the origin of the world.
 struct ConvexPart {
-  const Polytope* core = nullptr;
+  enum class Kind : std::uint8_t { polytope, cylinder, cone, ellipsoid };
+  Kind kind = Kind::polytope;
+  const Polytope* core = nullptr;  ///< of a cylinder and a cone: one within it, with the same ends
   std::vector<Vec3> corners, normals;  ///< of the core's faces
   Vec3 middle;
-  std::array<Vec3, 3> axes;  ///< of a box
-  Vec3 half;                 ///< of a box: half the edges of the core
+  std::array<Vec3, 3> axes;  ///< of a box and an ellipsoid; the first is that of a cylinder and a cone
+  Vec3 half;                 ///< half the sizes of the core along the axes
+  Vec3 spin;                 ///< of the body, rad/s
   bool is_box = false;
   double radius = 0;
   double size = 0;  ///< of the whole part
@@ -33,7 +36,7 @@ struct ConvexPart {
   bool is_line = false;
 
   bool is_point() const { return core->edges.empty(); }
-  bool is_segment() const { return core->edges.size() == 1; }
+  bool is_polytope() const { return kind == Kind::polytope; }
   std::uint32_t support(const Vec3& direction) const {  ///< the number of the farthest corner
     std::uint32_t best = 0;
     double most = dot(corners[0], direction);
@@ -50,8 +53,10 @@ struct ConvexPart {
   FeatureName beneath_name(std::uint32_t face) const { return {number, 4u << 28 | face}; }  ///< of a place of a face
 };
 
-/// Whether the solid is a ball, a capsule or a box.
-bool has_simple_core(const Solid&);
+/// A farthest point of the core; the direction need not have unit length.
+Vec3 farthest(const ConvexPart&, const Vec3& direction);
+/// Makes it a ball or a rod.
+void set_segment(const Vec3& a, const Vec3& b, ConvexPart&);
 /// hull: of a mesh.
 void place_part(const Solid&, const Polytope* hull, const Vec3& anchor, ConvexPart&);
 void place_part(const Line&, const Vec3& anchor, ConvexPart&);

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double flush_share = 1e-6;  ///< of the size: a corner that is so far beyond a side is still over the face
 constexpr double same_share = 1e-6;   ///< of the size: points so near to each other are one
-constexpr std::size_t most_face_points = 4;
+constexpr std::size_t spanning = 4;  ///< points that are chosen by area
 constexpr std::uint32_t side_bit = 1u << 31;  ///< a number of a side, not of an edge
 
 }  // namespace
 
-void TouchWriter::add_face(bool is_turned, const Vec3& center, const Vec3& normal, double apart,
+void TouchWriter::add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
                            const FeatureName& of_point, const FeatureName& of_plane) {
-  const ConvexPart &point = is_turned ? second_ : first_, &plane = is_turned ? first_ : second_;
-  const double gap = apart - point.radius - plane.radius;
+  const ConvexPart& plane = is_turned ? first_ : second_;
+  const double gap = apart - radius - plane.radius;
   if (!(gap <= within_)) return;
   const FeatureName &first = is_turned ? of_plane : of_point, &second = is_turned ? of_point : of_plane;
   found_.push_back({.part = first.part,
@@ -30,11 +30,11 @@ void TouchWriter::add_face(bool is_turned, const Vec3& center, const Vec3& norma
                     .is_turned = is_turned,
                     .form = TouchForm::face,
                     .center = anchor_ + center,
-                    .place = anchor_ + center - point.radius * normal,
+                    .place = anchor_ + center - radius * normal,
                     .origin = anchor_ + center - (apart - plane.radius) * normal,
                     .normal = normal,
                     .axis = {},
-                    .radius = point.radius,
+                    .radius = radius,
                     .gap = gap});
 }
 
@@ -71,11 +71,11 @@ void TouchWriter::add_round(const Vec3& on_first, const Vec3& on_second, const V
   if (found_.size() > before) found_.back().form = TouchForm::round, found_.back().axis = axis;
 }
 
-void Clipper::add_touches(const Axis& axis, TouchWriter& writer) {
+void Clipper::add_touches(const Axis& axis, TouchWriter& writer, std::size_t most) {
   if (axis.kind == Axis::Kind::edges)
     add_edge_touch(axis.edges, writer);
   else
-    add_face_touches(axis, writer);
+    add_face_touches(axis, writer, most);
 }
 
 void Clipper::add_edge_touch(const Axis::Edges& edges, TouchWriter& writer) {
@@ -86,7 +86,7 @@ void Clipper::add_edge_touch(const Axis::Edges& edges, TouchWriter& writer) {
   writer.add_edges(nearest.on_first, nearest.on_second, edges.normal, first.edge_name(edges.first), second.edge_name(edges.second));
 }
 
-void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
+void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer, std::size_t most) {
   const bool is_turned = axis.kind == Axis::Kind::face_of_first;
   const ConvexPart &owner = is_turned ? writer.first() : writer.second(), &other = is_turned ? writer.second() : writer.first();
   const std::uint32_t face = is_turned ? axis.first : axis.second;
@@ -106,7 +106,9 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
   }
   // The least gap is not larger than the distance: what is nearest may be beyond the face, or not on the clipped one.
   constexpr double nearly = 2e-5;
-  std::size_t most = most_face_points;
+  // A whole rim: every other point.
+  if (!other.is_polytope() && points_.size() == corners_of_rim && polygon_.size() == corners_of_rim && !is_clipped_)
+    for (std::size_t k = 1; k < points_.size(); ++k) points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(k));
   if (axis.is_farthest && (polygon_.empty() || least > axis.most_apart + nearly * std::abs(axis.most_apart) + same_share * size)) {
     if (axis.edges.apart > axis.apart) {
       add_edge_touch(axis.edges, writer);
@@ -118,12 +120,45 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer) {
   }
   keep(most, size);
   for (const FacePoint& point : points_)
-    writer.add_face(is_turned, point.place, normal, point.apart, point.of_point, point.of_plane);
+    writer.add_face(is_turned, point.place, other.radius, normal, point.apart, point.of_point, point.of_plane);
+}
+
+bool Clipper::add_rod(const Axis& axis, const End& a, const End& b, const FeatureName& between, TouchWriter& writer) {
+  const bool is_turned = axis.kind == Axis::Kind::face_of_first;
+  const ConvexPart& owner = is_turned ? writer.first() : writer.second();
+  const std::uint32_t face = is_turned ? axis.first : axis.second;
+  const Polytope::Face& sides = owner.core->faces[face];
+  const Vec3 &normal = owner.normals[face], &origin = owner.corners[owner.core->sides[sides.begin].corner];
+  const double tolerance = flush_share * std::min(writer.first().size, writer.second().size);
+  double from = 0, to = 1;
+  std::uint32_t at_from = Polytope::none, at_to = Polytope::none;  // sides
+  for (std::uint32_t s = sides.begin; s < sides.end; ++s) {
+    const Vec3& corner = owner.corners[owner.core->sides[s].corner];
+    const Vec3& next = owner.corners[owner.core->sides[s + 1 < sides.end ? s + 1 : sides.begin].corner];
+    const Vec3 outward = cross(next - corner, normal);
+    const double length = norm(outward);
+    if (!(length > tolerance)) continue;
+    const double here = dot(outward, a.center - corner) / length, there = dot(outward, b.center - corner) / length;
+    if (here > tolerance && there > tolerance) return false;
+    if (here <= tolerance && there <= tolerance) continue;
+    const double share = std::clamp(here / (here - there), 0.0, 1.0);
+    if (here > there && share > from) from = share, at_from = s;
+    if (here < there && share < to) to = share, at_to = s;
+  }
+  if (from > to) return false;
+  const auto add = [&](double share, std::uint32_t side, const FeatureName& end) {
+    const Vec3 center = a.center + share * (b.center - a.center);
+    writer.add_face(is_turned, center, a.radius + share * (b.radius - a.radius), normal, dot(normal, center - origin),
+                    side == Polytope::none ? end : between, side == Polytope::none ? owner.face_name(face) : owner.side_name(side));
+  };
+  add(from, at_from, a.name);
+  if (norm(b.center - a.center) * (to - from) > same_share * owner.size) add(to, at_to, b.name);
+  return true;
 }
 
 /// The corner, edge or face of the other part that is nearest to the plane of a face.
 void Clipper::start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other) {
-  polygon_.clear();
+  polygon_.clear(), is_clipped_ = false;
   const FeatureName plane = owner.face_name(face);
   const auto add = [&](std::uint32_t corner, std::uint32_t edge) {
     polygon_.push_back({other.corners[corner], other.corner_name(corner), plane, edge});
@@ -170,6 +205,7 @@ void Clipper::clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t
   bool is_any_outside = false;
   for (const Corner& corner : polygon_) is_any_outside = is_any_outside || beyond(corner) > tolerance;
   if (!is_any_outside) return;
+  is_clipped_ = true;
   clipped_.clear();
   const bool is_open = polygon_.size() <= 2;  // an edge or a corner
   for (std::size_t k = 0; k < polygon_.size(); ++k) {
@@ -224,6 +260,12 @@ void Clipper::keep(std::size_t most_points, double size) {
   const auto area = [&](const FacePoint& p) { return most > 0 ? dot(normal, cross(along, p.place - a)) / most : 0.0; };
   pick(2, area, equal * size * norm(along));
   pick(3, [&](const FacePoint& p) { return -area(p); }, equal * size * norm(along));
+  for (std::size_t k = spanning; k < most_points; ++k)
+    pick(k, [&](const FacePoint& p) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < k; ++i) least = std::min(least, norm(p.place - points_[i].place));
+      return least;
+    }, equal * size);
   points_.resize(most_points);
 }
 

@@ -16,9 +16,9 @@ class TouchWriter {
               std::vector<Touch>& found)
       : first_(first), second_(second), anchor_(anchor), within_(within), found_(found) {}
 
-  /// A point of the one part against a plane of the other. center: of the point's ball; apart: from the core's plane.
-  void add_face(bool is_turned, const Vec3& center, const Vec3& normal, double apart, const FeatureName& of_point,
-                const FeatureName& of_plane);
+  /// A ball of the one part against a plane of the other. apart: of its center, from the plane of the core.
+  void add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
+                const FeatureName& of_point, const FeatureName& of_plane);
   /// Two edges that cross, with their points that are nearest to each other.
   void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first, const FeatureName& of_second);
   /// Two corners, or a corner and an edge; axis: along the edge, or zero.
@@ -37,7 +37,7 @@ class TouchWriter {
 
 /// A point of a face, an edge or a corner that is near a face of another part.
 struct FacePoint {
-  Vec3 place;
+  Vec3 place;  ///< of the core
   double apart = 0;
   FeatureName of_point, of_plane;
 };
@@ -45,8 +45,15 @@ struct FacePoint {
 /// Clips what is nearest to a face of a part by the sides of this face: Sutherland, Hodgman 1974.
 class Clipper {
  public:
-  /// The touches of two parts that are apart along an axis.
-  void add_touches(const Axis&, TouchWriter&);
+  /// The touches of two parts that are apart along an axis: at most so many.
+  void add_touches(const Axis&, TouchWriter&, std::size_t most);
+  /// Those of a rod whose radius changes along it: what is nearest to a face. False: it is beside the face.
+  struct End {
+    Vec3 center;
+    double radius;
+    FeatureName name;
+  };
+  static bool add_rod(const Axis&, const End& a, const End& b, const FeatureName& between, TouchWriter&);
 
  private:
   struct Corner {
@@ -55,7 +62,7 @@ class Clipper {
     std::uint32_t edge = 0;  ///< of the way to the next one: of the part, or beyond those a side of the face
   };
   static void add_edge_touch(const Axis::Edges&, TouchWriter&);
-  void add_face_touches(const Axis&, TouchWriter&);
+  void add_face_touches(const Axis&, TouchWriter&, std::size_t most);
   void start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
   void clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
   void clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other, const Vec3& outward, double tolerance);
@@ -66,6 +73,7 @@ class Clipper {
   std::vector<Corner> polygon_, clipped_;
   std::vector<FacePoint> points_;
   std::uint32_t incident_ = Polytope::none;
+  bool is_clipped_ = false;
 };
 
 }  // namespace iota::contact

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -68,6 +70,52 @@ std::vector<std::uint32_t> merge_triangles(const Mesh& hull, const std::map<Way,
   return face_of;
 }
 
+/// loop: its corners, counter-clockwise seen from outside.
+void add_face(Polytope& polytope, std::span<const std::uint32_t> loop) {
+  const auto face = static_cast<std::uint32_t>(polytope.faces.size()), begin = static_cast<std::uint32_t>(polytope.sides.size());
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const std::uint32_t from = loop[k], to = loop[(k + 1) % loop.size()];
+    auto edge = std::ranges::find_if(polytope.edges, [&](const Polytope::Edge& e) {
+      return (e.from == from && e.to == to) || (e.from == to && e.to == from);
+    });
+    if (edge == polytope.edges.end()) edge = polytope.edges.insert(edge, {from, to});
+    (edge->from == from ? edge->left : edge->right) = face;
+    polytope.sides.push_back({from, static_cast<std::uint32_t>(edge - polytope.edges.begin())});
+  }
+  const Vec3 area = cross(polytope.corners[loop[1]] - polytope.corners[loop[0]], polytope.corners[loop[2]] - polytope.corners[loop[0]]);
+  polytope.faces.push_back({(1 / norm(area)) * area, begin, begin + static_cast<std::uint32_t>(loop.size())});
+}
+
+/// Both ends of a prism, or the base of a pyramid, and the faces between them.
+Polytope make_round(bool is_prism) {
+  constexpr std::uint32_t n = corners_of_rim;
+  Polytope polytope;
+  const auto add_rim = [&](double x) {
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const double turn = 2 * std::numbers::pi * k / n;
+      polytope.corners.push_back({x, std::cos(turn), std::sin(turn)});
+    }
+  };
+  add_rim(-1);
+  std::vector<std::uint32_t> base, top;
+  for (std::uint32_t k = 0; k < n; ++k) base.push_back(n - 1 - k), top.push_back(n + k);
+  add_face(polytope, base);
+  if (is_prism) {
+    add_rim(1);
+    add_face(polytope, top);
+  } else {
+    polytope.corners.push_back({1, 0, 0});
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t next = (k + 1) % n;
+    if (is_prism)
+      add_face(polytope, std::array{k, next, n + next, n + k});
+    else
+      add_face(polytope, std::array{k, next, n});
+  }
+  return polytope;
+}
+
 Polytope make_cube() {
   Polytope cube;
   for (std::uint32_t k = 0; k < 8; ++k)
@@ -82,17 +130,7 @@ Polytope make_cube() {
       const std::uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3, base = end << axis;
       std::array<std::uint32_t, 4> loop{base, base | 1u << u, base | 1u << u | 1u << v, base | 1u << v};
       if (end == 0) std::swap(loop[1], loop[3]);
-      const double sign = end ? 1 : -1;
-      const auto face = static_cast<std::uint32_t>(cube.faces.size()), begin = static_cast<std::uint32_t>(cube.sides.size());
-      cube.faces.push_back({{axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0}, begin, begin + 4});
-      for (int k = 0; k < 4; ++k) {
-        const std::uint32_t from = loop[k], to = loop[(k + 1) % 4];
-        const auto edge = std::ranges::find_if(cube.edges, [&](const Polytope::Edge& e) {
-          return (e.from == from && e.to == to) || (e.from == to && e.to == from);
-        });
-        (edge->from == from ? edge->left : edge->right) = face;
-        cube.sides.push_back({from, static_cast<std::uint32_t>(edge - cube.edges.begin())});
-      }
+      add_face(cube, loop);
     }
   return cube;
 }
@@ -112,6 +150,16 @@ const Polytope& segment_polytope() {
 const Polytope& cube_polytope() {
   static const Polytope cube = make_cube();
   return cube;
+}
+
+const Polytope& prism_polytope() {
+  static const Polytope prism = make_round(true);
+  return prism;
+}
+
+const Polytope& pyramid_polytope() {
+  static const Polytope pyramid = make_round(false);
+  return pyramid;
 }
 
 Polytope make_polytope(const Mesh& hull) {

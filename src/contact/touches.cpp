@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/touches.h"
 
-#include "contact/round_pairs.h"
 #include "geometry/box_tree.h"
 
 #include <algorithm>
@@ -66,7 +65,7 @@ void TouchFinder::list(const Outline& outline, const Vec3& anchor, Parts& parts)
     Part& part = add(parts);
     part.solid = &solid;
     if (solid.form->mesh) part.hull = hull_of(solid.form);
-    part.is_convex = part.hull || has_simple_core(solid);
+    part.is_convex = part.hull || (!solid.form->mesh && !solid.form->is_endless && is_convex(solid.form->shape));
     if (part.is_convex) part.box = bounds(solid, anchor), ++parts.convex;
   }
   for (const Line& line : outline.lines) {
@@ -76,24 +75,22 @@ void TouchFinder::list(const Outline& outline, const Vec3& anchor, Parts& parts)
   }
 }
 
+void TouchFinder::place(Part& part, const Vec3& spin, const Vec3& anchor) {
+  if (part.is_placed) return;
+  part.is_placed = true;
+  part.placed.spin = spin;
+  if (part.line)
+    place_part(*part.line, anchor, part.placed);
+  else
+    place_part(*part.solid, part.hull, anchor, part.placed);
+}
+
 void TouchFinder::find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way,
                        std::vector<Touch>& found) {
-  for (Part* const part : {&first, &second}) {
-    if (part->is_placed) continue;
-    if (part->line)
-      place_part(*part->line, anchor, part->placed);
-    else
-      place_part(*part->solid, part->hull, anchor, part->placed);
-    part->is_placed = true;
-  }
   const ConvexPart &a = first.placed, &b = second.placed;
+  if (!a.is_polytope() || !b.is_polytope()) return round_.add_touches(a, b, anchor, within, found);
   TouchWriter writer(a, b, anchor, within, found);
-  if (a.normals.empty() && b.normals.empty()) return add_touches_of_segments(writer);
-  const double radius = a.radius + b.radius;
-  const std::optional<Axis> axis = find_axis(a, b, way, within + radius);
-  if (!axis) return;
-  if (radius > 0 && axis->most_apart > 0 && add_touches_of_corners(writer, axis->most_apart)) return;
-  clipper_.add_touches(*axis, writer);
+  add_touches_of_polytopes(a, b, way, writer, clipper_);
 }
 
 void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Outline& second,
@@ -108,8 +105,10 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
     if (!first_.parts[i].is_convex) continue;
     const geometry::Bounds box = grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
-      if (second_.parts[k].is_convex && geometry::overlap(box, second_.parts[k].box))
+      if (second_.parts[k].is_convex && geometry::overlap(box, second_.parts[k].box)) {
+        place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
         find(first_.parts[i], second_.parts[k], anchor, within, way, found);
+      }
   }
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
 }

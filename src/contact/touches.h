@@ -4,6 +4,7 @@
 #include "contact/corner_touches.h"
 #include "contact/manifold.h"
 #include "contact/outline.h"
+#include "contact/round_touches.h"
 #include "contact/touch.h"
 
 #include <cstdint>
@@ -16,10 +17,14 @@ namespace iota::contact {
 
 /// Finds the touches of two outlines.
 ///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
-///   Half-spaces, meshes that are not convex or open, rings   corners, ends and rims of the other outline, and those of a
+///   Half-spaces, rings, meshes that are open or not convex   corners, ends and rims of the other outline, and those of a
 ///                  mesh or ring against a convex part
 class TouchFinder {
  public:
+  TouchFinder() = default;
+  TouchFinder(const TouchFinder&) = delete;
+  TouchFinder& operator=(const TouchFinder&) = delete;
+
   /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of each body, rad/s. way: of the first
   /// relative to the second in the coming step, m, where known: see find_axis.
   void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
@@ -47,10 +52,12 @@ class TouchFinder {
   Part& add(Parts&);
   const Polytope* hull_of(const std::shared_ptr<const Form>&);
   void find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within, std::vector<Touch>& found);
+  void place(Part&, const Vec3& spin, const Vec3& anchor);
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
 
   Parts first_, second_;
   Clipper clipper_;
+  RoundToucher round_{clipper_};
   CornerFinder corners_;
   PartList listed_, other_listed_;
   std::map<const Form*, Hull> hulls_;  ///< of meshes

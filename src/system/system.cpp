@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/quantities.h"
 #include "ingredient/tables.h"
+#include "model/outline.h"
 #include "system/core.h"
 
 #include <algorithm>
