@@ -12,9 +12,10 @@ namespace iota::contact {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-constexpr double parallel_edges = 1e-6;   ///< sine, of edges without a common normal
+constexpr double parallel_edges = 1e-6;  ///< sine, of edges without a common normal
 constexpr double flush_sine = 5e-3;      ///< sine, of normals that count as the same
-constexpr double preference_of_size = 1e-3, preference_of_distance = 1e-2, slight_preference = 1e-6;  ///< preferences: see is_better
+constexpr double preference_of_size = 1e-3, preference_of_distance = 1e-2,
+                 slight_preference = 1e-6;  ///< preferences: see is_better
 constexpr double settled_overlap = 1e-4;    ///< of the size: an overlap of what touches
 
 /// The best of some axes.
@@ -24,7 +25,9 @@ struct Best {
   bool is_open = false;  ///< the parts do not overlap along it
 };
 
-double margin_of(const Axis& axis, double size) { return preference_of_size * size + preference_of_distance * std::abs(axis.apart); }
+double margin_of(const Axis& axis, double size) {
+  return preference_of_size * size + preference_of_distance * std::abs(axis.apart);
+}
 
 class AxisSearch {
  public:
@@ -63,7 +66,8 @@ class AxisSearch {
       const Vec3& origin = owner.corners[owner.core->sides[owner.core->faces[f].begin].corner];
       double least = unbounded;
       for (const Vec3& corner : other.corners) least = std::min(least, dot(normal, corner - origin));
-      if (!take(is_second ? Axis::Kind::face_of_second : Axis::Kind::face_of_first, f, f, is_second ? normal : -normal, least, best))
+      if (!take(is_second ? Axis::Kind::face_of_second : Axis::Kind::face_of_first, f, f, is_second ? normal : -normal,
+                least, best))
         return false;
     }
     return true;
@@ -71,7 +75,8 @@ class AxisSearch {
 
   bool look_at_edges_of_boxes() {
     const Vec3 between = first_.middle - second_.middle;
-    const double a_half[] = {first_.half.x, first_.half.y, first_.half.z}, b_half[] = {second_.half.x, second_.half.y, second_.half.z};
+    const double a_half[] = {first_.half.x, first_.half.y, first_.half.z},
+                 b_half[] = {second_.half.x, second_.half.y, second_.half.z};
     for (std::uint32_t i = 0; i < 3; ++i)
       for (std::uint32_t k = 0; k < 3; ++k) {
         Vec3 normal = cross(first_.axes[i], second_.axes[k]);
@@ -118,7 +123,8 @@ class AxisSearch {
 
   /// The normals of an edge are an arc between those of its faces; of a segment, all around it.
   bool do_arcs_cross(const Polytope::Edge& a, const Vec3& along_a, const Polytope::Edge& b, const Vec3& along_b) const {
-    if ((!first_.core->faces.empty() && a.right == Polytope::none) || (!second_.core->faces.empty() && b.right == Polytope::none))
+    if ((!first_.core->faces.empty() && a.right == Polytope::none) ||
+        (!second_.core->faces.empty() && b.right == Polytope::none))
       return false;
     double of_b[2] = {}, of_a[2] = {};
     if (!second_.core->faces.empty()) {
@@ -140,7 +146,8 @@ class AxisSearch {
   /// Whether a less preferred one is clearly better: clearly enough that bodies that lie flush_sine do not change their touches with the noise.
   bool is_better(const Best& one, const Best& preferred) const {
     if (one.score == -unbounded || preferred.score == -unbounded) return preferred.score < one.score;
-    if (norm(cross(one.axis.normal, preferred.axis.normal)) < flush_sine && dot(one.axis.normal, preferred.axis.normal) > 0)
+    if (norm(cross(one.axis.normal, preferred.axis.normal)) < flush_sine &&
+        dot(one.axis.normal, preferred.axis.normal) > 0)
       return one.axis.apart > preferred.axis.apart + margin_of(preferred.axis, size_);
     if (one.is_open != preferred.is_open) return one.is_open;
     return one.score > preferred.score + slight_preference * size_;

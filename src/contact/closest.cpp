@@ -12,7 +12,7 @@ namespace iota::contact {
 namespace {
 
 constexpr double touching_squared = 1e-30;  ///< of the squared extent
-constexpr double surely_apart = 1e-12;     ///< of the extent
+constexpr double surely_apart = 1e-12;      ///< of the extent
 constexpr int most_gjk_steps = 100;
 
 struct GjkCorner {
@@ -47,7 +47,8 @@ Vec3 reduce_triangle(GjkSimplex& s) {
   const Vec3 a = s.corners[0].place, b = s.corners[1].place, c = s.corners[2].place;
   const Vec3 normal = cross(b - a, c - a);
   const double squared = dot(normal, normal);
-  const double of_c = dot(cross(b - a, normal), a), of_a = dot(cross(c - b, normal), b), of_b = dot(cross(a - c, normal), c);
+  const double of_c = dot(cross(b - a, normal), a), of_a = dot(cross(c - b, normal), b),
+               of_b = dot(cross(a - c, normal), c);
   if (of_a >= 0 && of_b >= 0 && of_c >= 0 && squared > 0) {
     const double sum = of_a + of_b + of_c;
     if (sum > 0) {

@@ -22,7 +22,7 @@ struct Closest {
   double distance = 0;  ///< m; 0 if they overlap
   Vec3 normal;          ///< unit vector from the second to the first; zero if they overlap
   Vec3 on_first, on_second;
-  std::uint32_t count = 0;  ///< of the supports whose mean the points are
+  std::uint32_t count = 0;                         ///< of the supports whose mean the points are
   std::array<std::uint32_t, 4> first{}, second{};  ///< their numbers
 };
 /// start: a first guess of the vector from the second set to the first. exactness: of the squared distance.

@@ -95,7 +95,8 @@ void place_part(const Solid& solid, const Polytope* hull, const Vec3& anchor, Co
   if (const auto* const c = std::get_if<Cylinder>(&shape)) {
     part.radius = c->rounding;
     const double across = c->radius - c->rounding, along = 0.5 * c->length - c->rounding;
-    if (!(across > thinnest_core * part.size)) return set_segment(position - along * part.axes[0], position + along * part.axes[0], part);
+    if (!(across > thinnest_core * part.size))
+      return set_segment(position - along * part.axes[0], position + along * part.axes[0], part);
     part.kind = ConvexPart::Kind::cylinder;
     part.half = {along, across, across};
     return place_round(prism_polytope(), part);

@@ -22,7 +22,7 @@ struct FeatureName {
 struct ConvexPart {
   enum class Kind : std::uint8_t { polytope, cylinder, cone, ellipsoid };
   Kind kind = Kind::polytope;
-  const Polytope* core = nullptr;  ///< of a cylinder and a cone: one within it, with the same ends
+  const Polytope* core = nullptr;      ///< of a cylinder and a cone: one within it, with the same ends
   std::vector<Vec3> corners, normals;  ///< of the core's faces
   Vec3 middle;
   std::array<Vec3, 3> axes;  ///< of a box and an ellipsoid; the first is that of a cylinder and a cone
@@ -30,7 +30,7 @@ struct ConvexPart {
   Vec3 spin;                 ///< of the body, rad/s
   bool is_box = false;
   double radius = 0;
-  double size = 0;  ///< of the whole part
+  double size = 0;                   ///< of the whole part
   FeatureName end, other_end, line;  ///< of a line
   std::uint32_t number = 0;          ///< of a solid
   bool is_line = false;
@@ -49,7 +49,7 @@ struct ConvexPart {
   }
   FeatureName edge_name(std::uint32_t edge) const { return is_line ? line : FeatureName{number, 1u << 28 | edge}; }
   FeatureName face_name(std::uint32_t face) const { return {number, 2u << 28 | face}; }
-  FeatureName side_name(std::uint32_t side) const { return {number, 3u << 28 | side}; }  ///< of a face
+  FeatureName side_name(std::uint32_t side) const { return {number, 3u << 28 | side}; }     ///< of a face
   FeatureName beneath_name(std::uint32_t face) const { return {number, 4u << 28 | face}; }  ///< of a place of a face
 };
 

@@ -146,8 +146,8 @@ const std::vector<Vec3>& CornerFinder::corners_of(const std::shared_ptr<const Fo
   return corners.places;
 }
 
-void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& other, double within, const Names& names,
-                        std::vector<Touch>& found) {
+void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& other, double within,
+                        const Names& names, std::vector<Touch>& found) {
   if (body.is_empty() || other.is_empty()) return;
   Vec3 middle;
   for (const Line* const line : body.lines)

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double flush_share = 1e-6;  ///< of the size: a corner that is so far beyond a side is still over the face
 constexpr double same_share = 1e-6;   ///< of the size: points so near to each other are one
-constexpr std::size_t spanning = 4;  ///< points that are chosen by area
+constexpr std::size_t spanning = 4;   ///< points that are chosen by area
 constexpr std::uint32_t side_bit = 1u << 31;  ///< a number of a side, not of an edge
 
 }  // namespace
@@ -38,8 +38,8 @@ void TouchWriter::add_face(bool is_turned, const Vec3& center, double radius, co
                     .gap = gap});
 }
 
-void TouchWriter::add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first,
-                            const FeatureName& of_second) {
+void TouchWriter::add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal,
+                            const FeatureName& of_first, const FeatureName& of_second) {
   const double radius = first_.radius + second_.radius, gap = dot(normal, on_first - on_second) - radius;
   if (!(gap <= within_)) return;
   found_.push_back({.part = of_first.part,
@@ -83,12 +83,14 @@ void Clipper::add_edge_touch(const Axis::Edges& edges, TouchWriter& writer) {
   const Polytope::Edge &a = first.core->edges[edges.first], &b = second.core->edges[edges.second];
   const NearestOfSegments nearest =
       nearest_of_segments(first.corners[a.from], first.corners[a.to], second.corners[b.from], second.corners[b.to]);
-  writer.add_edges(nearest.on_first, nearest.on_second, edges.normal, first.edge_name(edges.first), second.edge_name(edges.second));
+  writer.add_edges(nearest.on_first, nearest.on_second, edges.normal, first.edge_name(edges.first),
+                   second.edge_name(edges.second));
 }
 
 void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer, std::size_t most) {
   const bool is_turned = axis.kind == Axis::Kind::face_of_first;
-  const ConvexPart &owner = is_turned ? writer.first() : writer.second(), &other = is_turned ? writer.second() : writer.first();
+  const ConvexPart &owner = is_turned ? writer.first() : writer.second(),
+                   &other = is_turned ? writer.second() : writer.first();
   const std::uint32_t face = is_turned ? axis.first : axis.second;
   const Vec3& normal = owner.normals[face];
   const Vec3& origin = owner.corners[owner.core->sides[owner.core->faces[face].begin].corner];
@@ -102,14 +104,16 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer, std::size_
     if (!(apart - radius <= writer.within())) continue;
     const bool is_known = std::ranges::any_of(
         points_, [&](const FacePoint& point) { return norm(point.place - corner.place) <= same_share * size; });
-    if (!is_known) points_.push_back({corner.place, apart, corner.of_point, corner.of_plane}), least = std::min(least, apart);
+    if (!is_known)
+      points_.push_back({corner.place, apart, corner.of_point, corner.of_plane}), least = std::min(least, apart);
   }
   // The least gap is not larger than the distance: what is nearest may be beyond the face, or not on the clipped one.
   constexpr double nearly = 2e-5;
   // A whole rim: every other point.
   if (!other.is_polytope() && points_.size() == corners_of_rim && polygon_.size() == corners_of_rim && !is_clipped_)
     for (std::size_t k = 1; k < points_.size(); ++k) points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(k));
-  if (axis.is_farthest && (polygon_.empty() || least > axis.most_apart + nearly * std::abs(axis.most_apart) + same_share * size)) {
+  if (axis.is_farthest &&
+      (polygon_.empty() || least > axis.most_apart + nearly * std::abs(axis.most_apart) + same_share * size)) {
     if (axis.edges.apart > axis.apart) {
       add_edge_touch(axis.edges, writer);
       --most;
@@ -149,7 +153,8 @@ bool Clipper::add_rod(const Axis& axis, const End& a, const End& b, const Featur
   const auto add = [&](double share, std::uint32_t side, const FeatureName& end) {
     const Vec3 center = a.center + share * (b.center - a.center);
     writer.add_face(is_turned, center, a.radius + share * (b.radius - a.radius), normal, dot(normal, center - origin),
-                    side == Polytope::none ? end : between, side == Polytope::none ? owner.face_name(face) : owner.side_name(side));
+                    side == Polytope::none ? end : between,
+                    side == Polytope::none ? owner.face_name(face) : owner.side_name(side));
   };
   add(from, at_from, a.name);
   if (norm(b.center - a.center) * (to - from) > same_share * owner.size) add(to, at_to, b.name);
@@ -183,7 +188,8 @@ void Clipper::start_with_nearest(const ConvexPart& owner, std::uint32_t face, co
     if (has_nearest) least = along, incident_ = f;
   }
   const Polytope::Face& incident = other.core->faces[incident_];
-  for (std::uint32_t s = incident.begin; s < incident.end; ++s) add(other.core->sides[s].corner, other.core->sides[s].edge);
+  for (std::uint32_t s = incident.begin; s < incident.end; ++s)
+    add(other.core->sides[s].corner, other.core->sides[s].edge);
 }
 
 void Clipper::clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other) {
@@ -244,7 +250,8 @@ void Clipper::keep(std::size_t most_points, double size) {
     for (std::size_t k = begin + 1; k < points_.size(); ++k)
       if (worth(points_[k]) > worth(points_[best]) + tolerance) best = k;
     // The others keep their order.
-    std::rotate(points_.begin() + static_cast<std::ptrdiff_t>(begin), points_.begin() + static_cast<std::ptrdiff_t>(best),
+    std::rotate(points_.begin() + static_cast<std::ptrdiff_t>(begin),
+                points_.begin() + static_cast<std::ptrdiff_t>(best),
                 points_.begin() + static_cast<std::ptrdiff_t>(best) + 1);
   };
   pick(0, [](const FacePoint& p) { return -p.apart; }, same_share * size);
@@ -261,11 +268,14 @@ void Clipper::keep(std::size_t most_points, double size) {
   pick(2, area, equal * size * norm(along));
   pick(3, [&](const FacePoint& p) { return -area(p); }, equal * size * norm(along));
   for (std::size_t k = spanning; k < most_points; ++k)
-    pick(k, [&](const FacePoint& p) {
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < k; ++i) least = std::min(least, norm(p.place - points_[i].place));
-      return least;
-    }, equal * size);
+    pick(
+        k,
+        [&](const FacePoint& p) {
+          double least = std::numeric_limits<double>::infinity();
+          for (std::size_t i = 0; i < k; ++i) least = std::min(least, norm(p.place - points_[i].place));
+          return least;
+        },
+        equal * size);
   points_.resize(most_points);
 }
 

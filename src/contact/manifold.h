@@ -20,9 +20,11 @@ class TouchWriter {
   void add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
                 const FeatureName& of_point, const FeatureName& of_plane);
   /// Two edges that cross, with their points that are nearest to each other.
-  void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first, const FeatureName& of_second);
+  void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first,
+                 const FeatureName& of_second);
   /// Two corners, or a corner and an edge; axis: along the edge, or zero.
-  void add_round(const Vec3& on_first, const Vec3& on_second, const Vec3& axis, const FeatureName& of_first, const FeatureName& of_second);
+  void add_round(const Vec3& on_first, const Vec3& on_second, const Vec3& axis, const FeatureName& of_first,
+                 const FeatureName& of_second);
 
   const ConvexPart& first() const { return first_; }
   const ConvexPart& second() const { return second_; }
@@ -65,7 +67,8 @@ class Clipper {
   void add_face_touches(const Axis&, TouchWriter&, std::size_t most);
   void start_with_nearest(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
   void clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart& other);
-  void clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other, const Vec3& outward, double tolerance);
+  void clip_by(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, const ConvexPart& other,
+               const Vec3& outward, double tolerance);
   FeatureName name_of_point(const ConvexPart& other, std::uint32_t edge) const;
   void keep(std::size_t most, double size);
 

@@ -14,16 +14,15 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double face_flatness = 1e-9;       ///< of the extent: corners that are so near to a plane are in it
-constexpr double face_tilt = 1e-6;           ///< rad: between the triangles of one face
-constexpr double lacking_volume = 1e-6;   ///< a mesh that lacks so much of its hull's volume counts as convex
+constexpr double face_flatness = 1e-9;   ///< of the extent: corners that are so near to a plane are in it
+constexpr double face_tilt = 1e-6;       ///< rad: between the triangles of one face
+constexpr double lacking_volume = 1e-6;  ///< a mesh that lacks so much of its hull's volume counts as convex
 
 using Way = std::pair<std::uint32_t, std::uint32_t>;
 
 double volume_of(const Mesh& mesh) {
   double six = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    six += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c]));
+  for (const auto& [a, b, c] : mesh.triangles) six += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c]));
   return six / 6;
 }
 
@@ -61,7 +60,9 @@ std::vector<std::uint32_t> merge_triangles(const Mesh& hull, const std::map<Way,
         const bool is_flat = std::ranges::all_of(hull.triangles[next], [&](std::uint32_t corner) {
           return std::abs(dot(normal, hull.vertices[corner] - origin)) <= flat;
         });
-        if (!is_flat || norm(cross(normal, areas[next])) > face_tilt * norm(areas[next]) || dot(normal, areas[next]) < 0) continue;
+        if (!is_flat || norm(cross(normal, areas[next])) > face_tilt * norm(areas[next]) ||
+            dot(normal, areas[next]) < 0)
+          continue;
         face_of[next] = face;
         waiting.push_back(next);
       }
@@ -72,7 +73,8 @@ std::vector<std::uint32_t> merge_triangles(const Mesh& hull, const std::map<Way,
 
 /// loop: its corners, counter-clockwise seen from outside.
 void add_face(Polytope& polytope, std::span<const std::uint32_t> loop) {
-  const auto face = static_cast<std::uint32_t>(polytope.faces.size()), begin = static_cast<std::uint32_t>(polytope.sides.size());
+  const auto face = static_cast<std::uint32_t>(polytope.faces.size()),
+             begin = static_cast<std::uint32_t>(polytope.sides.size());
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const std::uint32_t from = loop[k], to = loop[(k + 1) % loop.size()];
     auto edge = std::ranges::find_if(polytope.edges, [&](const Polytope::Edge& e) {
@@ -82,7 +84,8 @@ void add_face(Polytope& polytope, std::span<const std::uint32_t> loop) {
     (edge->from == from ? edge->left : edge->right) = face;
     polytope.sides.push_back({from, static_cast<std::uint32_t>(edge - polytope.edges.begin())});
   }
-  const Vec3 area = cross(polytope.corners[loop[1]] - polytope.corners[loop[0]], polytope.corners[loop[2]] - polytope.corners[loop[0]]);
+  const Vec3 area = cross(polytope.corners[loop[1]] - polytope.corners[loop[0]],
+                          polytope.corners[loop[2]] - polytope.corners[loop[0]]);
   polytope.faces.push_back({(1 / norm(area)) * area, begin, begin + static_cast<std::uint32_t>(loop.size())});
 }
 
@@ -175,7 +178,8 @@ Polytope make_polytope(const Mesh& hull) {
   for (const auto& [way, triangle] : triangle_of) {
     const auto back = triangle_of.find({way.second, way.first});
     if (face_of[triangle] == Polytope::none) continue;
-    if (back == triangle_of.end() || face_of[back->second] != face_of[triangle]) borders[face_of[triangle]][way.first] = way.second;
+    if (back == triangle_of.end() || face_of[back->second] != face_of[triangle])
+      borders[face_of[triangle]][way.first] = way.second;
   }
   std::map<Way, std::uint32_t> edge_of;
   for (std::uint32_t f = 0; f < normals.size(); ++f) {

@@ -17,7 +17,7 @@ struct Polytope {
     std::uint32_t corner, edge;  ///< the side goes from this corner to that of the next side
   };
   struct Face {
-    Vec3 normal;                ///< outward unit vector
+    Vec3 normal;               ///< outward unit vector
     std::uint32_t begin, end;  ///< of its sides, counter-clockwise seen from outside
   };
   struct Edge {

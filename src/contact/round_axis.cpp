@@ -13,8 +13,8 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double clearly_apart = 1e-3;   ///< of the size: the direction is that of the distance
-constexpr double pulled_apart = 0.02;    ///< of the size
+constexpr double clearly_apart = 1e-3;  ///< of the size: the direction is that of the distance
+constexpr double pulled_apart = 0.02;   ///< of the size
 constexpr double settled_direction = 1e-7, settled_separation = 1e-11;  ///< the latter of the size
 constexpr double shrunk = 0.9, rough = 1e-6;
 constexpr int most_pulls = 20;
@@ -40,7 +40,9 @@ Vec3 guess(const ConvexPart& first, const ConvexPart& second, double& most) {
     if (apart > most) most = apart, best = normal;
   };
   const auto look_at_faces = [&](const ConvexPart& part, double sign) {
-    const std::size_t count = part.kind == ConvexPart::Kind::cylinder ? 2 : part.kind == ConvexPart::Kind::cone ? 1 : part.normals.size();
+    const std::size_t count = part.kind == ConvexPart::Kind::cylinder ? 2
+                              : part.kind == ConvexPart::Kind::cone   ? 1
+                                                                      : part.normals.size();
     for (std::size_t f = 0; f < count; ++f) look(sign * part.normals[f]);
   };
   look_at_faces(second, 1), look_at_faces(first, -1);
@@ -51,6 +53,7 @@ Vec3 guess(const ConvexPart& first, const ConvexPart& second, double& most) {
       between -= dot(between, part->axes[0]) * part->axes[0];
   }
   if (norm(between) > 0) look((1 / norm(between)) * between);
+  if (!(norm(best) > 0)) look({0, 1, 0});  // one in the other
   return best;
 }
 
@@ -73,10 +76,12 @@ std::optional<RoundAxis> find_round_axis(const ConvexPart& first, const ConvexPa
   const double most = guessed.apart;
   RoundAxis best = guessed;
   Closest found;
-  if (most > clearly_apart * size || (found = closest_of(first, second, {}, start, 1e-15)).distance > clearly_apart * size) {
+  if (most > clearly_apart * size ||
+      (found = closest_of(first, second, {}, start, 1e-15)).distance > clearly_apart * size) {
     if (found.distance == 0) found = closest_of(first, second, {}, start, 1e-15);
-    if (found.distance > limit) return {};
-    return RoundAxis{found.normal, found.distance, found.on_first, found.on_second};
+    const double apart = apart_along(first, second, found.normal);
+    if (apart > limit) return {};
+    if (apart > 0) return RoundAxis{found.normal, apart, found.on_first, found.on_second};
   }
   Vec3 normal = start;
   double apart = most;

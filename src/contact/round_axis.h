@@ -12,8 +12,8 @@ double apart_along(const ConvexPart& first, const ConvexPart& second, const Vec3
 
 /// The direction of the largest separation of two convex parts, of which one is neither a polytope nor a rod.
 struct RoundAxis {
-  Vec3 normal;      ///< unit vector from the second part to the first
-  double apart = 0;  ///< of the cores along it, m
+  Vec3 normal;               ///< unit vector from the second part to the first
+  double apart = 0;          ///< of the cores along it, m
   Vec3 on_first, on_second;  ///< points of the cores that are nearest to each other
 };
 /// The best normal of a flat face or of a line between middles and axes.

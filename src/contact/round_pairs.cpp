@@ -11,11 +11,11 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double parallel_segments = 1e-6;         ///< sine: there is no common normal
-constexpr double nearly_parallel_segments = 0.3;   ///< sine: the ends may touch too
-constexpr double leaning = 1e-3;                 ///< sine: an edge that lies on something rather than one of its corners
-constexpr double end_share = 1e-9;           ///< share of a segment
-constexpr double same_end = 1e-3;                 ///< of the size
+constexpr double parallel_segments = 1e-6;        ///< sine: there is no common normal
+constexpr double nearly_parallel_segments = 0.3;  ///< sine: the ends may touch too
+constexpr double leaning = 1e-3;    ///< sine: an edge that lies on something rather than one of its corners
+constexpr double end_share = 1e-9;  ///< share of a segment
+constexpr double same_end = 1e-3;   ///< of the size
 
 struct Segment {
   const ConvexPart& part;
@@ -36,7 +36,8 @@ Vec3 unit_of(const Vec3& v) { return (1 / norm(v)) * v; }
 bool is_end(double share) { return !(share > end_share && share < 1 - end_share); }
 
 /// An end of a segment and the nearest point of another one, at this share.
-void add_end(TouchWriter& writer, bool is_of_first, const ConvexPart& part, std::uint32_t corner, const Segment& other, double share) {
+void add_end(TouchWriter& writer, bool is_of_first, const ConvexPart& part, std::uint32_t corner, const Segment& other,
+             double share) {
   const bool is_beyond = share < -end_share || share > 1 + end_share;
   const Vec3 along = other.along(), on_other = other.a() + std::clamp(share, 0.0, 1.0) * along;
   const FeatureName name = part.corner_name(corner);
@@ -64,12 +65,15 @@ struct EndList {
   std::size_t count = 0;
 
   EndList(const Segment& first, const Segment& second)
-      : a(first), b(second), along(unit_of(first.along())), tolerance(same_end * std::min(first.part.size, second.part.size)) {}
+      : a(first),
+        b(second),
+        along(unit_of(first.along())),
+        tolerance(same_end * std::min(first.part.size, second.part.size)) {}
   /// Ends that are side by side count once.
   void add(bool is_of_first, std::uint32_t corner) {
     const Vec3& place = (is_of_first ? a : b).part.corners[corner];
-    const bool is_known =
-        std::any_of(ends, ends + count, [&](const End& end) { return std::abs(dot(along, end.place - place)) <= tolerance; });
+    const bool is_known = std::any_of(
+        ends, ends + count, [&](const End& end) { return std::abs(dot(along, end.place - place)) <= tolerance; });
     if (!is_known) ends[count++] = {is_of_first, corner, share_of(is_of_first ? b : a, place), place};
   }
   bool is_beside(bool is_of_first, std::uint32_t corner) const {
@@ -79,7 +83,8 @@ struct EndList {
   /// The touches in the order of the list.
   void write(TouchWriter& writer) const {
     for (std::size_t k = 0; k < count; ++k)
-      add_end(writer, ends[k].is_of_first, (ends[k].is_of_first ? a : b).part, ends[k].corner, ends[k].is_of_first ? b : a, ends[k].share);
+      add_end(writer, ends[k].is_of_first, (ends[k].is_of_first ? a : b).part, ends[k].corner,
+              ends[k].is_of_first ? b : a, ends[k].share);
   }
 };
 
@@ -98,7 +103,8 @@ void add_touches(TouchWriter& writer, const Segment& a, const Segment& b) {
     const double side = dot(normal, nearest.on_first - nearest.on_second);
     const bool is_clear = std::abs(side) > 1e-12 * norm(normal) * std::min(a.part.size, b.part.size);
     const double sign = (is_clear ? side : dot(normal, a.part.middle - b.part.middle)) < 0 ? -1 : 1;
-    writer.add_edges(nearest.on_first, nearest.on_second, (sign / norm(normal)) * normal, a.part.edge_name(a.edge), b.part.edge_name(b.edge));
+    writer.add_edges(nearest.on_first, nearest.on_second, (sign / norm(normal)) * normal, a.part.edge_name(a.edge),
+                     b.part.edge_name(b.edge));
   }
   if (sine < nearly_parallel_segments || is_parallel) {
     for (const std::uint32_t corner : {a.from, a.to})
@@ -159,7 +165,8 @@ bool add_touches_of_corners(TouchWriter& writer, double apart) {
     return Segment{part, e, part.core->edges[e].from, part.core->edges[e].to};
   };
   if (edge == Polytope::none && other_edge == Polytope::none) {
-    writer.add_round(first.corners[corner], second.corners[other_corner], {}, first.corner_name(corner), second.corner_name(other_corner));
+    writer.add_round(first.corners[corner], second.corners[other_corner], {}, first.corner_name(corner),
+                     second.corner_name(other_corner));
   } else if (edge == Polytope::none) {
     const Segment other = segment(second, other_edge);
     add_end(writer, true, first, corner, other, share_of(other, first.corners[corner]));

@@ -11,12 +11,12 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double face_sine = 5e-3;       ///< of normals that count as the same
-constexpr double side_sine = 1e-3;       ///< of a normal at right angles to an axis
-constexpr double lying_sine = 0.5;       ///< of a cylinder's axis with a plane's normal, above which it rolls on a rim
-constexpr double standing_sine = 1e-3;   ///< below which no point of a rim is the lowest one
+constexpr double face_sine = 5e-3;      ///< of normals that count as the same
+constexpr double side_sine = 1e-3;      ///< of a normal at right angles to an axis
+constexpr double lying_sine = 0.5;      ///< of a cylinder's axis with a plane's normal, above which it rolls on a rim
+constexpr double standing_sine = 1e-3;  ///< below which no point of a rim is the lowest one
 constexpr double settled_overlap_share = 1e-4;
-constexpr double same_separation = 1e-9;  ///< of the size
+constexpr double same_separation = 1e-9;                       ///< of the size
 constexpr std::uint32_t lowest_of_rim = 64, ball_of_rim = 66;  ///< numbers of features, for both rims
 
 /// The face of a part whose normal is nearly this direction.
@@ -35,16 +35,20 @@ std::uint32_t face_along(const ConvexPart& part, const Vec3& direction) {
 
 /// Of a rim around the axis, seen along `down`: its ball, or its lowest point.
 Clipper::End end_of_rim(const ConvexPart& part, const Vec3& center, std::uint32_t rim, const Vec3& down) {
-  const double along = dot(down, part.axes[0]), across = std::sqrt(std::max(0.0, 1 - along * along)), ring = part.half.y;
+  const double along = dot(down, part.axes[0]), across = std::sqrt(std::max(0.0, 1 - along * along)),
+               ring = part.half.y;
   if (across > lying_sine)
-    return {center - (ring * along / across) * part.axes[0], ring / across + part.radius, {part.number, ball_of_rim + rim}};
+    return {
+        center - (ring * along / across) * part.axes[0], ring / across + part.radius, {part.number, ball_of_rim + rim}};
   const Vec3 out = across > 0 ? (ring / across) * (down - along * part.axes[0]) : ring * part.axes[1];
   return {center + out, part.radius, {part.number, lowest_of_rim + rim}};
 }
 
 /// A ball that is as curved as an ellipsoid along the way that it rolls.
 void set_ball(const ConvexPart& part, const Vec3& down, ConvexPart& ball) {
-  const auto local = [&](const Vec3& v) { return Vec3{dot(v, part.axes[0]), dot(v, part.axes[1]), dot(v, part.axes[2])}; };
+  const auto local = [&](const Vec3& v) {
+    return Vec3{dot(v, part.axes[0]), dot(v, part.axes[1]), dot(v, part.axes[2])};
+  };
   const Vec3 &half = part.half, d = local(down), s = local(part.spin);
   const Vec3 scaled{half.x * d.x, half.y * d.y, half.z * d.z};
   const Vec3 twice{half.x * scaled.x, half.y * scaled.y, half.z * scaled.z};
@@ -123,7 +127,8 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
   const Vec3 off = axis->on_first - axis->on_second;
   const Vec3 on_second = axis->on_second + (dot(axis->normal, off) - axis->apart) * axis->normal;
   TouchWriter(first, second, anchor, within, found)
-      .add_edges(axis->on_first, on_second, axis->normal, {first.is_line ? first.end.part : first.number, name_of_place(first, -axis->normal)},
+      .add_edges(axis->on_first, on_second, axis->normal,
+                 {first.is_line ? first.end.part : first.number, name_of_place(first, -axis->normal)},
                  {second.is_line ? second.end.part : second.number, name_of_place(second, axis->normal)});
 }
 
@@ -134,7 +139,8 @@ bool RoundToucher::add_on_face(const RoundAxis& round, bool is_of_first, const V
   const std::uint32_t face = face_along(owner, is_of_first ? -round.normal : round.normal);
   if (face == Polytope::none) return false;
   const Vec3& normal = owner.normals[face];
-  Axis axis{.kind = is_of_first ? Axis::Kind::face_of_first : Axis::Kind::face_of_second, .first = face, .second = face};
+  Axis axis{
+      .kind = is_of_first ? Axis::Kind::face_of_first : Axis::Kind::face_of_second, .first = face, .second = face};
   axis.normal = is_of_first ? -normal : normal;
   axis.apart = axis.most_apart = apart_along(*first_, *second_, axis.normal);
   axis.is_farthest = false;
@@ -156,7 +162,8 @@ bool RoundToucher::add_on_face(const RoundAxis& round, bool is_of_first, const V
                                       : end_of_rim(other, other.middle + half, 1, -normal);
     if (across > lying_sine) return clipper_.add_rod(axis, low, high, {other.number, 1u << 28}, writer);
     const bool is_high = dot(normal, other.axes[0]) < 0;
-    if (across > standing_sine || (is_cone && is_high)) clipper_.add_rod(axis, is_high ? high : low, is_high ? high : low, {}, writer);
+    if (across > standing_sine || (is_cone && is_high))
+      clipper_.add_rod(axis, is_high ? high : low, is_high ? high : low, {}, writer);
     if (!(is_cone && is_high)) clipper_.add_touches(axis, writer, found.size() > before ? 5 : 6);
   }
   return found.size() > before;

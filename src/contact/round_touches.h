@@ -25,6 +25,7 @@ class RoundToucher {
 };
 
 /// The touches of two parts whose cores are polytopes, segments or points.
-void add_touches_of_polytopes(const ConvexPart& first, const ConvexPart& second, const Vec3& way, TouchWriter&, Clipper&);
+void add_touches_of_polytopes(const ConvexPart& first, const ConvexPart& second, const Vec3& way, TouchWriter&,
+                              Clipper&);
 
 }  // namespace iota::contact

@@ -20,14 +20,15 @@ struct Touch {
   std::uint32_t part = 0;     ///< of the first outline: the solid's number, or a line's first or second point
   std::uint32_t feature = 0;  ///< of the part: a corner, an end, a point of a rim
   std::uint32_t other_part = 0, other_feature = 0;  ///< of the second outline: a face, an edge
-  bool is_turned = false;     ///< the plane is the first outline's, and the point that touches it the second's
+  bool is_turned = false;  ///< the plane is the first outline's, and the point that touches it the second's
   TouchForm form = TouchForm::face;
-  Vec3 center;                ///< normal . (center - origin) - radius is the gap, in each form
-  Vec3 place;                 ///< of the surface with the point, nearest to the plane
-  Vec3 origin, normal;        ///< of the plane: a point, and the unit vector away from its body; round: the center of what is round
-  Vec3 axis;                  ///< round: a unit vector, or zero
-  double radius = 0;          ///< m; round: of both together
-  double gap = 0;             ///< m, negative: overlap
+  Vec3 center;  ///< normal . (center - origin) - radius is the gap, in each form
+  Vec3 place;   ///< of the surface with the point, nearest to the plane
+  Vec3 origin,
+      normal;  ///< of the plane: a point, and the unit vector away from its body; round: the center of what is round
+  Vec3 axis;   ///< round: a unit vector, or zero
+  double radius = 0;  ///< m; round: of both together
+  double gap = 0;     ///< m, negative: overlap
 };
 
 }  // namespace iota::contact

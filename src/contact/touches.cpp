@@ -12,7 +12,8 @@ namespace {
 
 geometry::Bounds box_of_line(const Line& line, const Vec3& anchor) {
   const Vec3 reach{line.radius, line.radius, line.radius};
-  return geometry::joined({line.a - anchor - reach, line.a - anchor + reach}, {line.b - anchor - reach, line.b - anchor + reach});
+  return geometry::joined({line.a - anchor - reach, line.a - anchor + reach},
+                          {line.b - anchor - reach, line.b - anchor + reach});
 }
 
 geometry::Bounds grown(geometry::Bounds box, double by) {
@@ -27,8 +28,8 @@ const Vec3& anchor_of(const Outline& outline) {
 /// Lines share points, so that they may find the same touch twice.
 void drop_duplicates(std::vector<Touch>& found, std::size_t begin) {
   const auto is_same = [](const Touch& a, const Touch& b) {
-    return a.part == b.part && a.feature == b.feature && a.other_part == b.other_part && a.other_feature == b.other_feature &&
-           a.is_turned == b.is_turned;
+    return a.part == b.part && a.feature == b.feature && a.other_part == b.other_part &&
+           a.other_feature == b.other_feature && a.is_turned == b.is_turned;
   };
   std::size_t end = begin;
   for (std::size_t k = begin; k < found.size(); ++k) {
@@ -43,7 +44,8 @@ void drop_duplicates(std::vector<Touch>& found, std::size_t begin) {
 
 const Polytope* TouchFinder::hull_of(const std::shared_ptr<const Form>& form) {
   const auto known = hulls_.find(form.get());
-  if (known != hulls_.end() && !known->second.form.expired()) return known->second.polytope ? &*known->second.polytope : nullptr;
+  if (known != hulls_.end() && !known->second.form.expired())
+    return known->second.polytope ? &*known->second.polytope : nullptr;
   std::erase_if(hulls_, [](const auto& each) { return each.second.form.expired(); });
   Hull& hull = hulls_[form.get()];
   hull.form = form;
@@ -121,7 +123,8 @@ void TouchFinder::find_corners(const Vec3& spin_of_first, const Vec3& spin_of_se
     list.clear();
     for (std::size_t k = 0; k < parts.count; ++k) {
       const Part& part = parts.parts[k];
-      const bool is_open = part.solid && (part.solid->form->is_endless || (part.solid->form->mesh && !part.solid->form->mesh->is_closed()));
+      const bool is_open = part.solid && (part.solid->form->is_endless ||
+                                          (part.solid->form->mesh && !part.solid->form->mesh->is_closed()));
       if (which == convex ? !part.is_convex : which == others ? part.is_convex : which == closed && is_open) continue;
       if (part.line) list.lines.push_back(part.line);
       if (part.solid) list.solids.push_back(part.solid);

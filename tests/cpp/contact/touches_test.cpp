@@ -2,12 +2,13 @@
 // The gaps of touches, against the least distance of many points of the surface from a plane.
 #include "contact/touches.h"
 
-#include "math/mat3.h"
-#include "shape/shape.h"
+#include "placed.h"
+#include "tests/cpp/allocations.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -87,6 +88,98 @@ TEST(Touches, of_lines_are_at_their_ends_each_once) {
   TouchFinder().find(rods, {}, ground, {}, 1, found);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_NEAR(found[1].gap, 0.1, 1e-12);
+}
+
+/// Moves a body along a line until it is about so far from the other, m.
+void bring_near(Solid& moved, const Solid& other, const Vec3& way, double wanted, double size) {
+  moved.position = other.position;
+  const double apart = dot(way, farthest_of(moved, -way) - farthest_of(other, way));
+  moved.position += (wanted - apart) * way;
+  double distance = upper_distance(moved, other);
+  for (int k = 0; k < 20 && distance > 1e-6 * size; ++k) {
+    moved.position -= 0.9 * distance * way;
+    distance = upper_distance(moved, other);
+  }
+}
+
+TEST(Touches, of_random_pairs_have_gaps_that_are_not_larger_than_their_distance) {
+  RandomShapes random(9);
+  TouchFinder finder;
+  for (int round = 0; round < 81 * 25; ++round) {
+    const int kind = round % RandomShapes::kinds, other_kind = round / RandomShapes::kinds % RandomShapes::kinds;
+    const double scale = std::pow(10, random.number(-2, 1.3));
+    Outline first = placed(random.make(kind, scale), {}, random.turn());
+    const Outline second =
+        placed(random.make(other_kind, scale * random.number(0.3, 3)), random.vector(10), random.turn());
+    const auto size_of_box = [](const Solid& solid) { return norm(solid.form->box.high - solid.form->box.low); };
+    const double size = std::min(size_of_box(first.solids[0]), size_of_box(second.solids[0]));
+    bring_near(first.solids[0], second.solids[0], rotate(random.turn(), {1, 0, 0}), random.number(0, 0.2) * size, size);
+    std::vector<Touch> found;
+    finder.find(first, random.vector(1), second, random.vector(1), 0.1 * size, found);
+    const double distance = upper_distance(first.solids[0], second.solids[0], 1000);
+    if (distance > 0.099 * size) continue;  // it went past
+    ASSERT_FALSE(found.empty()) << kind << " " << other_kind;
+    const bool is_round = (kind >= 4 && kind <= 7) || (other_kind >= 4 && other_kind <= 7);
+    EXPECT_LE(found.size(), is_round ? 6u : 4u);
+    EXPECT_LE(least_gap_of(found), distance * (1 + 2e-5) + 1e-9 * size) << kind << " " << other_kind;
+    for (const Touch& touch : found) {
+      EXPECT_NEAR(dot(touch.normal, touch.center - touch.origin) - touch.radius, touch.gap, 1e-13 * (size + 10));
+      EXPECT_NEAR(norm(touch.normal), 1, 1e-12);
+      EXPECT_LE(touch.gap, 0.1 * size);
+    }
+    // The plane at the least gap is between them by that gap.
+    const Touch& least = *std::ranges::min_element(found, {}, &Touch::gap);
+    const Vec3 normal = (least.is_turned ? -1.0 : 1.0) * least.normal;
+    const double apart = dot(normal, farthest_of(first.solids[0], -normal) - farthest_of(second.solids[0], normal));
+    EXPECT_LE(apart, least.gap + 1e-8 * size) << kind << " " << other_kind;
+  }
+}
+
+TEST(Touches, of_two_bodies_are_the_same_from_either_side) {
+  RandomShapes random(10);
+  for (int round = 0; round < 81 * 10; ++round) {
+    const int kind = round % RandomShapes::kinds, other_kind = round / RandomShapes::kinds % RandomShapes::kinds;
+    Outline first = placed(random.make(kind, 1), {}, random.turn());
+    const Outline second = placed(random.make(other_kind, 1), {}, random.turn());
+    bring_near(first.solids[0], second.solids[0], rotate(random.turn(), {1, 0, 0}), random.number(0, 0.2), 1);
+    const auto one = touches_of(first, second, 0.05), other = touches_of(second, first, 0.05);
+    if (one.empty() && other.empty()) continue;
+    ASSERT_FALSE(one.empty() || other.empty()) << kind << " " << other_kind;
+    EXPECT_NEAR(least_gap_of(one), least_gap_of(other), 1e-5 * (1e-3 + std::abs(least_gap_of(one))))
+        << kind << " " << other_kind;
+  }
+}
+
+TEST(Touches, of_far_bodies_are_none) {
+  EXPECT_TRUE(touches_of(placed(Box{{1, 1, 1}}, {0, 1.2, 0}), placed(Box{{1, 1, 1}}, {}), 0.1).empty());
+  EXPECT_TRUE(touches_of(Outline{}, placed(Box{{1, 1, 1}}, {}), 0.1).empty());
+}
+
+TEST(Touches, of_a_compound_are_those_of_all_its_parts) {
+  Outline table;
+  for (const double x : {-1.0, 1.0})
+    for (const double z : {-1.0, 1.0})
+      table.solids.push_back(
+          {make_form(Box{{0.2, 1, 0.2}}), static_cast<std::uint32_t>(table.solids.size()), {x, 0.5, z}, {}});
+  const auto found = touches_of(table, placed(Box{{4, 1, 4}}, {0, -0.5, 0}), 0.01);
+  EXPECT_EQ(found.size(), 16u);
+}
+
+TEST(Touches, are_found_without_allocations_once_warm) {
+  TouchFinder finder;
+  std::vector<Touch> found;
+  const Outline box = placed(Box{{1, 1, 1}}, {0.1, 1, 0.2}, axis_angle({0, 1, 0}, 0.3)),
+                other = placed(Box{{1, 1, 1}}, {});
+  const Outline log = placed(Cylinder{0.2, 1}, {0, 0.7, 0});
+  const auto find_all = [&] {
+    found.clear();
+    finder.find(box, {}, other, {}, 0.02, found), finder.find(log, {}, other, {}, 0.02, found);
+  };
+  find_all();
+  const long before = allocations;
+  find_all();
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(found.size(), 6u);
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cylinders, cones and ellipsoids, at places where their touches are known.
+#include "contact/round_touches.h"
+
+#include "placed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace iota::contact {
+namespace {
+
+const Outline& round_table() {
+  static const Outline table = placed(Box{{2, 1, 2}}, {0, -0.5, 0});
+  return table;
+}
+Quaternion upright() { return axis_angle({0, 0, 1}, std::acos(0.0)); }
+
+TEST(RoundTouches, of_a_lying_cylinder_roll_on_its_middle_line) {
+  const auto found = touches_of(placed(Cylinder{0.2, 0.4}, {1, 0.2, 0}), round_table(), 0.01);
+  ASSERT_EQ(found.size(), 2u);
+  for (const Touch& touch : found) {
+    EXPECT_NEAR(touch.radius, 0.2, 1e-15);
+    EXPECT_NEAR(touch.center.y, 0.2, 1e-15);
+    EXPECT_NEAR(touch.gap, 0, 1e-15);
+  }
+  EXPECT_NEAR(std::max(found[0].place.x, found[1].place.x), 1, 1e-9) << "not at the edge of the table";
+}
+
+TEST(RoundTouches, of_a_lying_cone_roll_on_its_side) {
+  const double half_angle = std::atan2(0.2, 0.4), height = 0.2 * std::cos(half_angle) - 0.2 * std::sin(half_angle);
+  const auto found =
+      touches_of(placed(Cone{0.2, 0.4}, {0, height, 0}, axis_angle({0, 0, 1}, -half_angle)), round_table(), 0.01);
+  ASSERT_EQ(found.size(), 2u);
+  for (const Touch& touch : found) EXPECT_NEAR(touch.gap, 0, 1e-12);
+}
+
+TEST(RoundTouches, of_parallel_and_crossed_cylinders_are_those_of_their_middle_lines) {
+  const Cylinder log{0.2, 1};
+  EXPECT_EQ(touches_of(placed(log, {0, 0.4 - 1e-9, 0}), placed(log, {}), 0.01).size(), 2u);
+  const auto found = touches_of(placed(log, {0, 0.4, 0}, axis_angle({0, 1, 0}, 1)), placed(log, {}), 0.01);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].form, TouchForm::edges);
+  EXPECT_NEAR(found[0].gap, 0, 1e-12);
+}
+
+TEST(RoundTouches, of_a_box_on_a_standing_cylinder_are_its_corners) {
+  const auto found =
+      touches_of(placed(Box{{0.2, 0.2, 0.2}}, {0, 0.3, 0}), placed(Cylinder{0.2, 0.4}, {}, upright()), 0.01);
+  ASSERT_EQ(found.size(), 4u);
+  for (const Touch& touch : found) EXPECT_NEAR(touch.gap, 0, 1e-15);
+}
+
+TEST(RoundTouches, of_an_ellipsoid_are_those_of_the_ball_of_its_curvature) {
+  const Ellipsoid egg{{0.2, 0.4, 0.2}};
+  const auto found = touches_of(placed(egg, {0, 0.2, 0}), round_table(), 0.01);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].radius, 0.1 * 0.1 / 0.2, 1e-12);
+  EXPECT_NEAR(found[0].gap, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace iota::contact
