@@ -116,7 +116,9 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     start_close();
   }
 
-  void refuse(std::string_view reason) override { send_refusal(reason); }
+  void refuse(std::string_view reason) override {
+    send_refusal(reason, static_cast<websocket::close_code>(protocol::sent_away_close_code));
+  }
   std::string address() const override {
     error_code error;
     const auto other = socket_.next_layer().socket().remote_endpoint(error);
@@ -185,12 +187,12 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     pump();
   }
 
-  void send_refusal(std::string_view reason) {
+  void send_refusal(std::string_view reason, websocket::close_code code = websocket::close_code::policy_error) {
     if (is_closing_) return;
     // The reason may contain a name from outside, which is known to be UTF-8 and short.
     protocol::Refused message{std::string(reason.substr(0, 1024))};
     send(std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)), {});
-    close_when_sent(websocket::close_code::policy_error, "refused");
+    close_when_sent(code, "refused");
   }
 
   /// Sends as much as fits: messages first, then entities, then poses.

@@ -264,7 +264,10 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
   if (clients_.size() >= max_clients_) {
     return {0, "the world is full: " + std::to_string(max_clients_) + " clients are connected"};
   }
-  if (hello.role != protocol::Role::host && sent_away_.contains(link.address())) return {0, std::string(sent_away)};
+  if (hello.role != protocol::Role::host && sent_away_.contains(link.address())) {
+    link.refuse(sent_away);
+    return {0, std::string(sent_away)};
+  }
   const std::uint32_t number = next_client_++;
   clients_[number] = {.link = &link, .name = hello.name, .role = hello.role, .selected = {}, .holds = {}};
   ++counters_.clients;

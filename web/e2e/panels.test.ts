@@ -59,6 +59,8 @@ async function open(server: WorldServer, options: BrowserOptions): Promise<Visit
 
 async function visit(server: WorldServer, { dark, ...options }: BrowserOptions, look: (tab: Tab) => Promise<void>): Promise<void> {
   const key = JSON.stringify([server.port, options]);
+  // The pictures are of a world without other pages, which the bar would show.
+  if (!visited.has(key)) await leaveAll();
   const { tab } = visited.get(key) ?? visited.set(key, await open(server, options)).get(key)!;
   await tab.page.emulateMedia({ colorScheme: dark === true ? "dark" : "light" });
   // The world at its start, so that plots are empty and all is whole.
@@ -133,7 +135,6 @@ it("a panel that lacks a button is noticed", async () => {
 });
 
 describe("the headset", () => {
-  // The kept pictures are of worlds without other pages.
   beforeAll(leaveAll);
 
   it.each([["actions", () => chain], ["controls", () => things]] as const)("has its wrist panel as it was: %s", async (name, server) => {

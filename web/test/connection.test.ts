@@ -3,7 +3,7 @@
 
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { Connection, type LinkState } from "../src/net/connection.ts";
-import { Role } from "../src/protocol/generated.ts";
+import { Role, SENT_AWAY_CLOSE_CODE } from "../src/protocol/generated.ts";
 
 class Socket {
   static readonly OPEN = 1;
@@ -13,7 +13,7 @@ class Socket {
   closed = false;
   onopen: (() => void) | null = null;
   onmessage: ((event: { data: unknown }) => void) | null = null;
-  onclose: (() => void) | null = null;
+  onclose: ((event: { code: number }) => void) | null = null;
 
   constructor() {
     Socket.made.push(this);
@@ -30,6 +30,9 @@ class Socket {
     this.onopen!();
   }
 }
+
+/** How a socket ends without a word. */
+const torn = { code: 1006 };
 
 let states: LinkState[];
 let connection: Connection;
@@ -85,18 +88,34 @@ it("keeps a connection while the page was busy for long", () => {
 });
 
 it("asks why where the server closes before it has begun", () => {
-  Socket.made[0].onclose!();
+  Socket.made[0].onclose!(torn);
   expect(asked).toHaveBeenCalledOnce();
   expect(states[0]).toBe("lost");
 });
 
 it("tries again ever more rarely, but at least each five seconds", () => {
   for (let tries = 0; tries < 20; tries++) {
-    Socket.made.at(-1)!.onclose!();
+    Socket.made.at(-1)!.onclose!(torn);
     vi.advanceTimersByTime(5000);
     expect(Socket.made).toHaveLength(tries + 2);
   }
-  Socket.made.at(-1)!.onclose!();
+  Socket.made.at(-1)!.onclose!(torn);
   vi.advanceTimersByTime(2000);
   expect(Socket.made, "not as often as at the begin").toHaveLength(21);
+});
+
+it("stays away when the host has sent it away, also after the network comes back", () => {
+  Socket.made[0].open();
+  Socket.made[0].onclose!({ code: SENT_AWAY_CLOSE_CODE });
+  connection.retryNow();
+  vi.advanceTimersByTime(600_000);
+  expect(Socket.made).toHaveLength(1);
+});
+
+it("comes back after any other end", () => {
+  for (const code of [1000, 1001, 1006, 1008, 1011]) {
+    Socket.made.at(-1)!.onclose!({ code });
+    vi.advanceTimersByTime(5000);
+  }
+  expect(Socket.made).toHaveLength(6);
 });

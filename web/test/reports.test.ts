@@ -8,7 +8,7 @@ import { Events } from "../src/page/events.ts";
 import { Reports } from "../src/page/reports.ts";
 import { Selection } from "../src/page/selection.ts";
 import type { PageParts } from "../src/page/page_parts.ts";
-import { PointerKind, type ClientMessage } from "../src/protocol/generated.ts";
+import { PointerKind, Role, type ClientMessage } from "../src/protocol/generated.ts";
 import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
 
 let told: ClientMessage[];
@@ -30,7 +30,7 @@ beforeEach(() => {
   world.listens = { clicks: true, hovers: false, moves: false, keys: [] };
   const events = new Events();
   const session = {
-    clientId: 1, idOf: (slot: number) => world.entities.body.idOf(slot) ?? { slot: 0, generation: 0 }, select: () => {},
+    clientId: 1, role: Role.host, idOf: (slot: number) => world.entities.body.idOf(slot) ?? { slot: 0, generation: 0 }, select: () => {},
     send: (message: ClientMessage) => told.push(message),
   };
   selection = new Selection(world, session, { invalidate: () => {} }, events);

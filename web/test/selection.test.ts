@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { Pointer } from "../src/interact/gestures.ts";
 import { Events } from "../src/page/events.ts";
 import { Selection } from "../src/page/selection.ts";
-import type { ClientMessage, Id } from "../src/protocol/generated.ts";
+import { Role, type ClientMessage, type Id } from "../src/protocol/generated.ts";
 import { body, bodyEntity, frame, id, part, visual, TestWorld } from "./test_world.ts";
 
 /** A selection over two balls, 2 m apart on the x axis, and its messages to the server. */
@@ -11,15 +11,17 @@ class Bench extends TestWorld {
   readonly sent: ClientMessage[] = [];
   readonly selection: Selection;
   readonly pointer = new Pointer("mouse");
+  readonly session: { role: Role };
 
   constructor() {
     super();
     const session = {
-      clientId: 1,
+      clientId: 1, role: Role.host as Role,
       idOf: (slot: number): Id => this.world.entities.body.idOf(slot) ?? id(0, 0),
       select: (slot: number) => this.sent.push({ type: "select", body: session.idOf(slot) }),
       send: (message: ClientMessage) => this.sent.push(message),
     };
+    this.session = session;
     this.selection = new Selection(this.world, session, { invalidate: () => {} }, new Events());
     this.selection.gestures.add(this.pointer);
     this.set("visual", visual(0, "ball", part("sphere", [0.2])));
@@ -50,6 +52,20 @@ describe("the selection", () => {
     bench.aim(3);
     bench.press(true);
     expect(bench.sent).toMatchObject([{ type: "select", body: id(1, 5) }, { type: "grabStart", body: id(1, 5) }]);
+  });
+
+  it("of a viewer takes hold of nothing: a press selects, and a drag is for the camera", () => {
+    const bench = new Bench();
+    bench.session.role = Role.viewer;
+    bench.aim(3);
+    bench.press(true);
+    bench.aim(1);
+    expect(bench.sent).toEqual([{ type: "select", body: id(1, 5) }]);
+    expect(bench.pointer.grab).toBeNull();
+    bench.press(false);
+    bench.selection.adding = true;
+    bench.press(true);
+    expect([bench.selection.selected, [...bench.selection.several]]).toEqual([1, [0]]);
   });
 
   it("passes a pulse of the script to the hand that it names", () => {

@@ -330,7 +330,9 @@ TEST_F(HubTest, lets_a_host_send_others_away_who_stay_away_on_another_machine) {
   receive(first, protocol::SendAway{client});
   EXPECT_EQ(guest.dropped, "the host has sent you away");
   hub.leave(client);
+  guest.dropped.clear();
   EXPECT_EQ(join(guest, "", protocol::Role::viewer), 0u);
+  EXPECT_EQ(guest.dropped, "the host has sent you away") << "so that its page does not try again";
   EXPECT_NE(join(guest, "", protocol::Role::host), 0u) << "a host by its address may come from there";
 }
 

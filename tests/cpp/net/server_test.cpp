@@ -700,6 +700,19 @@ TEST_F(ServerTest, the_token_says_what_a_client_may_do_and_the_client_can_only_a
   }
 }
 
+TEST_F(ServerTest, a_client_that_is_sent_away_hears_why_by_a_code_that_lets_no_page_come_back) {
+  const auto host = join("host"), guest = join("guest");
+  const auto welcome = hear<protocol::Welcome>(*guest);
+  ASSERT_TRUE(welcome);
+  say(*host, protocol::SendAway{welcome->client});
+  const auto refused = hear<protocol::Refused>(*guest);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->reason, "the host has sent you away");
+  EXPECT_FALSE(guest->receive());
+  EXPECT_EQ(guest->close_code(), protocol::sent_away_close_code);
+  EXPECT_TRUE(is_alive(*host));
+}
+
 TEST_F(ServerTest, a_viewer_sees_and_selects_but_does_not_act) {
   const auto viewer = join("eyes", false, "", protocol::Role::viewer);
   ASSERT_TRUE(hear<protocol::Welcome>(*viewer));

@@ -22,6 +22,8 @@ interface Described {
   offered?(): boolean;
   /** Whether it can be run now; by default always. */
   enabled?(): boolean;
+  /** Why the user of this page may never run it, a sentence; empty: they may, which is the default. Running it then only tells so. */
+  refusal?(): string;
   /** Whether it is switched on or in progress; its button is highlighted. */
   active?(): boolean;
   /** A narrower button on the wrist panel. */
@@ -57,6 +59,11 @@ export interface ScriptCommand extends Command {
 }
 
 export type Entry = Command | Choice;
+
+/** Whether the user of this page may run it. */
+export function isAllowed(entry: Entry): boolean {
+  return (entry.refusal?.() ?? "") === "";
+}
 
 export function isChoice(entry: Entry): entry is Choice {
   return "options" in entry;

@@ -92,6 +92,9 @@ export class Grab {
 }
 
 export interface GestureListener {
+  /** Whether a press takes hold of a body; otherwise it is told of by `bodyPressed`, and a drag moves the camera. Default: it does. */
+  mayHold?(): boolean;
+  bodyPressed?(body: number): void;
   /** The body under a pointer changed; -1: none. */
   hoverChanged(pointer: Pointer, body: number): void;
   grabStarted(grab: Grab): void;
@@ -122,6 +125,10 @@ export class Gestures {
   constructor(scene: Pickable, listener: GestureListener) {
     this.scene_ = scene;
     this.listener_ = listener;
+  }
+
+  get mayHold(): boolean {
+    return this.listener_.mayHold?.() !== false;
   }
 
   get pointers(): readonly Pointer[] {
@@ -211,6 +218,10 @@ export class Gestures {
     if (pointer.hovered !== pointer.hit.body) {
       pointer.hovered = pointer.hit.body;
       this.listener_.hoverChanged(pointer, pointer.hit.body);
+    }
+    if (!this.mayHold) {
+      this.listener_.bodyPressed?.(pointer.hit.body);
+      return;
     }
     pointer.depth = 0;
     const grab = new Grab(this.nextHold_++, pointer, pointer.hit, pointer.near, performance.now());

@@ -199,7 +199,7 @@ export class ScreenInput {
     window.clearTimeout(finger.longPress);
     const { pointer } = finger;
     if (finger.band && finger.moved) this.drawBand_(finger, true);
-    const body = pointer.grab?.body ?? (finger.button === 2 ? pointer.hovered : -1);
+    const body = pointer.grab?.body ?? (finger.button === 2 || !this.gestures_.mayHold ? pointer.hovered : -1);
     pointer.pressed = false;
     pointer.at = event.timeStamp;
     // It may have moved since the last frame: then this is not a click.

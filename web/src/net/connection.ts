@@ -4,7 +4,7 @@
 
 import {
   decodePosesInto, decodeServerMessage, encodeClientMessage, MessageType, messageTypeOf, PosesBuffer,
-  PROTOCOL_MAGIC, PROTOCOL_VERSION, type ClientMessage, type Role, type ServerMessage,
+  PROTOCOL_MAGIC, PROTOCOL_VERSION, SENT_AWAY_CLOSE_CODE, type ClientMessage, type Role, type ServerMessage,
 } from "../protocol/generated.ts";
 
 /** connecting: first attempt; lost: not connected, trying again; refused: by the server. */
@@ -87,10 +87,10 @@ export class Connection {
       });
     };
     socket.onmessage = (event: MessageEvent<unknown>) => this.receive_(event.data);
-    socket.onclose = () => {
+    socket.onclose = ({ code }) => {
       if (this.socket_ !== socket) return;
       if (!this.opened_) void this.explain_();
-      this.lost_();
+      this.lost_(code !== SENT_AWAY_CLOSE_CODE);
     };
     this.ping_ = window.setInterval(() => this.checkAlive_(), pingEveryMs);
   }
@@ -168,10 +168,11 @@ export class Connection {
     this.listener_.message(message);
   }
 
-  private lost_(): void {
+  private lost_(triesAgain = true): void {
     this.close_();
     if (this.refusal_ !== "") this.change_("refused", this.refusal_);
     else this.change_("lost", "");
+    if (!triesAgain) return;
     this.retry_ = window.setTimeout(() => {
       this.retry_ = undefined;
       this.open();

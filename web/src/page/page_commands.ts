@@ -2,7 +2,7 @@
 // The page's own commands, in the order in which the bar, the help and the wrist panel show them. A new one is one entry here.
 
 import type { Choice, Command, Entry, ScriptCommand } from "../commands/command.ts";
-import { ActionTarget, ControlCommand, ControllerButton, NoticeLevel, type ActionEntry } from "../protocol/generated.ts";
+import { ActionTarget, ControlCommand, ControllerButton, NoticeLevel, Role, type ActionEntry } from "../protocol/generated.ts";
 import type { PageParts } from "./page_parts.ts";
 import { savePicture } from "./picture.ts";
 
@@ -22,6 +22,11 @@ const signs = {
 
 export function pageCommands({ world, session, selection, viewer, navigation, framing, viewpoints, sound, events }: PageParts): Entry[] {
   const say = (key: string, title: string) => events.notice({ level: NoticeLevel.info, title, text: "", hint: "", key });
+  const refusal = () => session.refusal(Role.host);
+  /** A command that is for all pages at once. */
+  const forHosts = (command: Command): Command => ({
+    ...command, refusal, run: (key) => (refusal() === "" ? command.run(key) : say("refusal", refusal())),
+  });
   /** The next faster (1) or slower (-1) of the offered speeds. */
   const changeSpeed = (direction: 1 | -1) => {
     const now = world.speed;
@@ -34,6 +39,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
     title: () => "Speed ([ and ])",
     options: speeds.map(String),
     unit: "×",
+    refusal,
     value: () => String(Number(world.speed.toPrecision(2))),
     choose: (option) => session.control(ControlCommand.speed, Number(option)),
   };
@@ -47,7 +53,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       offered: () => location.pathname.endsWith("/world.html"),
       run: () => location.assign("./"),
     },
-    {
+    forHosts({
       name: "play",
       help: "pause, play",
       keys: [" "],
@@ -55,8 +61,8 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       title: () => (world.paused ? "Play" : "Pause"),
       sign: () => (world.paused ? signs.play : signs.pause),
       run: () => session.control(world.paused ? ControlCommand.play : ControlCommand.pause),
-    },
-    {
+    }),
+    forHosts({
       name: "step",
       help: "one step",
       keys: ["."],
@@ -68,8 +74,8 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
         if (!world.paused) session.control(ControlCommand.pause);
         session.control(ControlCommand.singleStep);
       },
-    },
-    {
+    }),
+    forHosts({
       name: "reset",
       help: "reset",
       keys: ["r"],
@@ -77,8 +83,8 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       title: () => "Reset",
       sign: () => signs.reset,
       run: () => session.control(ControlCommand.reset),
-    },
-    {
+    }),
+    forHosts({
       name: "slower",
       help: "slower, faster",
       keys: ["["],
@@ -88,9 +94,9 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       title: () => "Slower",
       sign: () => signs.minus,
       run: () => changeSpeed(-1),
-    },
+    }),
     speed,
-    {
+    forHosts({
       name: "faster",
       help: "slower, faster",
       keys: ["]"],
@@ -100,7 +106,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       title: () => "Faster",
       sign: () => signs.plus,
       run: () => changeSpeed(1),
-    },
+    }),
     {
       name: "style",
       help: "next style",
@@ -236,9 +242,14 @@ function lengthName(meters: number): string {
 const faceButtons = { [ControllerButton.none]: null, [ControllerButton.a]: "a", [ControllerButton.b]: "b" } as const;
 
 /** The script's actions as commands. */
-export function scriptCommands(actions: readonly ActionEntry[], { session, selection }: PageParts): ScriptCommand[] {
+export function scriptCommands(actions: readonly ActionEntry[], { session, selection, events }: PageParts): ScriptCommand[] {
   return actions.map((action): ScriptCommand => {
     const onBody = action.on === ActionTarget.body;
+    const refusal = () => session.refusal(Role.actor);
+    const act = (bodies: readonly number[]) => {
+      if (refusal() === "") session.act(action.name, bodies);
+      else events.notice({ level: NoticeLevel.info, title: refusal(), text: "", hint: "", key: "refusal" });
+    };
     const command: Command = {
       name: `action ${action.name}`,
       help: action.help,
@@ -246,8 +257,9 @@ export function scriptCommands(actions: readonly ActionEntry[], { session, selec
       title: () => action.label,
       offered: () => !onBody || selection.selected >= 0,
       enabled: () => !onBody || selection.actionBody >= 0,
-      run: () => session.act(action.name, onBody ? selection.actionBodies : [selection.actionBody].filter((body) => body >= 0)),
+      refusal,
+      run: () => act(onBody ? selection.actionBodies : [selection.actionBody].filter((body) => body >= 0)),
     };
-    return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => session.act(action.name, [body]) };
+    return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => act([body]) };
   });
 }

@@ -4,14 +4,14 @@
 import { Gestures, type GestureListener, type Grab, type Pointer } from "../interact/gestures.ts";
 import { toBody } from "../interact/picking.ts";
 import type { LinkState } from "../net/connection.ts";
-import type { Vec3 } from "../protocol/generated.ts";
+import { Role, type Vec3 } from "../protocol/generated.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
 import type { Hold, World } from "../world/world.ts";
 import type { Events, PageListener } from "./events.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
-type SelectionSession = Pick<Session, "clientId" | "idOf" | "select" | "send">;
+type SelectionSession = Pick<Session, "clientId" | "role" | "idOf" | "select" | "send">;
 
 export class Selection implements GestureListener, FramePart, PageListener {
   readonly gestures: Gestures;
@@ -153,6 +153,15 @@ export class Selection implements GestureListener, FramePart, PageListener {
   }
 
   // --- GestureListener
+
+  mayHold(): boolean {
+    return this.session_.role !== Role.viewer;
+  }
+
+  bodyPressed(body: number): void {
+    if (this.adding) this.toggle(body);
+    else this.select(body);
+  }
 
   hoverChanged(pointer: Pointer, body: number): void {
     this.viewer_.invalidate();

@@ -3,7 +3,7 @@
 // on the page and a full id on the wire, so that a late request cannot reach another body in the same slot.
 
 import { Connection, type ConnectionListener, type LinkState, type JoinRequest } from "../net/connection.ts";
-import type { ClientMessage, ControlCommand, Id, PosesBuffer, ServerMessage } from "../protocol/generated.ts";
+import { Role, type ClientMessage, type ControlCommand, type Id, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
 import { sendPicture, type PictureViewer } from "./picture.ts";
@@ -31,6 +31,18 @@ export class Session implements ConnectionListener {
 
   get clientId(): number {
     return this.connection.clientId;
+  }
+
+  /** The role of this page's user, which the server has told. */
+  get role(): Role {
+    return this.world_.clients.find(({ client }) => client === this.clientId)?.role ?? Role.host;
+  }
+
+  /** Why the user may not do what hosts, or all but viewers (`actor`), may do; empty: they may. */
+  refusal(least: typeof Role.host | typeof Role.actor): string {
+    const { role } = this;
+    if (role === Role.viewer) return "You only watch this world";
+    return least === Role.host && role !== Role.host ? "Only the host does that" : "";
   }
 
   /** Sends if connected; otherwise drops the message, because old gestures are stale. */

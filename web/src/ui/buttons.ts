@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Buttons of commands: those of the bar, and the script's in the strip and the menu.
 
-import { isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
+import { isAllowed, isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
 import { keyName, make } from "./dom.ts";
 
 const svgNamespace = "http://www.w3.org/2000/svg";
@@ -20,8 +20,9 @@ export function makeBarItem(entry: Entry, refocus: () => void): BarItem {
   return item;
 }
 
-/** "Pause (space)". */
+/** "Pause (space)"; or, for a user who may not, why. */
 function tooltip(entry: Entry): string {
+  if (!isAllowed(entry)) return `${entry.title()}: ${entry.refusal!()}`;
   const key = entry.keys?.at(0);
   return key === undefined ? entry.title() : `${entry.title()} (${keyName(key)})`;
 }
@@ -50,7 +51,7 @@ function makeButton(command: Command): BarItem {
     element: button,
     refresh: () => {
       button.hidden = command.offered?.() === false;
-      button.disabled = command.enabled?.() === false;
+      button.disabled = command.enabled?.() === false || !isAllowed(command);
       face();
       title();
     },
@@ -77,10 +78,12 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
   const select = make("select");
   for (const option of choice.options) select.append(new Option(option + choice.unit, option));
   select.setAttribute("aria-label", choice.title());
-  select.title = choice.title();
   select.addEventListener("change", () => {
     choice.choose(select.value);
     refocus();
+  });
+  const title = onChange(() => tooltip(choice), (text) => {
+    select.title = text;
   });
   const value = onChange(() => choice.value(), (now) => {
     // A value that is not offered is not shown: the previous one stays.
@@ -89,6 +92,8 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
   return {
     element: select,
     refresh: () => {
+      select.disabled = !isAllowed(choice);
+      title();
       if (document.activeElement !== select) value();
     },
   };
@@ -98,7 +103,8 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
 export function makeActionButton(command: ScriptCommand, after?: () => void, body?: number): HTMLButtonElement {
   const button = make("button", "action", command.title());
   button.type = "button";
-  if (command.help !== "" && command.help !== undefined) button.title = command.help;
+  button.disabled = !isAllowed(command);
+  button.title = command.refusal?.() || command.help || "";
   for (const key of command.keys ?? []) button.append(make("kbd", "", keyName(key)));
   button.addEventListener("click", () => {
     if (body === undefined) command.run();

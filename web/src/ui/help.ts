@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The help: commands of the script, then those of the page, both from the list of commands.
 
-import type { Entry } from "../commands/command.ts";
+import { isAllowed, type Entry } from "../commands/command.ts";
 import type { Commands } from "../commands/commands.ts";
 import { keyName, make } from "./dom.ts";
 import { walkKeyNames } from "./keys.ts";
@@ -20,6 +20,10 @@ const touch: readonly (readonly [string, string])[] = [
   ["two fingers", "on empty space: move sideways, pinch to come nearer"],
   ["long press", "or double tap on a body: its actions"],
 ];
+
+/** For who only watches. */
+const watching: readonly (readonly [string, string])[] = [["click a body", "selects it, and shows its name"], ["drag", "orbits; with shift, or with the middle button, moves sideways"]];
+const watchingTouch: readonly (readonly [string, string])[] = [["one finger", "orbits"], touch[1]];
 
 function addRows(list: HTMLElement, rows: Iterable<readonly [Node | string, string]>): void {
   for (const [what, help] of rows) {
@@ -62,15 +66,16 @@ function rowsOf(entries: readonly Entry[], hidden: (key: string) => boolean): (r
 /** Page commands whose key belongs to the script here: names their buttons. */
 function displaced(commands: Commands, taken: (key: string) => boolean): (readonly [Node | string, string])[] {
   return commands.own
-    .filter(({ keys, offered }) => keys?.some(taken) === true && keys.every((key) => taken(key)) && offered?.() !== false)
+    .filter((entry) => entry.keys?.some(taken) === true && entry.keys.every((key) => taken(key)) && entry.offered?.() !== false && isAllowed(entry))
     .map((entry) => [
       entry.title(),
       `${(entry.keys ?? []).map(keyName).join(" ")} is this world's key here${entry.places?.includes("bar") === true ? ": press the button in the bar" : ""}`,
     ] as const);
 }
 
-/** Fills and opens the dialog. heard: keys to which the script listens without an action. */
-export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands, heard: readonly string[]): void {
+/** Fills and opens the dialog. heard: keys to which the script listens without an action; watches: its reader only watches. Commands that
+ * the reader may not run are left out. */
+export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands, heard: readonly string[], watches = false): void {
   dialog.replaceChildren();
   const header = make("header");
   header.append(make("h1", "", title));
@@ -81,15 +86,15 @@ export function openHelp(dialog: HTMLDialogElement, title: string, commands: Com
   header.append(close);
   const columns = make("div", "columns");
   dialog.append(header, columns);
-  addSection(columns, "In this world", commands.script.map((command) => [
+  addSection(columns, "In this world", commands.script.filter(isAllowed).map((command) => [
     command.keys === undefined || command.keys.length === 0 ? command.title() : keyCaps(command.keys), command.help || command.title(),
   ]));
-  if (matchMedia("(pointer: coarse)").matches) addSection(columns, "Touch", touch);
-  if (matchMedia("(any-hover: hover)").matches) addSection(columns, "Mouse", mouse);
+  if (matchMedia("(pointer: coarse)").matches) addSection(columns, "Touch", watches ? watchingTouch : touch);
+  if (matchMedia("(any-hover: hover)").matches) addSection(columns, "Mouse", watches ? [...watching, ...mouse.slice(4)] : mouse);
   const taken = (key: string) => heard.includes(key) || commands.scriptOfKey(key) !== undefined;
   const keyboard = matchMedia("(any-hover: hover)").matches;
   if (keyboard) addSection(columns, "Keys", [
-    ...rowsOf(commands.own.filter((entry) => entry.offered?.() !== false), taken),
+    ...rowsOf(commands.own.filter((entry) => entry.offered?.() !== false && isAllowed(entry)), taken),
     ...displaced(commands, taken),
     [keyCaps(walkKeyNames.filter((key) => !taken(key))), "walk, down and up; with shift faster"],
   ]);

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own controls: one thin bar, time readings, a hint at the pointer, actions, cards, help.
 
-import type { Command } from "../commands/command.ts";
+import { isAllowed, type Command } from "../commands/command.ts";
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
 import type { PageListener, PageNotice } from "../page/events.ts";
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
+import { Role } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
 import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
 import { Keys } from "./keys.ts";
+import type { PeopleList } from "./people_list.ts";
 import type { Profile } from "./profile.ts";
 import { Welcome } from "./welcome.ts";
 
@@ -22,6 +24,8 @@ const welcomeMs = 15000;
 const leastForce = 0.05;
 const meterEveryMs = 250;
 const linkCard = "link";
+const watcherWelcome = "You watch: drag to look around";
+const peopleSign = "M9 11a3.5 3.5 0 1 0 0-7 3.5 3.5 0 0 0 0 7M2.5 20v-1a6.5 5 0 0 1 13 0v1M15.5 4.5a3.5 3.5 0 0 1 0 6.3M18 14.6a6 5 0 0 1 3.5 4.4v1";
 const levels: readonly CardLevel[] = ["info", "warning", "error"];
 
 type OverlayPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "framing" | "setTheme">;
@@ -49,6 +53,8 @@ export class Overlay implements PageListener, FramePart {
   private renamed_ = 0;
   private hintText_ = "";
   private bodyHint_ = "drag";
+  private role_: Role = Role.host;
+  private people_: PeopleList | null = null;
   private everConnected_ = false;
 
   constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
@@ -57,7 +63,7 @@ export class Overlay implements PageListener, FramePart {
     this.welcome_ = new Welcome(page, byId("welcome", HTMLElement), byId("foot", HTMLElement));
     const showBar = () => this.showBar();
     page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
-    page.commands.add(this.helpCommand_(), this.profileCommand_());
+    page.commands.add(this.peopleCommand_(), this.helpCommand_(), this.profileCommand_());
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
     window.addEventListener("keydown", (event) => this.closeMenuByKey_(event), true);
@@ -96,8 +102,8 @@ export class Overlay implements PageListener, FramePart {
 
   openHelp(): void {
     void import("./help.ts").then(({ openHelp }) => {
-      const { world, commands } = this.page_;
-      if (!this.help_.open) openHelp(this.help_, world.settings.title || "Iota", commands, world.listens.keys);
+      const { world, commands, session } = this.page_;
+      if (!this.help_.open) openHelp(this.help_, world.settings.title || "Iota", commands, world.listens.keys, session.role === Role.viewer);
     });
   }
 
@@ -135,11 +141,16 @@ export class Overlay implements PageListener, FramePart {
       this.closeMenu_();
       this.refreshStrip_();
     }
+    if (what === "clients") {
+      this.takeRole_(this.page_.session.role);
+      this.people_?.refresh();
+    }
     this.refreshBar_();
   }
 
   link(state: LinkState, reason: string): void {
     this.canvas_.classList.toggle("away", state !== "connected" && this.everConnected_);
+    if (state !== "connected") this.people_?.close();
     switch (state) {
       case "connected":
         // A world without bodies is shown too, after a delay.
@@ -177,7 +188,7 @@ export class Overlay implements PageListener, FramePart {
   }
 
   hover(pointer: Pointer, body: number): void {
-    if (pointer.name === "mouse") this.canvas_.classList.toggle("can-grab", body >= 0);
+    if (pointer.name === "mouse") this.canvas_.classList.toggle("can-grab", body >= 0 && this.page_.gestures.mayHold);
   }
 
   // --- FramePart
@@ -212,6 +223,24 @@ export class Overlay implements PageListener, FramePart {
     };
   }
 
+  private peopleCommand_(): Command {
+    const { world } = this.page_;
+    return {
+      name: "people",
+      help: "who is here",
+      keys: ["y"],
+      places: ["bar"],
+      title: () => `${world.clients.length} are here`,
+      sign: () => peopleSign,
+      offered: () => world.clients.length > 1,
+      active: () => this.people_?.isOpen === true,
+      run: () => void import("./people_list.ts").then(({ PeopleList }) => {
+        this.people_ ??= new PeopleList(this.page_, byId("foot", HTMLElement));
+        this.people_.toggle();
+      }),
+    };
+  }
+
   private helpCommand_(): Command {
     return {
       name: "open help",
@@ -224,15 +253,23 @@ export class Overlay implements PageListener, FramePart {
     };
   }
 
+  /** Once the server has told it. */
+  private takeRole_(role: Role): void {
+    if (role === this.role_) return;
+    this.role_ = role;
+    if (role === Role.viewer) this.welcome_.say(watcherWelcome);
+    this.takeCommands_();
+  }
+
   /** Places the buttons of all commands. */
   private takeCommands_(): void {
     const { commands } = this.page_;
     const refocus = () => this.canvas_.focus({ preventScroll: true });
     this.barItems_ = commands.at("bar").map((entry) => makeBarItem(entry, refocus));
     this.bar_.replaceChildren(...this.barItems_.map((item) => item.element));
-    const hints = commands.script.filter((action) => action.onBody)
+    const hints = commands.script.filter((action) => action.onBody && isAllowed(action))
       .flatMap((action) => (action.keys ?? []).map((key) => `${keyName(key)} ${action.title()}`));
-    this.bodyHint_ = ["drag", ...hints].join("; ");
+    this.bodyHint_ = (this.role_ === Role.viewer ? [] : ["drag", ...hints]).join("; ");
     this.closeMenu_();
     this.refreshStrip_();
   }
@@ -302,7 +339,7 @@ export class Overlay implements PageListener, FramePart {
     const mouse = this.page_.gestures.pointers[0];
     if (!mouse.active || mouse.hovered < 0) return "";
     const name = this.page_.world.entities.body.ownNameOf(mouse.hovered);
-    return name === "" ? this.bodyHint_ : `${name}: ${this.bodyHint_}`;
+    return [name, this.bodyHint_].filter((part) => part !== "").join(": ");
   }
 
   private refreshMeter_(): void {

@@ -3,7 +3,7 @@
 
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
-import { WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
+import { Role, WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
 import { byId, make } from "./dom.ts";
 import { drawPlot } from "./plot.ts";
 
@@ -34,6 +34,7 @@ export class Panel implements FramePart {
   private readonly plots_ = new Map<number, ShownPlot>();
   private widgetsSeen_ = 0;
   private plotsSeen_ = 0;
+  private refusal_ = "";
 
   constructor(page: PanelPage) {
     this.page_ = page;
@@ -63,8 +64,10 @@ export class Panel implements FramePart {
 
   draw(): void {
     const { widget, plot } = this.page_.world.entities;
-    if (widget.version !== this.widgetsSeen_) {
+    const refusal = this.page_.session.refusal(Role.actor);
+    if (widget.version !== this.widgetsSeen_ || refusal !== this.refusal_) {
       this.widgetsSeen_ = widget.version;
+      this.refusal_ = refusal;
       this.showWidgets_(widget.of(this.page_.session.clientId));
     }
     if (plot.version !== this.plotsSeen_) {
@@ -92,15 +95,16 @@ export class Panel implements FramePart {
 
   private showWidget_(widget: WidgetEntity): HTMLElement {
     const { slot, generation } = widget.id;
-    const face = JSON.stringify([generation, widget.kind, widget.label, widget.help, widget.options]);
+    const title = this.refusal_ || widget.help;
+    const face = JSON.stringify([generation, widget.kind, widget.label, title, widget.options]);
     let shown = this.shown_.get(slot);
     if (shown?.face !== face) {
       shown?.element.remove();
       shown = { face, ...this.make_(widget) };
-      if (widget.help !== "") shown.element.title = widget.help;
+      if (title !== "") shown.element.title = title;
       this.shown_.set(slot, shown);
     }
-    shown.show(widget);
+    shown.show(this.refusal_ === "" ? widget : { ...widget, enabled: false });
     return shown.element;
   }
 

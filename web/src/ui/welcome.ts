@@ -21,6 +21,11 @@ export class Welcome {
     this.place();
   }
 
+  say(text: string): void {
+    this.element_.textContent = text;
+    this.place();
+  }
+
   leave(): void {
     this.element_.classList.add("gone");
   }

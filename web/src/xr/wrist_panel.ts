@@ -3,8 +3,9 @@
 // faces the reader; without a left hand it floats at the left of where the user stands.
 
 import { Matrix4, Vector3 } from "three";
-import { isChoice } from "../commands/command.ts";
+import { isAllowed, isChoice } from "../commands/command.ts";
 import type { Page } from "../page/page.ts";
+import { Role } from "../protocol/generated.ts";
 import { drawWhole, wholeSize } from "../ui/plot.ts";
 import { Board, fitText, font, roundedBox, type Colors } from "./board.ts";
 import { middleKnuckle, wrist } from "./hand_joints.ts";
@@ -82,7 +83,9 @@ export class WristPanel {
     this.controlsSeen_ = widget.version;
     this.plotsSeen_ = plot.version;
     this.sincePlots_ = 0;
-    const controls = controlRows(widget.of(session.clientId), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
+    const watches = session.refusal(Role.actor) !== "";
+    const widgets = widget.of(session.clientId).map((each) => (watches ? { ...each, enabled: false } : each));
+    const controls = controlRows(widgets, ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
     this.layout_ = layoutPanel(commands, { controls, plots: plot.all() }, this.leaf_, (leaf) => {
       this.leaf_ = leaf;
       this.arrange();
@@ -214,7 +217,7 @@ export class WristPanel {
   private paintButton_(context: CanvasRenderingContext2D, colors: Colors, button: PanelButton, index: number): void {
     const { command } = button;
     const on = index === this.board.flashed || command.active?.() === true;
-    const dim = command.enabled?.() === false;
+    const dim = command.enabled?.() === false || !isAllowed(command);
     const fill = on ? colors.calm : index === this.board.hovered && !dim ? colors.hover : colors.raised;
     roundedBox(context, button, 26, fill);
     const ink = on ? colors.onCalm : dim ? colors.faint : colors.ink;
