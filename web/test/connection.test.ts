@@ -3,7 +3,7 @@
 
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { Connection, type LinkState } from "../src/net/connection.ts";
-import { Role, SENT_AWAY_CLOSE_CODE } from "../src/protocol/generated.ts";
+import { encodeServerMessage, Role, SENT_AWAY_CLOSE_CODE } from "../src/protocol/generated.ts";
 
 class Socket {
   static readonly OPEN = 1;
@@ -87,6 +87,16 @@ it("keeps a connection while the page was busy for long", () => {
   expect(states).toEqual([]);
 });
 
+it("keeps a connection as long as anything comes, also nothing but answers to its pings", () => {
+  Socket.made[0].open();
+  for (let seconds = 0; seconds < 60; seconds += 4) {
+    Socket.made[0].onmessage!({ data: encodeServerMessage({ type: "pong", clientTime: seconds, step: 0 }) });
+    vi.advanceTimersByTime(4000);
+  }
+  expect(Socket.made).toHaveLength(1);
+  expect(states).toEqual([]);
+});
+
 it("asks why where the server closes before it has begun", () => {
   Socket.made[0].onclose!(torn);
   expect(asked).toHaveBeenCalledOnce();
@@ -102,6 +112,20 @@ it("tries again ever more rarely, but at least each five seconds", () => {
   Socket.made.at(-1)!.onclose!(torn);
   vi.advanceTimersByTime(2000);
   expect(Socket.made, "not as often as at the begin").toHaveLength(21);
+});
+
+it("tries again at once after a connection that was good, however rarely it tried before", () => {
+  for (let tries = 0; tries < 20; tries++) {
+    Socket.made.at(-1)!.onclose!(torn);
+    vi.advanceTimersByTime(5000);
+  }
+  const socket = Socket.made.at(-1)!;
+  socket.open();
+  socket.onmessage!({ data: encodeServerMessage({ type: "welcome", version: 1, world: "", client: 3 }) });
+  expect([connection.clientId, connection.connected]).toEqual([3, true]);
+  socket.onclose!(torn);
+  vi.advanceTimersByTime(500);
+  expect(Socket.made).toHaveLength(22);
 });
 
 it("stays away when the host has sent it away, also after the network comes back", () => {

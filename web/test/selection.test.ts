@@ -68,6 +68,17 @@ describe("the selection", () => {
     expect([bench.selection.selected, [...bench.selection.several]]).toEqual([1, [0]]);
   });
 
+  it("is told to the server again after a lost connection, and its holds end", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    bench.sent.length = 0;
+    bench.selection.link("lost");
+    expect(bench.sent).toMatchObject([{ type: "grabEnd" }]);
+    bench.selection.link("connected");
+    expect(bench.sent.slice(1)).toEqual([{ type: "select", body: id(1, 5) }]);
+  });
+
   it("passes a pulse of the script to the hand that it names", () => {
     const bench = new Bench();
     const felt: [string, number, number][] = [];

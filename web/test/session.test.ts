@@ -5,7 +5,7 @@ import { PerspectiveCamera, Scene, type WebGLRenderer } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Events } from "../src/page/events.ts";
 import { Session } from "../src/page/session.ts";
-import { Role, type PoseHold } from "../src/protocol/generated.ts";
+import { Role, type ClientMessage, type PoseHold } from "../src/protocol/generated.ts";
 import { body, bodyEntity, frame, part, visual, TestWorld } from "./test_world.ts";
 
 let asked = 0;
@@ -26,6 +26,22 @@ beforeEach(() => {
 });
 
 afterEach(() => vi.unstubAllGlobals());
+
+describe("an action", () => {
+  it("on more bodies than a message holds is sent in several, about each body once", () => {
+    const sent: ClientMessage[] = [];
+    vi.spyOn(session.connection, "send").mockImplementation((message) => sent.push(message) > 0);
+    vi.spyOn(session, "idOf").mockImplementation((slot) => ({ slot, generation: 1 }));
+    const asked = Array.from({ length: 10_000 }, (_, slot) => slot);
+    session.act("paint", asked);
+    const bodies = sent.map((message) => (message.type === "action" ? [message.body, ...message.others] : []));
+    expect(bodies.map(({ length }) => length)).toEqual([4096, 4096, 1808]);
+    expect(bodies.flat().map(({ slot }) => slot)).toEqual(asked);
+    sent.length = 0;
+    session.act("paint", []);
+    expect(sent).toEqual([{ type: "action", name: "paint", body: { slot: 0, generation: 0 }, others: [] }]);
+  });
+});
 
 /** Whether a picture is due after poses of a step. */
 function draws(step: number, holds: PoseHold[] = []): boolean {

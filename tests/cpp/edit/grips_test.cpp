@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -44,6 +46,22 @@ TEST(Grip, with_numbers_that_no_hand_has_is_refused_and_changes_nothing) {
   EXPECT_THROW(system.grips().move(grip, {std::nan(""), 0, 0}), std::invalid_argument);
   system.grips().destroy(grip);
   EXPECT_THROW(system.grips().move(grip, {}), StaleIdError);
+}
+
+// A body at rest gets h f/m in a short step, by the law of a spring near the target, and by the largest acceleration from afar.
+TEST(Grip, pulls_with_its_largest_acceleration_from_afar_and_as_a_spring_from_near) {
+  constexpr double frequency = 2, largest = 7, h = 1e-5;
+  const double omega = 2 * std::numbers::pi * frequency;
+  for (const double mass : {0.1, 40.0}) {
+    for (const double distance : {0.001, 0.04, 0.05, 1.0, 1e3, 1e6}) {
+      System system{SystemOptions{.gravity = {}}};
+      const BodyId ball = system.bodies().create(Sphere{0.1}, {.mass = mass});
+      (void)system.grips().create(ball, {}, {distance, 0, 0}, {.frequency = frequency, .max_acceleration = largest});
+      (void)system.step(h);
+      const double wanted = std::min(omega * omega * distance, largest);
+      EXPECT_NEAR(system.bodies().velocity(ball).x / h, wanted, 1e-3 * wanted) << mass << " kg, " << distance << " m";
+    }
+  }
 }
 
 // Islands are built in parallel: one took the grip of another into its own numbers, and read memory that is not its own.

@@ -414,6 +414,17 @@ TEST_F(HubTest, limits_the_bytes_that_wait_for_the_script) {
   EXPECT_EQ(flood.dropped, "more input than the script can take");
 }
 
+TEST_F(HubTest, has_room_again_when_the_script_has_read_what_waited) {
+  Link busy;
+  const std::uint32_t client = join(busy);
+  const protocol::Action large{.name = "copy", .body = {}, .others = std::vector<protocol::Id>(4000)};
+  for (int round = 0; round < 12; ++round) {  // of 0.6 MB: together more than may wait in a world
+    for (int i = 0; i < 20; ++i) receive(client, large);
+    EXPECT_EQ(take_gestures().size(), 20u) << round;
+  }
+  EXPECT_EQ(busy.dropped, "");
+}
+
 TEST_F(HubTest, limits_the_bytes_of_values_that_replace_older_ones) {
   Link flood;
   const std::uint32_t client = join(flood);
