@@ -105,6 +105,56 @@ def test_an_action_on_the_world_is_called_once_however_many_bodies_are_selected(
     assert shown == [] and not bodies[0].particles
 
 
+def test_an_action_on_several_bodies_is_undone_at_once() -> None:
+    world = iota.World(iota.System())
+    bodies = [world.system.body() for _ in range(3)]
+
+    @world.controls.action("fill")
+    def fill(event: iota.Event) -> None:
+        event.target.particle((0, 0, 0), mass=1)
+
+    world._inputs.act(world._state.actions["fill"], 5, bodies)
+    assert [len(body.particles) for body in bodies] == [1, 1, 1]
+    assert world.undo()
+    assert [len(body.particles) for body in bodies] == [0, 0, 0]
+
+
+@pytest.mark.parametrize(("asked", "given"), [(1e30, 10.0), (-1.0, 0.0), (0.25, 0.25)])
+def test_a_page_sets_a_speed_within_limits_whatever_it_asks_for(asked: float, given: float) -> None:
+    world = iota.World(iota.System())
+    shown = cards(world)
+    control = protocol.Control(protocol.ControlCommand.SPEED, asked)
+    world._inputs.take([(5, protocol.Join("", protocol.Role.HOST)), (5, control)], lambda ids: [])
+    assert (world._state.clock.speed, shown) == (given, [])
+
+
+def test_an_error_of_our_own_that_is_for_all_pages_is_told_once_and_one_for_a_page_each_time(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    world = iota.World(iota.System())
+    shown = cards(world)
+    own: list[str] = []
+
+    def fail() -> None:
+        raise OverflowError("too large")
+
+    for _ in range(3):
+        assert not world._guard.outlive("A frame", fail)
+    assert [title for _, title, _ in shown] == ["A frame failed"]
+    for _ in range(3):
+        world._guard.outlive("That", fail, lambda title, text, hint: own.append(title))
+    assert own == ["That failed"] * 3 and len(shown) == 1
+    assert capsys.readouterr().err.count("OverflowError: too large") == 1, "printed once"
+
+
+def test_a_page_that_has_left_leaves_nothing_of_its_pace() -> None:
+    world = iota.World(iota.System())
+    for number in range(1, 50):
+        inputs = [protocol.Join("", protocol.Role.ACTOR), protocol.Key("k", True), protocol.Leave()]
+        world._inputs.take([(number, message) for message in inputs], lambda ids: [])
+    assert not world._inputs._pace._of
+
+
 def test_a_step_that_raises_pauses_the_world_and_pages_stay(run_world: Runner) -> None:
     world = iota.World(iota.System())
     is_broken = [False]
