@@ -24,7 +24,7 @@ iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo films test test-all bench verify soak hostile check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo films test test-all bench verify soak hostile check-determinism wheel sbom docs format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -71,8 +71,11 @@ hostile: ## damaged snapshots and recordings under the address sanitizer, up to 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py
 
-wheel: ## build/wheel/*.whl with engine, server and page
+wheel: ## build/wheel/*.whl with engine, server, page and OpenSSL, as PyPI takes it
 	@$(PYTHON) tools/build.py wheel
+
+sbom: ## the bill of materials of the wheel: build/sbom/*.cdx.json (CycloneDX)
+	@$(PYTHON) tools/build.py sbom
 
 format: ## format C++ and Python
 	@$(PYTHON) tools/build.py lint

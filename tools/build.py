@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
 
-    tools/build.py build | films | test | bench | verify | soak | wheel | lint
+    tools/build.py build | films | test | bench | verify | soak | wheel | sbom | docs | lint
     tools/build.py cpp --preset asan
 
 Each step prints one line and writes the rest to build/logs/STEP.log. A step with unchanged inputs is skipped silently:
@@ -420,7 +420,8 @@ def command_line() -> Step:
 
 
 def wheel() -> Step:
-    """The wheel takes the extension that was just built and tested; `pip wheel .` without the setting compiles it."""
+    """The wheel takes the extension that was just built and tested; `pip wheel .` without the setting compiles it. On Linux it gets the
+    libraries that other systems may lack, OpenSSL's, and the tag of the oldest systems on which it runs: PyPI takes no other."""
     stamp = BUILD / "stamps" / "wheel"
 
     def now() -> str:
@@ -431,15 +432,20 @@ def wheel() -> Step:
             ROOT / "LICENSE",
             *sorted((ROOT / "LICENSES").glob("*.txt")),
             ROOT / "cmake" / "python.cmake",
+            ROOT / "tools" / "requirements-wheel.txt",
         ]
         return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))
 
     def work(log: Path) -> None:
         shutil.rmtree(WHEELS, ignore_errors=True)
+        plain = BUILD / "wheel-plain" if sys.platform == "linux" else WHEELS
+        shutil.rmtree(plain, ignore_errors=True)
         run(
-            log, PYTHON, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", WHEELS,
+            log, PYTHON, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", plain,
             "--config-settings", f"cmake.define.IOTA_PREBUILT={BUILD / 'python' / 'iota'}",
         )  # fmt: skip
+        if plain != WHEELS:
+            run(log, PYTHON, "-m", "auditwheel", "repair", "--wheel-dir", WHEELS, *plain.glob("*.whl"))
         # With its dependencies, so that a test can install both without a network.
         run(
             log, PYTHON, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
@@ -451,6 +457,16 @@ def wheel() -> Step:
         return list(WHEELS.glob(f"{name_in_files()}-*.whl")) or [WHEELS / "none"]
 
     return Step("wheel", "packing the wheel", work, lambda: is_stale(stamp, now(), made()), "The log has pip's words.")
+
+
+def sbom() -> Step:
+    script = ROOT / "tools" / "make_sbom.py"
+
+    def work(log: Path) -> None:
+        for packed in WHEELS.glob("*.whl"):
+            run(log, PYTHON, script, packed, BUILD / "sbom" / f"{packed.stem}.cdx.json")
+
+    return Step("sbom", "writing the bill of materials", work, lambda: True, "The log names what is not described.")
 
 
 def installed_version(package: str) -> str:
@@ -490,6 +506,9 @@ def sundials() -> Step:
 # --- goals ----------------------------------------------------------------------------------------------------------
 
 
+GOALS = ("build", "films", "test", "bench", "verify", "soak", "wheel", "sbom", "docs", "lint", "cpp")
+
+
 def steps_for(goal: str, preset: str) -> list[Step]:
     engine = cmake_build("engine", "building engine, server and bindings", "release", "everyday")
     if goal == "lint":
@@ -513,7 +532,8 @@ def steps_for(goal: str, preset: str) -> list[Step]:
     ]
     if goal == "test":
         steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film"), beside=True))
-        steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
+        steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests")]
+        steps += [python_environment("wheel"), wheel()]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
     elif goal == "films":
@@ -526,7 +546,9 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         steps.append(peer_packages())
         steps.append(cmake_build("bench", "building the benchmarks", "release", "iota_bench"))
     elif goal == "wheel":
-        steps.append(wheel())
+        steps += [python_environment("wheel"), wheel()]
+    elif goal == "sbom":
+        steps += [python_environment("wheel"), wheel(), sbom()]
     return steps
 
 
@@ -596,7 +618,7 @@ def end_of(work: Future[None]) -> Callable[[Path], None]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Builds iota step by step.")
-    parser.add_argument("goal", choices=["build", "films", "test", "bench", "verify", "soak", "wheel", "lint", "cpp"])
+    parser.add_argument("goal", choices=GOALS)
     parser.add_argument("--preset", default="debug", help="the CMake preset of the goal cpp")
     options = parser.parse_args()
     with only_one():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The wheel works in a clean environment: no compiler, no Node.js, no network, none of this folder's files."""
 
+import io
 import json
 import os
 import re
@@ -59,7 +60,9 @@ def test_the_wheel_holds_engine_page_stub_and_types_once_each(wheel: Path) -> No
         assert wanted in names
     assert sum(re.fullmatch(r"iota/_core\..*so", name) is not None for name in names) == 1
     assert any(re.fullmatch(r"iota/page/assets/.*\.js", name) for name in names)
-    assert not [name for name in names if not re.match(r"(iota|iota_worlds-[\d.]+\.dist-info)/", name)]
+    assert not [
+        name for name in names if not re.match(r"(iota|iota_worlds\.libs|iota_worlds-[\d.]+\.dist-info)/", name)
+    ]
     assert any(name.endswith("LICENSE") for name in names)
 
 
@@ -82,6 +85,8 @@ def test_the_wheel_has_the_license_of_each_library_in_the_extension(wheel: Path)
     assert b"nanobind::" in extension
     if any("libtbb" in name for name in archive.namelist()):
         held.add("oneTBB")
+    if any("libcrypto" in name for name in archive.namelist()):
+        held.add("OpenSSL")
     if b"kinsol_mem" in extension:
         held.add("SUNDIALS")
     assert held <= notices_in(wheel).keys()
@@ -103,16 +108,43 @@ def test_the_wheel_has_the_license_of_each_package_in_the_page(wheel: Path) -> N
     assert '<link rel="license" href="./licenses.txt">' in page
 
 
-def test_the_wheel_brings_its_own_onetbb(environment: Path, tmp_path: Path) -> None:
+def test_the_wheel_has_a_tag_that_pypi_takes_and_no_newer_symbols(wheel: Path) -> None:
+    if not sys.platform.startswith("linux"):
+        pytest.skip("tags of other systems tell nothing of libraries")
+    tag = re.search(r"-cp3\d+-cp3\d+-manylinux_(\d+)_(\d+)_\w+\.whl$", wheel.name)
+    assert tag, wheel.name
+    archive = zipfile.ZipFile(wheel)
+    libraries = [archive.read(name) for name in archive.namelist() if re.search(r"\.so(\.|$)", name)]
+    used = {(int(a), int(b)) for data in libraries for a, b in re.findall(rb"\0GLIBC_(\d+)\.(\d+)", data)}
+    assert max(used) <= (int(tag[1]), int(tag[2]))
+
+
+# Each Linux that a manylinux tag names has these, by PEP 600.
+OF_THE_SYSTEM = r"(libc|libm|libdl|librt|libpthread|libgcc_s|libstdc\+\+|ld-linux-x86-64)\.so\.\d+"
+
+
+def test_the_wheel_brings_its_own_libraries(environment: Path, tmp_path: Path) -> None:
     if not Path("/proc/self/maps").exists():
         pytest.skip("only Linux tells which libraries a process has loaded")
-    code = "import iota; print(*[line.split()[-1] for line in open('/proc/self/maps') if 'libtbb.' in line], sep='\\n')"
+    code = "import iota; print(*{line.split()[-1] for line in open('/proc/self/maps') if '.so' in line}, sep='\\n')"
     done = subprocess.run(
         [environment / "bin" / "python", "-c", code], cwd=tmp_path, env=bare_environment(), capture_output=True,
         text=True, check=True,
     )  # fmt: skip
-    loaded = set(done.stdout.split())
-    assert loaded and all(Path(name).is_relative_to(environment) for name in loaded), loaded
+    own = {name for name in done.stdout.split() if Path(name).is_relative_to(environment)}
+    for library in ("libtbb", "libssl", "libcrypto"):
+        assert any(Path(name).name.startswith(library) for name in own), library
+
+
+def test_the_libraries_of_the_wheel_need_only_each_other_and_those_of_any_linux(wheel: Path) -> None:
+    elffile = pytest.importorskip("elftools.elf.elffile")
+    archive = zipfile.ZipFile(wheel)
+    held = {Path(name).name: name for name in archive.namelist() if re.search(r"\.so(\.|$)", name)}
+    for name in held.values():
+        dynamic = elffile.ELFFile(io.BytesIO(archive.read(name))).get_section_by_name(".dynamic")
+        needed = {tag.needed for tag in dynamic.iter_tags() if tag.entry.d_tag == "DT_NEEDED"}
+        others = {each for each in needed - held.keys() if not re.fullmatch(OF_THE_SYSTEM, each)}
+        assert needed and not others, f"{name} needs {others}"
 
 
 def test_the_wheel_runs_the_chain_headless(environment: Path, tmp_path: Path) -> None:
@@ -174,3 +206,19 @@ def test_the_wheel_serves_its_page(served: tuple[int, subprocess.Popen[str]]) ->
     assert scripts
     for script in scripts:
         assert len(fetch(f"{address}/{script}", process)) > 1000
+
+
+def test_the_wheel_serves_other_machines_with_its_own_openssl(environment: Path, tmp_path: Path) -> None:
+    code = (
+        "import os, ssl, urllib.request, iota\n"
+        "world = iota.World(iota.System())\n"
+        "world.serve(port=0, lan=True)\n"
+        "trust = ssl.create_default_context(cafile=os.environ['XDG_STATE_HOME'] + '/iota/certificate.pem')\n"
+        "print(urllib.request.urlopen(world.pages.lan_url, context=trust).status)\n"
+        "world.close()\n"
+    )
+    done = subprocess.run(
+        [environment / "bin" / "python", "-c", code], cwd=tmp_path, env=bare_environment(XDG_STATE_HOME=str(tmp_path)),
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, "200\n"), done.stderr
