@@ -77,6 +77,10 @@ wheel: ## build/wheel/*.whl with engine, server, page and OpenSSL, as PyPI takes
 sbom: ## the bill of materials of the wheel: build/sbom/*.cdx.json (CycloneDX)
 	@$(PYTHON) tools/build.py sbom
 
+docs: ## a site with search of all documents, the Python and the C++ reference: build/docs/site/index.html
+	@$(PYTHON) tools/build.py docs
+	@echo build/docs/site/index.html
+
 format: ## format C++ and Python
 	@$(PYTHON) tools/build.py lint
 	@.venv/bin/python tools/lint.py --format

@@ -469,6 +469,12 @@ def sbom() -> Step:
     return Step("sbom", "writing the bill of materials", work, lambda: True, "The log names what is not described.")
 
 
+def docs() -> Step:
+    script = ROOT / "tools" / "make_docs.py"
+    hint = "The log names the page and the line. The site is build/docs/site/index.html."
+    return Step("docs", "making the site", lambda log: run(log, PYTHON, script), lambda: True, hint)
+
+
 def installed_version(package: str) -> str:
     found = next(site_packages().glob(f"{package}-*.dist-info"))
     return found.name.removesuffix(".dist-info").split("-")[1]
@@ -513,6 +519,8 @@ def steps_for(goal: str, preset: str) -> list[Step]:
     engine = cmake_build("engine", "building engine, server and bindings", "release", "everyday")
     if goal == "lint":
         return [system_packages("build"), python_environment("build"), python_environment("lint"), page_packages()]
+    if goal == "docs":
+        return [system_packages("build", "docs"), python_environment("build"), python_environment("docs"), docs()]
     if goal == "cpp":
         title = f"building the C++ tests ({preset})"
         return [

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Installs the Debian packages that are missing, and does nothing when none is.
-#   tools/install_system_packages.sh [--check] [build] [test]
+#   tools/install_system_packages.sh [--check] [build] [test] [docs]
 # --check installs nothing: exit code 0 when all are there, 1 with their names on standard output when not.
 set -eu
 
@@ -11,8 +11,8 @@ groups=
 for argument in "$@"; do
   case "$argument" in
     --check) check_only=yes ;;
-    build | test) groups="$groups $argument" ;;
-    *) echo "usage: $0 [--check] [build] [test]" >&2; exit 2 ;;
+    build | test | docs) groups="$groups $argument" ;;
+    *) echo "usage: $0 [--check] [build] [test] [docs]" >&2; exit 2 ;;
   esac
 done
 [ -n "$groups" ] || groups="build"
@@ -25,6 +25,8 @@ for group in $groups; do
       # One build tree has the targets of tests and benchmarks too, and CMake looks for these when it is set up.
       wanted="$wanted libgtest-dev libbenchmark-dev"
       ;;
+    # Reads the public headers for the site of the documents.
+    docs) wanted="$wanted doxygen" ;;
     # A real browser for the browser tests, and Mesa so that it can draw without a graphics card.
     test) wanted="$wanted chromium libgl1-mesa-dri libegl1 libgles2 libgl1 fonts-dejavu-core" ;;
   esac
