@@ -114,6 +114,12 @@ it("shows the list of people wholly in the window of a phone", async () => {
   const browser = await Browser.start({ width: 390, height: 700, density: 1, touch: true });
   browsers.push(browser);
   const tab = await browser.open(`${server.url}&name=${"Somebody with a very long name ".repeat(2)}`);
+  await tab.page.locator("#panel").waitFor();
+  await tab.page.evaluate(() => document.getElementById("welcome")!.classList.remove("gone"));
+  await tab.until("the welcome is beside the controls", () => {
+    const [welcome, panel] = ["welcome", "panel"].map((id) => document.getElementById(id)!.getBoundingClientRect());
+    return welcome.height > 0 && (welcome.right <= panel.left || welcome.top >= panel.bottom);
+  });
   // A touch brings the bar back.
   await tab.page.touchscreen.tap(30, 400);
   await tab.page.tap("#people");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hint of the start. It lies where it covers no nail: what hangs from one is framed up to the edge of the window.
+// The hint of the start. It lies where it covers no nail, as what hangs from one is framed up to the edge of the window, and not under
+// the script's controls.
 
 import { Vector3 } from "three";
 import type { Page } from "../page/page.ts";
@@ -30,7 +31,7 @@ export class Welcome {
     this.element_.classList.add("gone");
   }
 
-  /** At the top, in one of its corners, or above the bar: the first of these that covers no nail. */
+  /** At the top, in one of its corners, or above the bar: the first of these that covers no nail and no control. */
   place(): void {
     const { element_: element, page_: { world, viewer: { camera } } } = this;
     if (element.classList.contains("gone")) return;
@@ -39,7 +40,10 @@ export class Welcome {
     camera.updateMatrixWorld();
     world.entities.nail.forEachPlace((place) => nails.push(place.clone().project(camera)));
     const middle = (innerWidth - width) / 2;
-    const covers = ([left, top]: readonly [number, number]) => nails.some(({ x, y, z }) => (
+    const panel = document.querySelector("#panel:not([hidden])")?.getBoundingClientRect();
+    const isUnder = (left: number, top: number) => panel !== undefined
+      && left + width > panel.left && left < panel.right && top + height > panel.top && top < panel.bottom;
+    const covers = ([left, top]: readonly [number, number]) => isUnder(left, top) || nails.some(({ x, y, z }) => (
       z < 1 && Math.abs(((1 + x) * innerWidth - width) / 2 - left) < width / 2 + gap
       && Math.abs(((1 - y) * innerHeight - height) / 2 - top) < height / 2 + gap
     ));
