@@ -229,6 +229,7 @@ SUITES = [
     Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
     Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
     Suite("lint", ["make", "lint"], 1200, about_s=120, only_with_all=True),
+    Suite("docs", ["make", "docs"], 1200, about_s=40, only_with_all=True),
     Suite(
         "determinism",
         ["sh", "-c", "ninja -C build iota_state_hashes && python tools/check_determinism.py --program build/iota_state_hashes"],

@@ -71,3 +71,17 @@ def test_comments_on_a_namespace_are_about_their_header(tool: ModuleType) -> Non
         "#pragma once\n/// \\file\n/// Laws.\n/// More.\n\nnamespace iota {\n\n"
         "/// \\file\n/// By name\n///\n/// Text.\n\nint a;\n}\n"
     )
+
+
+def test_a_film_is_shown_on_the_page_of_its_study(
+    tool: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    films = tmp_path / "films"
+    films.mkdir()
+    for name in ("chain", "of_nothing"):
+        (films / f"{name}.mp4").write_bytes(b"a film")
+    monkeypatch.setattr(tool, "FILMS", films)
+    tool.stage(tmp_path / "out")
+    assert [path.name for path in (tmp_path / "out" / "_extra" / "films").iterdir()] == ["chain.mp4"]
+    text = (tmp_path / "out" / "docs" / "studies" / "chain.md").read_text()
+    assert re.match(r'# [^\n]+\n\n<video controls [^>]*src="\.\./\.\./films/chain\.mp4"></video>\n', text), text[:200]

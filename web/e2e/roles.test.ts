@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A host, a guest and a viewer of one world: each finds what they may do, is told why not, and the host sends others away.
 
+import { mkdirSync, writeFileSync } from "node:fs";
+import path from "node:path";
 import { afterAll, beforeAll, expect, it, vi } from "vitest";
 import { Browser, distance, type Tab } from "./browser.ts";
-import { freePort, WorldServer } from "./server.ts";
+import { HeadsetTab } from "./headset.ts";
+import { artifacts, freePort, WorldServer } from "./server.ts";
 
 let server: WorldServer;
 const browsers: Browser[] = [];
@@ -108,6 +111,34 @@ it("lets a viewer turn the view by a drag on a body, which stays where it is, an
   await viewer.page.evaluate(() => iota.select(-1));
   await viewer.clickAt(await viewer.place(body));
   await viewer.until("it is selected", (id) => iota.selected === id, body);
+});
+
+it("dims what a viewer may not do on the wrist panel of a headset, where a press tells why", async () => {
+  const browser = await Browser.start({ width: 400, height: 224 });
+  browsers.push(browser);
+  const { viewer: link } = server.reports[0] as { viewer: string };
+  const me = await HeadsetTab.open(browser, `${link}&name=Vic`);
+  await me.enter();
+  await me.lookAtWrist();
+  const picture = await me.tab.page.evaluate(() => (iotaXR!.headset.panel.board.mesh.material.map!.image as HTMLCanvasElement).toDataURL("image/png"));
+  mkdirSync(artifacts, { recursive: true });
+  writeFileSync(path.join(artifacts, "roles_wrist.png"), Buffer.from(picture.split(",")[1], "base64"));
+  const refused = await me.tab.page.evaluate(() => {
+    const { board, layout } = iotaXR!.headset.panel;
+    const names: string[] = [];
+    layout.buttons.forEach(({ command }, index) => {
+      if ((command.refusal?.() ?? "") === "" && command.enabled?.() !== false) return;
+      names.push(command.name);
+      board.press(index);
+    });
+    return names;
+  });
+  expect(new Set(refused)).toEqual(new Set(["play", "step", "reset", "slower", "faster", "action push", "less force", "more force", "control again"]));
+  await me.tab.page.getByText("You only watch this world").waitFor({ state: "attached" });
+  expect(await host.page.evaluate(() => iota.paused)).toBe(false);
+  expect(server.reports.filter((report) => !("guest" in report) && !("pushed_by" in report))).toEqual([]);
+  await browser.stop();
+  await host.until("Vic has left", () => iota.clients().length === 3);
 });
 
 it("shows the list of people wholly in the window of a phone", async () => {

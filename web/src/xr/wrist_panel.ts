@@ -223,11 +223,12 @@ export class WristPanel {
     const ink = on ? colors.onCalm : dim ? colors.faint : colors.ink;
     const x = button.x + button.width / 2;
     const y = button.y + button.height / 2;
+    context.globalAlpha = dim ? 0.6 : 1;
     if (command.sign !== undefined) {
       paintSign(context, command.sign(), x, y, 2.5, ink);
+      context.globalAlpha = 1;
       return;
     }
-    context.globalAlpha = dim ? 0.6 : 1;
     context.font = `600 ${labelSize}px ${font}`;
     context.textAlign = "center";
     context.textBaseline = "middle";
