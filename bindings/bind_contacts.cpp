@@ -15,24 +15,39 @@ struct ContactView {
 
 constexpr const char* material_doc =
     "How the outline of a body touches others: see `Body.material` and `System.usual_material`.\n\n"
-    "friction: Coulomb's coefficient; of two bodies that touch the geometric mean counts.\n\n"
+    "friction: Coulomb's coefficient; of two bodies that touch the geometric mean counts.\n"
+    "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n\n"
     "    ice = iota.Material(friction=0.02)\n"
     "    rink = system.obstacle(iota.HalfSpace((0, 1, 0)), material=ice)\n"
     "    puck.material = ice";
 
 void bind_material(nb::module_& module) {
   nb::class_<Material> type(module, "Material", material_doc);
-  def_pickled(type, &Material::friction);
-  type.def(
-          "__init__",
-          [](Material* self, double friction) { new (self) Material{finite_not_negative(friction, "friction", "")}; },
-          nb::kw_only(), "friction"_a = Material{}.friction)
+  const auto make = [](Material* self, double friction, const TouchesWord& touches) {
+    new (self) Material{finite_not_negative(friction, "friction", ""), to_touches(touches)};
+  };
+  const auto touches_of = [](const Material& self) { return TouchesWord{to_word(touches_words, self.touches)}; };
+  type.def("__init__", make, nb::kw_only(), "friction"_a = Material{}.friction, "touches"_a = TouchesWord{"all"})
+      .def(
+          "__getstate__",
+          [touches_of](const Material& self) { return nb::make_tuple(self.friction, touches_of(self)); },
+          nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__",
+          [make](Material& self, const std::tuple<double, TouchesWord>& state) {
+            make(&self, std::get<0>(state), std::get<1>(state));
+          },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def_ro("friction", &Material::friction)
+      .def_prop_ro("touches", touches_of)
       .def(
           "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator(),
           nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__hash__", [](const Material& self) { return std::hash<double>{}(self.friction); })
-      .def("__repr__", [](const Material& self) { return text("Material(friction=", self.friction, ")"); });
+      .def("__repr__", [](const Material& self) {
+        const std::string touches = self.touches == Touches::all ? "" : ", touches='" + to_word(touches_words, self.touches) + "'";
+        return text("Material(friction=", self.friction, touches, ")");
+      });
 }
 
 void bind_use(nb::module_& module) {
@@ -43,7 +58,7 @@ void bind_use(nb::module_& module) {
             self.use().bodies().set_material(self.id, material);
           },
           nb::for_setter(nb::arg("material").none()),
-          "Its own. With a material its outline touches obstacles that have one: it rests, slides and rolls on them. None:\n"
+          "Its own. With a material its outline touches others that have one: it rests, slides, rolls and stacks. None:\n"
           "`System.usual_material` counts, but for static bodies, which then touch nothing.")
       .def_prop_ro(
           "contacts",
@@ -53,7 +68,7 @@ void bind_use(nb::module_& module) {
               views.push_back({self.system_object, self.system, point});
             return views;
           },
-          nb::sig("def contacts(self) -> list[ContactPoint]"), "Where it touched obstacles in the last step.");
+          nb::sig("def contacts(self) -> list[ContactPoint]"), "Where it touched others in the last step.");
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def_prop_rw(
           "usual_material", [](SystemObject& self) { return self.use().usual_material(); },

@@ -27,6 +27,8 @@ inline constexpr Words<BodyKind, 5> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"scripted", BodyKind::scripted},
                                                 {"inactive", BodyKind::inactive},
                                                 {"resting", BodyKind::resting}}};
+inline constexpr Words<Touches, 3> touches_words{
+    {{"all", Touches::all}, {"obstacles", Touches::obstacles}, {"nothing", Touches::nothing}}};
 
 /// The value of a word; ValueError that lists the words for any other.
 template <class Value, std::size_t count>
@@ -47,15 +49,19 @@ std::string to_word(const Words<Value, count>& words, Value wanted) {
   return "unknown";
 }
 
-/// A word of `mode_words` or `kind_words`; `from_word` refuses unknown ones with a list of the known words.
+/// A word of `mode_words`, `kind_words` or `touches_words`; `from_word` refuses unknown ones with a list of the known words.
 struct ModeWord {
   std::string word;
 };
 struct KindWord {
   std::string word;
 };
+struct TouchesWord {
+  std::string word;
+};
 
 inline IntegrationMode to_mode(const ModeWord& mode) { return from_word(mode_words, mode.word, "mode"); }
+inline Touches to_touches(const TouchesWord& touches) { return from_word(touches_words, touches.word, "touches"); }
 inline BodyKind to_kind(const KindWord& kind) { return from_word(kind_words, kind.word, "kind"); }
 
 }  // namespace iota::bindings
@@ -99,6 +105,11 @@ template <>
 struct type_caster<iota::bindings::KindWord> : word_caster<iota::bindings::KindWord> {
   using Value = iota::bindings::KindWord;
   static constexpr auto Name = const_name("typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting']");
+};
+template <>
+struct type_caster<iota::bindings::TouchesWord> : word_caster<iota::bindings::TouchesWord> {
+  using Value = iota::bindings::TouchesWord;
+  static constexpr auto Name = const_name("typing.Literal['all', 'obstacles', 'nothing']");
 };
 
 }  // namespace nanobind::detail

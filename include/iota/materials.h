@@ -4,12 +4,19 @@
 #include <iota/ids.h>
 #include <iota/vec3.h>
 
+#include <cstdint>
+
 namespace iota {
+
+/// The bodies that a body touches: those that stand and those that move, those that stand, or none. Both must agree.
+/// As wide as a double, so that a Material has no padding.
+enum class Touches : std::uint64_t { all, obstacles, nothing };
 
 /// How the outline of a body touches others. A body without a material touches nothing.
 struct Material {
   /// Coulomb's coefficient. Of two bodies that touch the geometric mean counts.
   double friction = 0.5;
+  Touches touches = Touches::all;
 
   friend bool operator==(const Material&, const Material&) = default;
 };

@@ -21,6 +21,8 @@ namespace iota {
 template <>
 struct LastEnumerator<IntegrationMode> : std::integral_constant<IntegrationMode, IntegrationMode::accurate> {};
 template <>
+struct LastEnumerator<Touches> : std::integral_constant<Touches, Touches::nothing> {};
+template <>
 struct LastEnumerator<BodyKind> : std::integral_constant<BodyKind, BodyKind::resting> {};
 template <>
 struct LastEnumerator<ConstraintKind>

@@ -327,8 +327,10 @@ class Structure {
 
   /// With which it touches others; null: nothing.
   const Material* material(std::uint32_t body) const {
-    if (const Material* const own = materials.find(body)) return own;
-    return has_usual_material && bodies[body].kind != BodyKind::static_ ? &usual_material : nullptr;
+    const Material* const own = materials.find(body);
+    const bool is_usual = !own && has_usual_material && bodies[body].kind != BodyKind::static_;
+    const Material* const material = is_usual ? &usual_material : own;
+    return material && material->touches != Touches::nothing ? material : nullptr;
   }
 
   /// Whether it has an outline: an obstacle or a body with particles, but no spark.

@@ -43,7 +43,7 @@ double ContactFinder::Obstacle::distance(const Vec3& place) const {
 void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outlines) {
   obstacles_.clear();
   model.materials.for_each([&](std::uint32_t body, const Material&) {
-    if (model.bodies[body].kind != BodyKind::static_ || !outlines.has(body)) return;
+    if (model.bodies[body].kind != BodyKind::static_ || !outlines.has(body) || !model.material(body)) return;
     const contact::Outline& outline = outlines.placed(body);
     Obstacle obstacle{body, contact::bounds(outline), false, {}, {}};
     if (outline.solids.size() == 1 && outline.lines.empty())
@@ -150,6 +150,8 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
 void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair) {
   const auto [first, second] = pair;
   const Mover &mover = *mover_of(first), *const other = mover_of(second);
+  const auto touches = [&](std::uint32_t body) { return model.material(body)->touches; };
+  if (other && (touches(first) != Touches::all || touches(second) != Touches::all)) return;
   if (other && mover.is_ball && other->is_ball && are_plain(model, first, second)) return;
   if (other && !model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return;
   if (are_joined(model, first, second)) return;
