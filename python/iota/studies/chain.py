@@ -18,6 +18,7 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
     chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.2, -0.9, 0.35)).realize(system).bodies
+    system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # its parts are joined again
     world = iota.World(system, title=f"chain: {LENGTH:g} m long", style="rope")
     present(world, chain)
 

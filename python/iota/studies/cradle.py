@@ -80,6 +80,8 @@ class Cradle:
         self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
         self.frame.name = "frame"
         self.balls = [self._hang(world.system, number, balls) for number in range(balls)]
+        for ball in self.balls:  # they meet by `collide`
+            ball.material = iota.Material(touches="nothing")
         self.mass = self.balls[0].mass
         self.groups = [Group(range(balls), 0, 0.0, 0.0)]
         self._present(world)

@@ -155,6 +155,8 @@ class Ladder:
     def __init__(self, world: iota.World, blocks: int = 7, top: iota.Vec3 = TOP) -> None:
         self.world, system = world, world.system
         self.blocks = [Block(world, number, top - (0, LENGTH * number, 0)) for number in range(blocks)]
+        for block in self.blocks:  # they lie on each other
+            block.body.material = iota.Material(touches="nothing")
         self.axle = system.revolute(self.blocks[0].body, at=top, axis=(0, 0, 1), limits=(0, math.pi))
         for block in self.blocks[1:]:  # two points far from all hinges keep it in the plane z = 0 of the axle
             for x in (-LENGTH, LENGTH):

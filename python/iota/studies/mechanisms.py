@@ -19,6 +19,7 @@ WOOD = 700.0
 def build() -> iota.World:
     """The world of the study."""
     world = iota.World(iota.System(), title="mechanisms: the bench is 2.5 m long")
+    world.system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # links are drawn through each other
     present(world)
     engine(world, iota.Vec3(-0.78, BENCH + 0.24, 0))
     pendulum(world, iota.Vec3(-0.2, BENCH + 0.2, 0))

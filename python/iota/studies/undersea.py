@@ -26,6 +26,7 @@ LURE = "force = -3*(r - r0 - 0.05*sin(7*t))/(r + 0.3) - 0.5*v; drag = 0.25"  # t
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
+    system.usual_material = iota.Material(friction=0.6, touches="obstacles")
     world = iota.World(system, title="undersea: a fish is 0.3 m long", dt=1 / 60, ground=0.0)
     school = School(world, fish, leader_at, spread=0.8)
     weed = system.group("weed")
