@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace iota::contact {
 
@@ -62,23 +63,33 @@ TouchFinder::Part& TouchFinder::add(Parts& parts) {
 }
 
 void TouchFinder::list(const Outline& outline, const Vec3& anchor, Parts& parts) {
-  parts.count = parts.convex = 0;
+  parts.count = 0, parts.kinds = 0;
   for (const Solid& solid : outline.solids) {
     Part& part = add(parts);
     part.solid = &solid;
     if (solid.form->mesh) part.hull = hull_of(solid.form);
-    part.is_convex = part.hull || (!solid.form->mesh && !solid.form->is_endless && is_convex(solid.form->shape));
-    if (part.is_convex) part.box = bounds(solid, anchor), ++parts.convex;
+    part.kind = kind_of(solid, part.hull != nullptr);
+    parts.kinds |= part.kind;
+    if (part.is_met()) part.box = bounds(solid, anchor);
   }
   for (const Line& line : outline.lines) {
     Part& part = add(parts);
-    part.line = &line;
-    part.is_convex = true, part.box = box_of_line(line, anchor), ++parts.convex;
+    part.line = &line, part.kind = Part::rod, part.box = box_of_line(line, anchor);
+    parts.kinds |= part.kind;
   }
 }
 
+TouchFinder::Part::Kind TouchFinder::kind_of(const Solid& solid, bool is_hull) {
+  const Form& form = *solid.form;
+  if (form.is_endless || (form.mesh && !form.mesh->is_closed())) return Part::open;
+  if (form.mesh) return is_hull ? Part::body : Part::mesh;
+  if (std::holds_alternative<Torus>(form.shape)) return Part::ring;
+  return std::holds_alternative<Sphere>(form.shape) || std::holds_alternative<Capsule>(form.shape) ? Part::rod
+                                                                                                   : Part::body;
+}
+
 void TouchFinder::place(Part& part, const Vec3& spin, const Vec3& anchor) {
-  if (part.is_placed) return;
+  if (part.is_placed || part.kind == Part::ring) return;
   part.is_placed = true;
   part.placed.spin = spin;
   if (part.line)
@@ -90,6 +101,11 @@ void TouchFinder::place(Part& part, const Vec3& spin, const Vec3& anchor) {
 void TouchFinder::find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way,
                        std::vector<Touch>& found) {
   const ConvexPart &a = first.placed, &b = second.placed;
+  if (first.kind == Part::ring || second.kind == Part::ring) {
+    if (first.kind == Part::body || second.kind == Part::body) return;
+    return RingToucher::add_touches(first.solid, first.kind == Part::rod ? &a : nullptr, second.solid,
+                                    second.kind == Part::rod ? &b : nullptr, anchor, within, found);
+  }
   if (!a.is_polytope() || !b.is_polytope()) return round_.add_touches(a, b, anchor, within, found);
   TouchWriter writer(a, b, anchor, within, found);
   add_touches_of_polytopes(a, b, way, writer, clipper_);
@@ -101,13 +117,13 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
   const std::size_t before = found.size();
   const Vec3 anchor = anchor_of(second);
   list(first, anchor, first_), list(second, anchor, second_);
-  if (first_.convex < first_.count || second_.convex < second_.count)
+  if ((first_.kinds | second_.kinds) > (Part::rod | Part::body))
     find_corners(spin_of_first, spin_of_second, within, found);
   for (std::size_t i = 0; i < first_.count; ++i) {
-    if (!first_.parts[i].is_convex) continue;
+    if (!first_.parts[i].is_met()) continue;
     const geometry::Bounds box = grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
-      if (second_.parts[k].is_convex && geometry::overlap(box, second_.parts[k].box)) {
+      if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box)) {
         place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
         find(first_.parts[i], second_.parts[k], anchor, within, way, found);
       }
@@ -118,29 +134,31 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
 /// Parts that are not convex have no planes between them and others: corners of each against surfaces of the other.
 void TouchFinder::find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within,
                                std::vector<Touch>& found) {
-  enum Which { convex, others, closed, all };
-  const auto choose = [](const Parts& parts, Which which, PartList& list) {
+  const auto choose = [](const Parts& parts, unsigned kinds, PartList& list) {
     list.clear();
     for (std::size_t k = 0; k < parts.count; ++k) {
       const Part& part = parts.parts[k];
-      const bool is_open = part.solid && (part.solid->form->is_endless ||
-                                          (part.solid->form->mesh && !part.solid->form->mesh->is_closed()));
-      if (which == convex ? !part.is_convex : which == others ? part.is_convex : which == closed && is_open) continue;
+      if (!(part.kind & kinds)) continue;
       if (part.line) list.lines.push_back(part.line);
       if (part.solid) list.solids.push_back(part.solid);
     }
   };
-  const auto look = [&](Which of_first, Which of_second, const CornerFinder::Names& names) {
+  const auto look = [&](unsigned of_first, unsigned of_second, const CornerFinder::Names& names) {
+    if (!(first_.kinds & of_first) || !(second_.kinds & of_second)) return;
     choose(first_, of_first, listed_), choose(second_, of_second, other_listed_);
     if (names.is_turned)
       corners_.find(other_listed_, spin_of_second, listed_, within, names, found);
     else
       corners_.find(listed_, spin_of_first, other_listed_, within, names, found);
   };
-  constexpr std::uint32_t of_convex = 6u << 28;
-  look(all, others, {});
-  look(others, convex, {false, of_convex});
-  look(others, closed, {true, of_convex});
+  constexpr unsigned meshes = Part::mesh | Part::open, convex = Part::rod | Part::body;
+  constexpr std::uint32_t of_convex = 6u << 28, of_rings = 5u << 28;
+  look(convex | meshes | Part::ring, meshes, {});
+  look(Part::body | meshes, Part::ring, {false, of_rings});
+  look(meshes, convex, {false, of_convex});
+  look(Part::ring, Part::body, {false, of_convex});
+  look(meshes, convex | Part::ring | Part::mesh, {true, of_convex});
+  look(Part::ring, Part::body | Part::mesh, {true, of_rings});
 }
 
 }  // namespace iota::contact

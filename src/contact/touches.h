@@ -4,6 +4,7 @@
 #include "contact/corner_touches.h"
 #include "contact/manifold.h"
 #include "contact/outline.h"
+#include "contact/ring_pairs.h"
 #include "contact/round_touches.h"
 #include "contact/touch.h"
 
@@ -17,8 +18,9 @@ namespace iota::contact {
 
 /// Finds the touches of two outlines.
 ///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
-///   Half-spaces, rings, meshes that are open or not convex   corners, ends and rims of the other outline, and those of a
-///                  mesh or ring against a convex part
+///   Rings          with each other, with balls and rods: see RingToucher
+///   Half-spaces, meshes that are open or not convex   corners, ends and rims of the other outline; and those of a mesh
+///                  against a convex part, likewise of a ring against one that is neither a ball nor a rod
 class TouchFinder {
  public:
   TouchFinder() = default;
@@ -35,19 +37,25 @@ class TouchFinder {
     const Solid* solid = nullptr;  ///< or a line
     const Line* line = nullptr;
     geometry::Bounds box;
-    bool is_convex = false, is_placed = false;
+    enum Kind : std::uint8_t { rod = 1, body = 2, ring = 4, mesh = 8, open = 16 };  ///< body: another convex one
+    Kind kind = body;
+    bool is_placed = false;
+    bool is_convex() const { return kind <= body; }
+    bool is_met() const { return kind <= ring; }  ///< in pairs
     const Polytope* hull = nullptr;
     ConvexPart placed;
   };
   /// Kept for their capacity.
   struct Parts {
     std::vector<Part> parts;
-    std::size_t count = 0, convex = 0;
+    std::size_t count = 0;
+    unsigned kinds = 0;  ///< bits
   };
   struct Hull {
     std::weak_ptr<const Form> form;
     std::optional<Polytope> polytope;
   };
+  static Part::Kind kind_of(const Solid&, bool is_hull);
   void list(const Outline&, const Vec3& anchor, Parts&);
   Part& add(Parts&);
   const Polytope* hull_of(const std::shared_ptr<const Form>&);
