@@ -3,9 +3,12 @@
 // only edges whose arcs on the sphere of normals cross make a face of the difference of the two.
 #include "contact/axis.h"
 
+#include "contact/round_axis.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace iota::contact {
 
@@ -15,8 +18,10 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double parallel_edges = 1e-6;  ///< sine, of edges without a common normal
 constexpr double flush_sine = 5e-3;      ///< sine, of normals that count as the same
 constexpr double preference_of_size = 1e-3, preference_of_distance = 1e-2,
-                 slight_preference = 1e-6;  ///< preferences: see is_better
-constexpr double settled_overlap = 1e-4;    ///< of the size: an overlap of what touches
+                 slight_preference = 1e-6;              ///< preferences: see is_better
+constexpr std::size_t most_edge_pairs = 4096;           ///< more are looked at only near a direction
+constexpr double near_hint = 0.8, near_support = 0.02;  ///< cosine; of the size
+constexpr double settled_overlap = 1e-4;                ///< of the size: an overlap of what touches
 
 /// The best of some axes.
 struct Best {
@@ -35,6 +40,11 @@ class AxisSearch {
       : first_(first), second_(second), way_(way), limit_(limit), size_(std::min(first.size, second.size)) {}
 
   std::optional<Axis> run() {
+    if (first_.core->edges.size() * second_.core->edges.size() > most_edge_pairs) {
+      const std::optional<RoundAxis> axis = find_round_axis(first_, second_, guess_round_axis(first_, second_), limit_);
+      if (!axis) return {};
+      hint_ = axis->normal;
+    }
     if (!look_at_faces(second_, first_, of_second_) || !look_at_faces(first_, second_, of_first_)) return {};
     if (first_.is_box && second_.is_box ? !look_at_edges_of_boxes() : !look_at_edges()) return {};
     Best* best = &of_second_;
@@ -63,6 +73,7 @@ class AxisSearch {
     const bool is_second = &owner == &second_;
     for (std::uint32_t f = 0; f < owner.normals.size(); ++f) {
       const Vec3& normal = owner.normals[f];
+      if (hint_ && (is_second ? 1 : -1) * dot(*hint_, normal) < near_hint) continue;
       const Vec3& origin = owner.corners[owner.core->sides[owner.core->faces[f].begin].corner];
       double least = unbounded;
       for (const Vec3& corner : other.corners) least = std::min(least, dot(normal, corner - origin));
@@ -99,9 +110,11 @@ class AxisSearch {
 
   bool look_at_edges() {
     const auto &a = *first_.core, &b = *second_.core;
-    for (std::uint32_t i = 0; i < a.edges.size(); ++i) {
+    thread_local std::vector<std::uint32_t> of_first, of_second;
+    list_edges(first_, -1, of_first), list_edges(second_, 1, of_second);
+    for (const std::uint32_t i : of_first) {
       const Vec3 along = first_.corners[a.edges[i].to] - first_.corners[a.edges[i].from];
-      for (std::uint32_t k = 0; k < b.edges.size(); ++k) {
+      for (const std::uint32_t k : of_second) {
         const Vec3 other = second_.corners[b.edges[k].to] - second_.corners[b.edges[k].from];
         if (!do_arcs_cross(a.edges[i], along, b.edges[k], other)) continue;
         Vec3 normal = cross(along, other);
@@ -119,6 +132,16 @@ class AxisSearch {
       }
     }
     return true;
+  }
+
+  /// The edges that may be nearest to the other part: with a hint, those that are nearly the farthest along it.
+  void list_edges(const ConvexPart& part, double sign, std::vector<std::uint32_t>& edges) const {
+    edges.clear();
+    const double least =
+        hint_ ? sign * dot(*hint_, part.corners[part.support(sign * *hint_)]) - near_support * size_ : 0;
+    const auto is_far = [&](std::uint32_t corner) { return sign * dot(*hint_, part.corners[corner]) >= least; };
+    for (std::uint32_t e = 0; e < part.core->edges.size(); ++e)
+      if (!hint_ || (is_far(part.core->edges[e].from) && is_far(part.core->edges[e].to))) edges.push_back(e);
   }
 
   /// The normals of an edge are an arc between those of its faces; of a segment, all around it.
@@ -156,6 +179,7 @@ class AxisSearch {
   const ConvexPart &first_, &second_;
   const Vec3 way_;
   const double limit_, size_;
+  std::optional<Vec3> hint_;  ///< of polytopes with many edges: about the direction
   double most_apart_ = -unbounded;
   Best of_second_, of_first_, edges_;
 };

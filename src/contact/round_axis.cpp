@@ -14,7 +14,8 @@ namespace iota::contact {
 namespace {
 
 constexpr double clearly_apart = 1e-3;  ///< of the size: the direction is that of the distance
-constexpr double pulled_apart = 0.02;   ///< of the size
+constexpr std::size_t most_guessed_faces = 64;
+constexpr double pulled_apart = 0.02;                                   ///< of the size
 constexpr double settled_direction = 1e-7, settled_separation = 1e-11;  ///< the latter of the size
 constexpr double shrunk = 0.9, rough = 1e-6;
 constexpr int most_pulls = 20;
@@ -40,9 +41,10 @@ Vec3 guess(const ConvexPart& first, const ConvexPart& second, double& most) {
     if (apart > most) most = apart, best = normal;
   };
   const auto look_at_faces = [&](const ConvexPart& part, double sign) {
-    const std::size_t count = part.kind == ConvexPart::Kind::cylinder ? 2
-                              : part.kind == ConvexPart::Kind::cone   ? 1
-                                                                      : part.normals.size();
+    const std::size_t count = part.kind == ConvexPart::Kind::cylinder     ? 2
+                              : part.kind == ConvexPart::Kind::cone       ? 1
+                              : part.normals.size() <= most_guessed_faces ? part.normals.size()
+                                                                          : 0;
     for (std::size_t f = 0; f < count; ++f) look(sign * part.normals[f]);
   };
   look_at_faces(second, 1), look_at_faces(first, -1);

@@ -48,15 +48,37 @@ TEST(Axes, have_the_largest_separation_of_all_planes) {
     const double most = separation_of_all_planes(a, b);
     // Corners that are nearest have no plane of their own: any two edges may be a better one by chance.
     EXPECT_LE(axis->most_apart, most + 1e-12);
-    if (most < 0)
+    if (most < 0) {
       EXPECT_NEAR(axis->most_apart, most, 1e-9);
-    else
+    } else {
       EXPECT_GE(axis->most_apart, 0);
+    }
     EXPECT_NEAR(axis->apart, axis->most_apart,
                 2e-3 * (a.size + b.size));  // faces are preferred to nearly the same edges
     EXPECT_NEAR(dot(axis->normal, a.corners[a.support(-axis->normal)] - b.corners[b.support(axis->normal)]),
                 axis->apart, 1e-9);
     EXPECT_FALSE(find_axis(a, b, {}, axis->most_apart - 1e-6));
+  }
+}
+
+TEST(Axes, of_hulls_with_many_edges_are_found_near_their_direction) {
+  RandomShapes random(12);
+  std::vector<Vec3> places;
+  for (int k = 0; k < 80; ++k) places.push_back(rotate(random.turn(), {0.5, 0, 0}));
+  const Outline ball = placed(convex_hull(places), {});
+  const Polytope hull = *try_polytope(ball.solids[0].form->mesh->mesh());
+  for (int round = 0; round < 50; ++round) {
+    ConvexPart a, b;
+    place_part({ball.solids[0].form, 1, random.number(0.9, 0.97) * rotate(random.turn(), {1, 0, 0}), random.turn()},
+               &hull, {}, a);
+    place_part({ball.solids[0].form, 2, {}, random.turn()}, &hull, {}, b);
+    const std::optional<Axis> axis = find_axis(a, b, {}, 10);
+    ASSERT_TRUE(axis);
+    const double most = separation_of_all_planes(a, b);
+    EXPECT_LE(axis->most_apart, most + 1e-12);
+    if (most < 0) {
+      EXPECT_NEAR(axis->most_apart, most, 1e-9);
+    }
   }
 }
 
