@@ -15,6 +15,22 @@ constexpr double same_share = 1e-6;   ///< of the size: points so near to each o
 constexpr std::size_t spanning = 4;   ///< points that are chosen by area
 constexpr std::uint32_t side_bit = 1u << 31;  ///< a number of a side, not of an edge
 
+/// The outward normal of a side of a face; zero where it has no length. A face of a rounded box may be a line or a point.
+Vec3 outward_of_side(const ConvexPart& owner, std::uint32_t face, std::uint32_t side, double tolerance) {
+  const Polytope::Face& loop = owner.core->faces[face];
+  const auto corner = [&](std::uint32_t s) { return owner.corners[owner.core->sides[s].corner]; };
+  const Vec3 outward = cross(corner(side + 1 < loop.end ? side + 1 : loop.begin) - corner(side), owner.normals[face]);
+  const double length = norm(outward);
+  if (length > tolerance) return (1 / length) * outward;
+  if (!owner.is_box) return {};
+  // The sides of a face at +-1 along an axis follow the next two axes: see cube_polytope.
+  const std::uint32_t axis = face / 2, at = side - loop.begin;
+  const bool is_along_next = (at % 2 == 0) == (face % 2 == 1);
+  const std::uint32_t across = is_along_next ? (axis + 2) % 3 : (axis + 1) % 3;
+  const bool is_high = (owner.core->sides[side].corner >> across & 1) != 0;
+  return is_high ? owner.axes[across] : -owner.axes[across];
+}
+
 }  // namespace
 
 void TouchWriter::add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
@@ -138,11 +154,8 @@ bool Clipper::add_rod(const Axis& axis, const End& a, const End& b, const Featur
   std::uint32_t at_from = Polytope::none, at_to = Polytope::none;  // sides
   for (std::uint32_t s = sides.begin; s < sides.end; ++s) {
     const Vec3& corner = owner.corners[owner.core->sides[s].corner];
-    const Vec3& next = owner.corners[owner.core->sides[s + 1 < sides.end ? s + 1 : sides.begin].corner];
-    const Vec3 outward = cross(next - corner, normal);
-    const double length = norm(outward);
-    if (!(length > tolerance)) continue;
-    const double here = dot(outward, a.center - corner) / length, there = dot(outward, b.center - corner) / length;
+    const Vec3 outward = outward_of_side(owner, face, s, tolerance);
+    const double here = dot(outward, a.center - corner), there = dot(outward, b.center - corner);
     if (here > tolerance && there > tolerance) return false;
     if (here <= tolerance && there <= tolerance) continue;
     const double share = std::clamp(here / (here - there), 0.0, 1.0);
@@ -196,11 +209,7 @@ void Clipper::clip(const ConvexPart& owner, std::uint32_t face, const ConvexPart
   const Polytope::Face& sides = owner.core->faces[face];
   const double tolerance = flush_share * std::min(owner.size, other.size);
   for (std::uint32_t s = sides.begin; s < sides.end && !polygon_.empty(); ++s) {
-    const std::uint32_t next = s + 1 < sides.end ? s + 1 : sides.begin;
-    const Vec3 along = owner.corners[owner.core->sides[next].corner] - owner.corners[owner.core->sides[s].corner];
-    const Vec3 outward = cross(along, owner.normals[face]);
-    const double length = norm(outward);
-    if (length > tolerance) clip_by(owner, face, s, other, (1 / length) * outward, tolerance);
+    clip_by(owner, face, s, other, outward_of_side(owner, face, s, tolerance), tolerance);
   }
 }
 

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
+#include <tuple>
 
 namespace iota::contact {
 namespace {
@@ -147,6 +149,49 @@ TEST(Touches, of_two_bodies_are_the_same_from_either_side) {
     ASSERT_FALSE(one.empty() || other.empty()) << kind << " " << other_kind;
     EXPECT_NEAR(least_gap_of(one), least_gap_of(other), 1e-5 * (1e-3 + std::abs(least_gap_of(one))))
         << kind << " " << other_kind;
+  }
+}
+
+TEST(Touches, of_shapes_on_a_grid_are_finite_and_named_once) {
+  const double h = std::sqrt(0.5);
+  const Shape shapes[] = {Sphere{0.5},      Box{{1, 0.5, 2}},       Box{{1, 1, 1}, 0.5},   Box{{1, 0.5, 1}, 0.25},
+                          Capsule{0.25, 1}, Cylinder{0.5, 1},       Cylinder{0.5, 2, 0.5}, Cylinder{1, 0.5, 0.25},
+                          Cone{0.5, 1},     Ellipsoid{{1, 0.5, 2}}, Torus{0.5, 0.25},      Torus{0.5, 0.25, 1}};
+  const Quaternion turns[] = {{}, {0, 0, h, h}, {0, h, 0, h}, {h, 0, 0, h}, axis_angle({0, 1, 0}, 0.785398163397448)};
+  RandomShapes random(13);
+  const auto any = [&](int count) { return static_cast<int>(random.number(0, count)); };
+  std::vector<std::shared_ptr<const Form>> forms;
+  for (const Shape& shape : shapes) forms.push_back(make_form(shape));
+  const auto body = [&](int kind) {
+    const Vec3 place{0.25 * (any(11) - 5), 0.25 * (any(11) - 5), 0.25 * (any(11) - 5)};
+    Outline outline;
+    outline.solids.push_back(
+        {forms[kind], 7, place + random.vector(any(2) ? 1e-9 : 0), multiply(turns[any(5)], turns[any(5)])});
+    return outline;
+  };
+  TouchFinder finder;
+  for (int round = 0; round < 40000; ++round) {
+    const int kind = any(12), other_kind = any(12);
+    const Outline first = body(kind), second = body(other_kind);
+    std::vector<Touch> found, turned;
+    finder.find(first, {}, second, {}, 0.05, found), finder.find(second, {}, first, {}, 0.05, turned);
+    std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, bool>> names;
+    for (const Touch& t : found) {
+      names.insert({t.part, t.feature, t.other_part, t.other_feature, t.is_turned});
+      ASSERT_TRUE(is_finite(t.center) && is_finite(t.place) && is_finite(t.origin) && is_finite(t.axis));
+      ASSERT_NEAR(norm(t.normal), 1, 1e-12);
+      ASSERT_NEAR(dot(t.normal, t.center - t.origin) - t.radius, t.gap, 1e-13);
+      const Vec3 between = t.center - t.origin;
+      if (t.form == TouchForm::round) {
+        ASSERT_NEAR(norm(between - dot(t.axis, between) * t.axis) - t.radius, t.gap, 1e-13);
+      }
+    }
+    ASSERT_EQ(names.size(), found.size());
+    if (kind >= 10 || other_kind >= 10) continue;  // rings
+    ASSERT_EQ(found.empty(), turned.empty());
+    const double gap = least_gap_of(found);
+    if (found.empty() || gap < -0.02) continue;
+    ASSERT_NEAR(gap, least_gap_of(turned), 1e-7) << kind << " " << other_kind;
   }
 }
 
