@@ -2,6 +2,7 @@
 #include "contact/round_pairs.h"
 
 #include "contact/closest.h"
+#include "contact/round_axis.h"
 #include "contact/segments.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 constexpr double parallel_segments = 1e-6;        ///< sine: there is no common normal
 constexpr double nearly_parallel_segments = 0.3;  ///< sine: the ends may touch too
 constexpr double leaning = 1e-3;    ///< sine: an edge that lies on something rather than one of its corners
+constexpr double flush_end = 1e-5;  ///< of the size: what is so far beyond an end is still beside it
 constexpr double end_share = 1e-9;  ///< share of a segment
 constexpr double same_end = 1e-3;   ///< of the size
 
@@ -33,13 +35,20 @@ double share_of(const Segment& segment, const Vec3& place) {
 
 Vec3 unit_of(const Vec3& v) { return (1 / norm(v)) * v; }
 
+/// How far beyond its ends a share of a segment counts as on it.
+double share_of_flush_end(const Segment& segment) {
+  const double length = norm(segment.along());
+  return length > 0 ? std::min(0.5, flush_end * segment.part.size / length) : 0;
+}
+
 bool is_end(double share) { return !(share > end_share && share < 1 - end_share); }
 
 /// An end of a segment and the nearest point of another one, at this share.
 void add_end(TouchWriter& writer, bool is_of_first, const ConvexPart& part, std::uint32_t corner, const Segment& other,
              double share) {
-  const bool is_beyond = share < -end_share || share > 1 + end_share;
-  const Vec3 along = other.along(), on_other = other.a() + std::clamp(share, 0.0, 1.0) * along;
+  const double flush = share_of_flush_end(other);
+  const bool is_beyond = share < -flush || share > 1 + flush;
+  const Vec3 along = other.along(), on_other = other.a() + (is_beyond ? std::clamp(share, 0.0, 1.0) : share) * along;
   const FeatureName name = part.corner_name(corner);
   const FeatureName other_name =
       is_beyond ? other.part.corner_name(share < 0 ? other.from : other.to) : other.part.edge_name(other.edge);
@@ -69,16 +78,27 @@ struct EndList {
         b(second),
         along(unit_of(first.along())),
         tolerance(same_end * std::min(first.part.size, second.part.size)) {}
-  /// Ends that are side by side count once.
-  void add(bool is_of_first, std::uint32_t corner) {
-    const Vec3& place = (is_of_first ? a : b).part.corners[corner];
-    const bool is_known = std::any_of(
-        ends, ends + count, [&](const End& end) { return std::abs(dot(along, end.place - place)) <= tolerance; });
-    if (!is_known) ends[count++] = {is_of_first, corner, share_of(is_of_first ? b : a, place), place};
+  End* find(const Vec3& place, double within) {
+    End* const end =
+        std::find_if(ends, ends + count, [&](const End& e) { return std::abs(dot(along, e.place - place)) <= within; });
+    return end == ends + count ? nullptr : end;
   }
-  bool is_beside(bool is_of_first, std::uint32_t corner) const {
-    const double share = share_of(is_of_first ? b : a, (is_of_first ? a : b).part.corners[corner]);
-    return share >= -end_share && share <= 1 + end_share;
+  End make(bool is_of_first, std::uint32_t corner) const {
+    const Vec3& place = (is_of_first ? a : b).part.corners[corner];
+    return {is_of_first, corner, share_of(is_of_first ? b : a, place), place};
+  }
+  /// An end that is beside the other segment. Ends that are side by side count once.
+  void add_beside(bool is_of_first, std::uint32_t corner) {
+    const End end = make(is_of_first, corner);
+    const double flush = share_of_flush_end(is_of_first ? b : a);
+    if (end.share >= -flush && end.share <= 1 + flush && !find(end.place, tolerance)) ends[count++] = end;
+  }
+  /// The end that is nearest to the other segment.
+  void add_nearest(bool is_of_first, std::uint32_t corner) {
+    const End end = make(is_of_first, corner);
+    if (find(end.place, tolerance * flush_end / same_end)) return;
+    End* const known = find(end.place, tolerance);
+    (known ? *known : ends[count++]) = end;
   }
   /// The touches in the order of the list.
   void write(TouchWriter& writer) const {
@@ -95,22 +115,20 @@ void add_touches(TouchWriter& writer, const Segment& a, const Segment& b) {
   const double sine = norm(normal) / (norm(u) * norm(v));
   const bool is_parallel = !(sine > parallel_segments);
   EndList list(a, b);
+  if (sine < nearly_parallel_segments || is_parallel) {
+    for (const std::uint32_t corner : {a.from, a.to}) list.add_beside(true, corner);
+    for (const std::uint32_t corner : {b.from, b.to}) list.add_beside(false, corner);
+  }
   if (is_end(nearest.of_first)) {
-    list.add(true, nearest.of_first < 0.5 ? a.from : a.to);
+    list.add_nearest(true, nearest.of_first < 0.5 ? a.from : a.to);
   } else if (is_end(nearest.of_second)) {
-    list.add(false, nearest.of_second < 0.5 ? b.from : b.to);
+    list.add_nearest(false, nearest.of_second < 0.5 ? b.from : b.to);
   } else if (!is_parallel) {
     const double side = dot(normal, nearest.on_first - nearest.on_second);
     const bool is_clear = std::abs(side) > 1e-12 * norm(normal) * std::min(a.part.size, b.part.size);
     const double sign = (is_clear ? side : dot(normal, a.part.middle - b.part.middle)) < 0 ? -1 : 1;
     writer.add_edges(nearest.on_first, nearest.on_second, (sign / norm(normal)) * normal, a.part.edge_name(a.edge),
                      b.part.edge_name(b.edge));
-  }
-  if (sine < nearly_parallel_segments || is_parallel) {
-    for (const std::uint32_t corner : {a.from, a.to})
-      if (list.is_beside(true, corner)) list.add(true, corner);
-    for (const std::uint32_t corner : {b.from, b.to})
-      if (list.is_beside(false, corner)) list.add(false, corner);
   }
   list.write(writer);
 }
@@ -157,7 +175,9 @@ bool add_touches_of_corners(TouchWriter& writer, double apart) {
   };
   const auto of_first = support_of(first), of_second = support_of(second);
   const Closest found = closest(of_first, of_second, first.middle - second.middle);
-  if (!(found.distance > apart * (1 + 1e-9) + 1e-12 * std::min(first.size, second.size))) return false;
+  // By a plane between them, as the distance is right only to round-off.
+  const double along = found.distance > 0 ? apart_along(first, second, found.normal) : 0;
+  if (!(along > apart * (1 + 1e-9) + 1e-12 * std::min(first.size, second.size))) return false;
   std::uint32_t corner = found.first[0], other_corner = found.second[0];
   const std::uint32_t edge = edge_along(first, -found.normal, found.first, found.count, corner),
                       other_edge = edge_along(second, found.normal, found.second, found.count, other_corner);

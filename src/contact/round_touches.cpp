@@ -16,6 +16,7 @@ constexpr double side_sine = 1e-3;      ///< of a normal at right angles to an a
 constexpr double lying_sine = 0.5;      ///< of a cylinder's axis with a plane's normal, above which it rolls on a rim
 constexpr double standing_sine = 1e-3;  ///< below which no point of a rim is the lowest one
 constexpr double settled_overlap_share = 1e-4;
+constexpr double nearly_same = 1e-7;                           ///< of the size
 constexpr double same_separation = 1e-9;                       ///< of the size
 constexpr std::uint32_t lowest_of_rim = 64, ball_of_rim = 66;  ///< numbers of features, for both rims
 
@@ -120,9 +121,14 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
   if (guessed.apart > -settled_overlap_share * size && try_faces(guessed)) return;
   const std::optional<RoundAxis> axis = find_round_axis(first, second, guessed, within + radius);
   if (!axis || try_faces(*axis)) return;
-  if (add_simple(*axis, anchor, within, found) &&
-      std::abs(least_gap(found, before) - axis->apart + radius) <= same_separation * size)
-    return;
+  if (add_simple(*axis, anchor, within, found)) {
+    // They are those of the parts if the parts are as far apart along the same normal.
+    const Touch& least = *std::min_element(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
+                                           [](const Touch& a, const Touch& b) { return a.gap < b.gap; });
+    const double apart = apart_along(first, second, least.is_turned ? -least.normal : least.normal);
+    if (std::abs(apart - radius - least.gap) <= same_separation * size && apart >= axis->apart - nearly_same * size)
+      return;
+  }
   found.resize(before);
   const Vec3 off = axis->on_first - axis->on_second;
   const Vec3 on_second = axis->on_second + (dot(axis->normal, off) - axis->apart) * axis->normal;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <tuple>
 
 namespace iota::contact {
 namespace {
@@ -58,6 +60,47 @@ TEST(RoundTouches, of_an_ellipsoid_are_those_of_the_ball_of_its_curvature) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].radius, 0.1 * 0.1 / 0.2, 1e-12);
   EXPECT_NEAR(found[0].gap, 0, 1e-12);
+}
+
+TEST(RoundTouches, keep_their_names_and_number_over_noise) {
+  const Cylinder log{0.2, 0.4};
+  const Capsule rod{0.1, 1};
+  const Box table{{2, 1, 2}}, soft{{1, 1, 1}, 0.1};
+  const Ellipsoid egg{{0.2, 0.4, 0.6}};
+  const struct {
+    Shape shape;
+    Vec3 place;
+    Quaternion turn;
+    Shape other;
+    Vec3 other_place;
+    Quaternion other_turn;
+    std::size_t count;
+  } pairs[] = {{log, {0, 0.2, 0}, {}, table, {0, -0.5, 0}, {}, 2},
+               {log, {0.9, 0.2, 0.1}, upright(), table, {0, -0.5, 0}, {}, 6},
+               {log, {0.1, 0.4, 0.05}, upright(), log, {}, upright(), 6},
+               {log, {0, 0.4, 0}, {}, log, {}, {}, 2},
+               {log, {0, 0.4, 0}, axis_angle({0, 1, 0}, 1), log, {}, {}, 1},
+               {egg, {0, 0.4, 0}, {}, egg, {}, {}, 1},
+               {rod, {0, 0.2, 0}, {}, rod, {}, {}, 2},
+               {rod, {0.2, 0.2, 0}, {}, rod, {}, {}, 2},
+               {rod, {0, 0.1, 0}, {}, table, {0, -0.5, 0}, {}, 2},
+               {soft, {0, 1, 0}, {}, soft, {}, {}, 4}};
+  RandomShapes random(14);
+  for (const auto& pair : pairs) {
+    using Name = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, bool>;
+    std::set<Name> names;
+    const Outline other = placed(pair.other, pair.other_place, pair.other_turn);
+    for (int k = 0; k < 100; ++k) {
+      const Quaternion turn = multiply(turn_by(random.vector(1e-8)), pair.turn);
+      const auto found = touches_of(placed(pair.shape, pair.place + random.vector(1e-8), turn), other, 0.004);
+      EXPECT_EQ(found.size(), pair.count);
+      for (const Touch& t : found) {
+        names.insert({t.part, t.feature, t.other_part, t.other_feature, t.is_turned});
+        EXPECT_NEAR(t.gap, 0, 3e-8);
+      }
+    }
+    EXPECT_EQ(names.size(), pair.count);
+  }
 }
 
 }  // namespace
