@@ -49,7 +49,7 @@ class Clipper {
  public:
   /// The touches of two parts that are apart along an axis: at most so many.
   void add_touches(const Axis&, TouchWriter&, std::size_t most);
-  /// Those of a rod whose radius changes along it: what is nearest to a face. False: it is beside the face.
+  /// The touches of a rod whose radius changes along it with a face. False: the rod is beside the face.
   struct End {
     Vec3 center;
     double radius;

@@ -182,7 +182,7 @@ void RingToucher::add_touches(const Solid* first, const ConvexPart* first_rod, c
   std::uint32_t former = 0;
   for (int k = 0; k < count; ++k) {
     const Vec3 point = curve.point(meetings[k].share), on_ring = ring.nearest(point);
-    // Where one of them has an end, the other is round.
+    // The end of a rod touches a round wire.
     const bool is_end = !curve.ring && !(meetings[k].share > 1e-6 && meetings[k].share < 1 - 1e-6);
     std::uint32_t feature = first_quarter + quarter_of(curve.ring ? *curve.ring : ring, curve.ring ? point : on_ring);
     if (feature == former) feature += 8;

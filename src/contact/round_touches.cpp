@@ -34,7 +34,7 @@ std::uint32_t face_along(const ConvexPart& part, const Vec3& direction) {
   return best;
 }
 
-/// Of a rim around the axis, seen along `down`: its ball, or its lowest point.
+/// The ball that touches a rim from within, or the lowest point of the rim, seen along `down`.
 Clipper::End end_of_rim(const ConvexPart& part, const Vec3& center, std::uint32_t rim, const Vec3& down) {
   const double along = dot(down, part.axes[0]), across = std::sqrt(std::max(0.0, 1 - along * along)),
                ring = part.half.y;
@@ -116,7 +116,7 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
     return false;
   };
   const RoundAxis guessed = guess_round_axis(first, second);
-  // What is nearest to the plane of a face is over the face: no other direction is better.
+  // If the nearest point is over the face, no other direction is better.
   if (guessed.apart > within + radius) return;
   if (guessed.apart > -settled_overlap_share * size && try_faces(guessed)) return;
   const std::optional<RoundAxis> axis = find_round_axis(first, second, guessed, within + radius);

@@ -92,6 +92,18 @@ TEST(Manifolds, over_a_seam_of_two_boxes_have_only_the_normal_of_their_tops) {
     }
 }
 
+TEST(Manifolds, of_a_rounded_plate_end_with_its_edge) {
+  // The edge is a face without width; the log crosses its line beyond its end.
+  const double h = std::sqrt(0.5);
+  const Quaternion turn = multiply(axis_angle({0, 1, 0}, 0.785398163397448), {0, 0, h, h});
+  const Outline plate = placed(Box{{1, 0.5, 1}, 0.25}, {0, -1, 0}, turn);
+  const Outline log = placed(Cylinder{0.5, 1}, {-0.5, 1e-9, -0.25});
+  const double distance = upper_distance(plate.solids[0], log.solids[0], 2000);
+  EXPECT_GT(distance, 1e-3);
+  EXPECT_NEAR(least_gap_of(touches_of(plate, log, 0.05)), distance, 1e-9);
+  EXPECT_NEAR(least_gap_of(touches_of(log, plate, 0.05)), distance, 1e-9);
+}
+
 TEST(Manifolds, of_a_cylinder_that_stands_span_its_rim) {
   const Quaternion up = axis_angle({0, 0, 1}, std::acos(0.0));
   const auto found =
