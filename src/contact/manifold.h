@@ -49,12 +49,13 @@ class Clipper {
  public:
   /// The touches of two parts that are apart along an axis: at most so many.
   void add_touches(const Axis&, TouchWriter&, std::size_t most);
-  /// The touches of a rod whose radius changes along it with a face. False: the rod is beside the face.
+  /// An end of a rod.
   struct End {
     Vec3 center;
     double radius;
     FeatureName name;
   };
+  /// The touches of a rod whose radius changes along it with a face. False: the rod is beside the face.
   static bool add_rod(const Axis&, const End& a, const End& b, const FeatureName& between, TouchWriter&);
 
  private:
