@@ -390,7 +390,7 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
     Contact& c = model.contacts[key.slot];
     const auto arm = [&](Arm which) { return row.arm(which, problem.position.data(), 1); };
     if (c.turns) c.first = arm(Arm::first_tangent), c.second = arm(Arm::second_tangent);
-    if (c.turns && !row.is_round) c.normal = arm(Arm::normal);
+    if (c.turns && !row.is_round) c.normal = unit_or(arm(Arm::normal), c.normal);
     if (row.is_round) c.normal = unit_or(row.across(arm(Arm::center)), c.normal);
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = solver::strain_energy(row, l);
