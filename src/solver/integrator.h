@@ -90,6 +90,7 @@ class Integrator {
   void find_holds(Problem&, const Vec3* x = nullptr);
 
   void advance_part(Problem&, const Part&, std::size_t attempt, AdvanceReport&);
+  bool may_need_mid_point(Problem&) const;
   bool may_halve(const Part&, const AdvanceReport&) const;
   bool take(Problem&, const Part&, const Attempt&, AdvanceReport&);
   bool is_acceptable(Problem&, const Stage&, Trial, StepEnergy&, AdvanceReport&);
