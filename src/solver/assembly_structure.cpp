@@ -58,6 +58,7 @@ void add_to(CouplingGraph& graph, const Problem& problem, Takes takes) {
         added.apart = true;
         added.first_side = static_cast<std::uint8_t>(c.first_side);
         added.always_behind_first_side = std::is_same_v<C, CouplingConstraint>;
+        added.before_all = std::is_same_v<C, ContactConstraint>;
       }
     }
   });

@@ -144,7 +144,8 @@ bool BlockPattern::are_coupled(std::uint32_t a, std::uint32_t b) const {
   return entry < vertices_[first].first_entry + vertices_[first].entry_count && entries_[entry].vertex == later;
 }
 
-// Separate rows come right after one of the constraint's nodes, so they are in that node's front.
+// Separate rows come right after one of the constraint's nodes, so that they are in that node's front, or not far before all
+// of them.
 std::uint32_t BlockPattern::find_home(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const {
   for (const std::uint32_t node : nodes)
     if (vertices_[node_vertex_[node]].holds(unknown)) return node_vertex_[node];
@@ -153,6 +154,10 @@ std::uint32_t BlockPattern::find_home(std::span<const std::uint32_t> nodes, std:
     for (const Entry& e : entries().subspan(v.first_entry, v.entry_count))
       if (e.unknown == unknown) return e.vertex;
   }
+  std::uint32_t v = static_cast<std::uint32_t>(vertices_.size());
+  for (const std::uint32_t node : nodes) v = std::min(v, node_vertex_[node]);
+  while (v-- > 0)
+    if (vertices_[v].unknown == unknown) return v;
   throw std::logic_error("rows without a home");  // ours: nothing that a user can do
 }
 

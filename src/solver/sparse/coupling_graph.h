@@ -25,6 +25,7 @@ struct CouplingGraph {
     /// or behind the others, whichever are eliminated first (0: behind all).
     bool apart = false;
     std::uint8_t first_side = 0;
+    bool before_all = false;                ///< they yield enough to be eliminated before their nodes
     bool always_behind_first_side = false;  ///< the gradient of the other side may vanish as a whole
     std::uint32_t first_node = 0;           ///< in `nodes`
     /// The index of its first multiplier among the unknowns, which the pattern chooses. `BlockPattern::follow` gets the

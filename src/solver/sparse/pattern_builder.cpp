@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace iota::solver {
 
@@ -157,9 +158,12 @@ void PatternBuilder::find_homes() {
       rows_at_[*home] = static_cast<std::uint8_t>(rows_at_[*home] + rows);
     }
   for (const std::uint32_t c : homeless_)
-    if (graph_->constraints[c].apart) give_own_rows(c, find_node_for_rows_apart(graph_->constraints[c]));
+    if (const auto& constraint = graph_->constraints[c]; constraint.before_all)
+      give_own_rows(c, *std::ranges::min_element(graph_->nodes_of(constraint), by_rank), false);
+    else if (constraint.apart)
+      give_own_rows(c, find_node_for_rows_apart(constraint));
   std::sort(own_rows_.begin(), own_rows_.end(), [&](const OwnRows& a, const OwnRows& b) {
-    return std::pair(rank_of(a.node), a.number) < std::pair(rank_of(b.node), b.number);
+    return std::tuple(rank_of(a.node), a.is_behind, a.number) < std::tuple(rank_of(b.node), b.is_behind, b.number);
   });
 }
 
@@ -189,9 +193,13 @@ std::uint32_t PatternBuilder::add_vertex(Vertex vertex, bool is_resized) {
   return static_cast<std::uint32_t>(pattern_->vertices_.size() - 1);
 }
 
-// Rows by themselves stay right behind their node.
-void PatternBuilder::add_own_rows_of(std::uint32_t node) {
-  for (; next_own_rows_ < own_rows_.size() && own_rows_[next_own_rows_].node == node; ++next_own_rows_) {
+// Rows by themselves stay right behind their node, or before it.
+void PatternBuilder::add_own_rows_of(std::uint32_t node, bool is_behind) {
+  const auto is_next = [&] {
+    return next_own_rows_ < own_rows_.size() && own_rows_[next_own_rows_].node == node &&
+           own_rows_[next_own_rows_].is_behind == is_behind;
+  };
+  for (; is_next(); ++next_own_rows_) {
     auto& constraint = graph_->constraints[own_rows_[next_own_rows_].constraint];
     const std::uint32_t v = add_vertex({.pivot = constraint.rows, .positives = 0}, true);
     constraint.unknown = pattern_->vertices_[v].unknown;
@@ -210,8 +218,9 @@ void PatternBuilder::make_all_vertices() {
   is_moved_.reserve(graph_->node_count), is_due_.reserve(graph_->node_count);
   for (const std::uint32_t node : node_order_) {
     const auto pivot = static_cast<std::uint8_t>(3 + rows_at_[node]);
+    add_own_rows_of(node, false);
     pattern_->node_vertex_[node] = add_vertex({.pivot = pivot}, true);
-    add_own_rows_of(node);
+    add_own_rows_of(node, true);
   }
   note_homes(graph_->node_count);
 }
@@ -253,8 +262,9 @@ void PatternBuilder::renew_vertices(const GraphChange& change) {
   const auto insert_after = [&](std::uint32_t count) {
     for (; insertion != insertions_.end() && insertion->after == count; ++insertion) {
       const auto pivot = static_cast<std::uint8_t>(3 + rows_at_[insertion->node]);
+      add_own_rows_of(insertion->node, false);
       pattern_->node_vertex_[insertion->node] = add_vertex({.pivot = pivot}, true);
-      add_own_rows_of(insertion->node);
+      add_own_rows_of(insertion->node, true);
     }
   };
   insert_after(0);
@@ -262,6 +272,7 @@ void PatternBuilder::renew_vertices(const GraphChange& change) {
     const std::uint32_t v = changing[i], node = node_at[i];
     if (v < next) continue;  // rows by themselves, which have gone with their node
     take_until(v);
+    if (node != none) add_own_rows_of(node, false);
     if (is_gone_[v]) {
       ++next;
     } else if (node != none && is_touched_[node] && old[v].pivot != 3 + rows_at_[node]) {
@@ -280,7 +291,7 @@ void PatternBuilder::renew_vertices(const GraphChange& change) {
         ++next;
       else
         take_until(next + 1);
-    if (node != none) add_own_rows_of(node);
+    if (node != none) add_own_rows_of(node, true);
     insert_after(v + 1);
   }
   take_until(static_cast<std::uint32_t>(old.size()));

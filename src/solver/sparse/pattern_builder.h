@@ -44,9 +44,10 @@ class PatternBuilder {
   /// A constraint with separate rows, the node before them, and their number among all.
   struct OwnRows {
     std::uint32_t node, constraint, number;
+    bool is_behind;  ///< the node, or before it
   };
-  void give_own_rows(std::uint32_t constraint, std::uint32_t node) {
-    own_rows_.push_back({node, constraint, static_cast<std::uint32_t>(own_rows_.size())});
+  void give_own_rows(std::uint32_t constraint, std::uint32_t node, bool is_behind = true) {
+    own_rows_.push_back({node, constraint, static_cast<std::uint32_t>(own_rows_.size()), is_behind});
   }
 
   void order_all_nodes();
@@ -62,7 +63,7 @@ class PatternBuilder {
   void renew_vertices(const GraphChange&);
   void list_changing_vertices(const GraphChange&);
   std::uint32_t add_vertex(Vertex, bool is_resized);
-  void add_own_rows_of(std::uint32_t node);
+  void add_own_rows_of(std::uint32_t node, bool is_behind);
   void note_homes(std::size_t nodes);
   void release_values(const Vertex&);
   void release(const Vertex&);
