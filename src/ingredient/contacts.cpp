@@ -25,7 +25,7 @@ constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// left alone.
 constexpr double easing_time = 0.1, deepest = 0.1;
 
-enum Arm : std::size_t { center, place, normal, first_tangent, second_tangent };
+enum Arm : std::size_t { center, place, turned, first_tangent, second_tangent };
 
 /// The sum of f(point) over some points, by their weights in an arm.
 Vec3 sum_over(const Contact& c, Arm arm, std::uint32_t first, std::uint32_t last, const auto& f) {
@@ -170,17 +170,21 @@ struct Places {
     c.center = c.place = {};
     if (has_world_plane(c)) c.center = -1.0 * origin, c.place = -1.0 * other_point;
     if (has_world_point(c)) c.center = center, c.place = point;
-    // Directions turn with a body of three dimensions: what depends only on places of both keeps angular momentum.
-    const bool with_q = q.rank == 4;
-    c.turns = !has_world_plane(c) && (with_q || (p.rank == 4 && !has_world_point(c) && c.form != TouchForm::face));
-    if (!c.turns) return;
-    const std::array directions{&c.normal, &c.first, &c.second};
-    const Vec3& from = with_q ? origin : center;
-    const std::array<double, 4> start = sides.of(with_q, from);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::array<double, 4> end = sides.of(with_q, from + *directions[k]);
-      for (std::size_t i = 0; i < 4; ++i) c.weights[Arm::normal + k][(with_q ? c.of_p : 0) + i] = end[i] - start[i];
-    }
+    // Directions turn with a body of three dimensions, and the axis of a rod with the rod: what depends only on places of
+    // both keeps angular momentum.
+    const bool is_round = c.form == TouchForm::round;
+    const auto set_direction = [&](Arm arm, const Vec3& direction, bool of_q) {
+      const Vec3& from = of_q ? origin : center;
+      const std::array<double, 4> start = sides.of(of_q, from), end = sides.of(of_q, from + direction);
+      const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
+      for (std::uint32_t i = 0; i < count; ++i) c.weights[arm][first + i] = end[i] - start[i];
+    };
+    const bool with_q = !has_world_plane(c) && q.rank == 4, with_p = !has_world_point(c) && p.rank == 4;
+    c.slips_turn = !has_world_plane(c) && (with_q || with_p);
+    if (c.slips_turn) set_direction(Arm::first_tangent, c.first, with_q), set_direction(Arm::second_tangent, c.second, with_q);
+    const bool is_axis_of_q = is_round && !has_world_plane(c) && q.rank > 1;
+    c.turns = with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
+    if (c.turns) set_direction(Arm::turned, is_round ? c.axis : c.normal, with_q || is_axis_of_q);
   }
 };
 
@@ -368,9 +372,11 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.weights = c.weights;
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
-    row.set_directions(c.turns ? std::array<Vec3, 3>{} : std::array{c.normal, c.first, c.second});
+    row.is_round = c.form == TouchForm::round && c.radius + c.depth > 0;
+    const auto constant = [](bool turns, const Vec3& v) { return turns ? Vec3{} : v; };
+    row.set_directions({constant(c.turns, row.is_round ? c.axis : c.normal), constant(c.slips_turn, c.first),
+                        constant(c.slips_turn, c.second)});
     row.radius = c.radius + c.depth;
-    row.is_round = c.form == TouchForm::round && row.radius > 0, row.axis = c.axis;
     row.friction = c.friction;
     const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;
@@ -389,9 +395,11 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
     const solver::ContactConstraint& row = rows.items[i];
     Contact& c = model.contacts[key.slot];
     const auto arm = [&](Arm which) { return row.arm(which, problem.position.data(), 1); };
-    if (c.turns) c.first = arm(Arm::first_tangent), c.second = arm(Arm::second_tangent);
-    if (c.turns && !row.is_round) c.normal = unit_or(arm(Arm::normal), c.normal);
-    if (row.is_round) c.normal = unit_or(row.across(arm(Arm::center)), c.normal);
+    if (c.slips_turn) c.first = arm(Arm::first_tangent), c.second = arm(Arm::second_tangent);
+    if (row.is_round)
+      c.axis = arm(Arm::turned), c.normal = unit_or(row.across(arm(Arm::center), c.axis), c.normal);
+    else if (c.turns)
+      c.normal = unit_or(arm(Arm::turned), c.normal);
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = solver::strain_energy(row, l);
   });
@@ -454,7 +462,7 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
     const BodyId part = step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
     for (std::uint32_t i = first; i < last; ++i)
       reader.take({.particle = c.points[i],
-                   .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::normal][i] * arm) +
+                   .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
                             c.weights[Arm::place][i] * c.drag,
                    .part = part});
   });

@@ -16,15 +16,15 @@ namespace iota::ingredient {
 struct Contact : model::Ends {
   std::uint32_t part = 0, feature = 0, other_part = 0, other_feature = 0;
   contact::TouchForm form = contact::TouchForm::face;
-  std::uint8_t turns = 0;  ///< arms 3 and 4 turn with a body, and arm 2 if it counts
-  std::array<std::uint8_t, 2> padding{};
+  std::uint8_t turns = 0, slips_turn = 0;  ///< arm 2 turns with a body; arms 3 and 4 do
+  std::uint8_t padding = 0;
   std::array<std::uint32_t, 8> points{};  ///< the basis of p, then that of q, of those that are not static
   std::uint32_t point_count = 0, of_p = 0, padding2 = 0;  ///< all points, those of p
   /// The weights of the points in the arms of solver::ContactConstraint.
   std::array<std::array<double, 8>, 5> weights{};
   Vec3 center, place;          ///< of a static body instead: the constants of the first two arms, in the world
-  Vec3 normal, first, second;  ///< arms 2 to 4 now: they turn with a body, or keep their direction
-  Vec3 axis;                   ///< see contact::Touch
+  Vec3 normal, first, second;  ///< now; they turn with a body, or keep their direction
+  Vec3 axis;                   ///< of round things, see contact::Touch
   double radius = 0, friction = 0;
   double ball = 0;     ///< part of the radius that is p's
   double depth = 0;    ///< of an overlap that was there before the contact, m, not positive: it only shrinks

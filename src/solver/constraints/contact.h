@@ -10,15 +10,17 @@ namespace iota::solver {
 
 /// A place of a body against a plane of another body or of the world, or two round things, with Coulomb friction.
 ///   arms        0: center of what touches - origin of the plane;  1: point that touches - the other body's point there;
-///               2: normal, towards the first body;  3, 4: tangents
-///   constraint  g_0 = normal . arm 0 - radius,  of round things (|d|^2 - radius^2) / (2 radius),  d arm 0 across `axis`
+///               2: normal, towards the first body; of round things the unit axis along which they may slide, or zero
+///               3, 4: tangents
+///   constraint  g_0 = normal . arm 0 - radius,  of round things (|d|^2 - (axis . d)^2 - radius^2) / (2 radius),  d arm 0
 ///               g_k = tangent_k . arm 1,  k = 1, 2   (m)
 ///   cone        N = -lambda_0 >= 0,  |(lambda_1, lambda_2)| <= mu N   (N)
 ///     open      all multipliers are zero, g_0 >= 0
 ///     sticks    g_0 = c_n lambda_0,  s_k = c_t lambda_k,  s_k the slip since it began to stick
 ///     slips     (lambda_1, lambda_2) = mu N z / |z|,  z = lambda + s / k the trial force, k its natural compliance
 /// The center and the point differ for what is round: the ball's center keeps its height while the point turns under it.
-/// All rows are quadratic in the points, so that the mid-point rule counts the work of friction exactly.
+/// All rows are quadratic in the points, so that the mid-point rule counts the work of friction exactly; but for an axis
+/// that turns, where axis . d is small. Arms that turn with a body keep angular momentum.
 /// Newton's matrix has the column of mu N, and the curvature of the circle |z|: Alart and Curnier, A mixed formulation for
 /// frictional contact problems, 1991. c_n makes the forces of a box on four corners unique, c_t keeps Newton's method from
 /// cycling between them. The solver measures the slip from the start of the (sub-)step less the strain c_t lambda with which
@@ -30,7 +32,6 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
   bool is_round = false;  ///< the radius is that of both together, above zero
-  Vec3 axis;              ///< of round things: a unit vector along which they may slide, or zero
 
   /// Arms 2 to 4, which do not turn with a body.
   void set_directions(const std::array<Vec3, 3>& of) {
@@ -38,34 +39,44 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   }
 
   double reference_length() const { return reference; }
-  Vec3 across(const Vec3& d) const { return d - dot(axis, d) * axis; }
+  static Vec3 across(const Vec3& d, const Vec3& axis) { return d - dot(axis, d) * axis; }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
-    g[0] = is_round ? (dot(across(e[0]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius;
+    g[0] = is_round ? (dot(across(e[0], e[2]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius;
     g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
   /// The functions of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
-  void gradients(const Vec3* x, double /*fraction*/, Vec3* out) const {
-    const Vec3 d = arm(0, x, 1), slip = arm(1, x, 1), normal = arm(2, x, 1), first = arm(3, x, 1), second = arm(4, x, 1);
-    const Vec3 outward = is_round ? (1 / radius) * across(d) : normal;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto w = [&](std::size_t arm) { return weights[arm][i]; };
-      out[3 * i] = is_round ? w(0) * outward : w(0) * outward + w(2) * d;
-      out[3 * i + 1] = w(1) * first + w(3) * slip;
-      out[3 * i + 2] = w(1) * second + w(4) * slip;
-    }
+  void gradients(const Vec3* x, double fraction, Vec3* out) const {
+    const std::array<Vec3, 5> e = arms(x, fraction);
+    write_gradients(e, dot(e[2], e[0]), out);
   }
-  void curvature(const Vec3* /*x*/, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
+  /// They are exact (J. C. Simo, N. Tarnow and K. K. Wong, 1992) and make no torque: by the arms in the middle, and for
+  /// (axis . d)^2 by the mean of axis . d.
+  void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
+    std::array<Vec3, 5> e = arms(x0, start);
+    const std::array<Vec3, 5> last = arms(x1, end);
+    const double along = (dot(e[2], e[0]) + dot(last[2], last[0])) / 2;
+    for (std::size_t a = 0; a < 5; ++a) e[a] = 0.5 * (e[a] + last[a]);
+    write_gradients(e, along, out);
+  }
+  void curvature(const Vec3* x, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
     const double pull = is_round ? (clamp ? std::max(0.0, lambda[0]) : lambda[0]) / radius : 0;
     const double of_normal = is_round || clamp ? 0 : lambda[0], of_first = clamp ? 0 : lambda[1], of_second = clamp ? 0 : lambda[2];
-    const Mat3 along = pull != 0 ? Mat3::outer(axis, axis) : Mat3{};
+    Mat3 by_centers, by_both, by_turns;  // of g_0 by arms 0 and 2
+    if (pull != 0) {
+      const Vec3 d = arm(0, x, 1), axis = arm(2, x, 1);
+      by_centers = Mat3::diagonal(pull) + -pull * Mat3::outer(axis, axis);
+      by_both = Mat3::diagonal(-pull * dot(axis, d)) + -pull * Mat3::outer(axis, d);
+      by_turns = -pull * Mat3::outer(d, d);
+    }
+    const Mat3 by_both_back = by_both.transposed();
     for (std::uint32_t i = 0; i < count; ++i)
       for (std::uint32_t j = i; j < count; ++j, ++blocks) {
-        const auto mixed = [&](std::size_t a, std::size_t b) {
-          return weights[a][i] * weights[b][j] + weights[b][i] * weights[a][j];
-        };
-        const double both = pull * weights[0][i] * weights[0][j];
-        *blocks = Mat3::diagonal(both + of_normal * mixed(0, 2) + of_first * mixed(1, 3) + of_second * mixed(1, 4));
-        if (both != 0) *blocks += -both * along;
+        const auto product = [&](std::size_t a, std::size_t b) { return weights[a][i] * weights[b][j]; };
+        const auto mixed = [&](std::size_t a, std::size_t b) { return product(a, b) + product(b, a); };
+        *blocks = Mat3::diagonal(of_normal * mixed(0, 2) + of_first * mixed(1, 3) + of_second * mixed(1, 4));
+        if (pull == 0) continue;
+        *blocks += product(0, 0) * by_centers + product(0, 2) * by_both + product(2, 0) * by_both_back +
+                   product(2, 2) * by_turns;
       }
   }
 
@@ -83,6 +94,22 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
                          double tolerance) const;
   /// A state with direction 0 slips without friction.
   ConeEquations equations(ConeState, const double* multipliers, const double* g, const double* natural) const;
+
+ private:
+  std::array<Vec3, 5> arms(const Vec3* x, double fraction) const {
+    return {arm(0, x, fraction), arm(1, x, fraction), arm(2, x, fraction), arm(3, x, fraction), arm(4, x, fraction)};
+  }
+  /// along: axis . d
+  void write_gradients(const std::array<Vec3, 5>& e, double along, Vec3* out) const {
+    const Vec3 by_center = is_round ? (1 / radius) * (e[0] - along * e[2]) : e[2];
+    const Vec3 by_turn = is_round ? (-along / radius) * e[0] : e[0];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto w = [&](std::size_t arm) { return weights[arm][i]; };
+      out[3 * i] = w(0) * by_center + w(2) * by_turn;
+      out[3 * i + 1] = w(1) * e[3] + w(3) * e[1];
+      out[3 * i + 2] = w(1) * e[4] + w(4) * e[1];
+    }
+  }
 };
 
 }  // namespace iota::solver

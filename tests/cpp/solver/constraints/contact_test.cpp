@@ -202,5 +202,64 @@ TEST(Contact, has_equations_with_the_derivatives_that_finite_differences_say) {
   }
 }
 
+/// A contact of two bodies of four points each, with weights of either sign.
+ContactConstraint random_contact(std::mt19937& random, bool is_round) {
+  std::uniform_real_distribution<double> any(-1, 1);
+  ContactConstraint c;
+  c.count = 8, c.first_side = 4, c.radius = 0.7, c.is_round = is_round;
+  for (std::uint32_t i = 0; i < 8; ++i) c.nodes[i] = i;
+  for (auto& arm : c.weights)
+    for (double& w : arm) w = any(random);
+  return c;
+}
+
+TEST(ContactRows, have_the_gradients_and_the_curvature_of_their_values) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (const bool is_round : {false, true}) {
+    const ContactConstraint c = random_contact(random, is_round);
+    std::array<Vec3, 8> x, moved;
+    for (Vec3& p : x) p = {any(random), any(random), any(random)};
+    for (std::size_t i = 0; i < 8; ++i) moved[i] = x[i] + Vec3{any(random), any(random), any(random)};
+    const double lambda[3] = {-0.7, 0.4, 0.9};
+    std::array<Vec3, 24> gradients, ahead, back, mean;
+    c.gradients(x.data(), 1, gradients.data());
+    std::vector<Mat3> blocks(36);
+    c.curvature(x.data(), 1, lambda, false, blocks.data());
+    constexpr double e = 1e-5;
+    for (std::size_t j = 0; j < 8; ++j)
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 way{axis == 0 ? e : 0, axis == 1 ? e : 0, axis == 2 ? e : 0};
+        std::array<Vec3, 8> to = x, from = x;
+        to[j] += way, from[j] -= way;
+        double g[3], before[3];
+        c.value(to.data(), 1, g), c.value(from.data(), 1, before);
+        c.gradients(to.data(), 1, ahead.data()), c.gradients(from.data(), 1, back.data());
+        for (std::size_t r = 0; r < 3; ++r)
+          EXPECT_NEAR(dot(gradients[3 * j + r], way) / e, (g[r] - before[r]) / (2 * e), 1e-8);
+        for (std::size_t i = 0; i <= j; ++i) {
+          Vec3 change;
+          for (std::size_t r = 0; r < 3; ++r) change += (lambda[r] / (2 * e)) * (ahead[3 * i + r] - back[3 * i + r]);
+          const std::size_t pair = i * 8 - i * (i - 1) / 2 + (j - i);
+          EXPECT_LT(norm((1 / e) * (blocks[pair] * way) - change), 1e-8);
+        }
+      }
+    // The mean gradients give the change of the values exactly, and no torque.
+    double first[3], last[3];
+    c.value(x.data(), 1, first), c.value(moved.data(), 1, last);
+    c.mean_gradients(x.data(), 1, moved.data(), 1, mean.data());
+    for (std::size_t r = 0; r < 3; ++r) {
+      double change = 0;
+      Vec3 torque;
+      for (std::size_t i = 0; i < 8; ++i) {
+        change += dot(mean[3 * i + r], moved[i] - x[i]);
+        torque += cross(0.5 * (x[i] + moved[i]), mean[3 * i + r]);
+      }
+      EXPECT_NEAR(change, last[r] - first[r], 1e-12);
+      EXPECT_LT(norm(torque), 1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace iota::solver
