@@ -490,6 +490,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.tab.page.evaluate((id) => iota.select(id), body);
     await study.does("n", "what is selected is nudged", (now, before) => now.kinetic > before.kinetic + 4e-3);
   },
+  stack: async (study) => {
+    await study.drag([some, -some]);
+    await study.letGo();
+    await study.does("c", "everything stands again", ({ kinetic }) => kinetic < 1e-6);
+    await study.does("p", "the first domino falls", ({ kinetic }) => kinetic > 1e-4);
+  },
   undersea: async (study) => {
     await study.drag([some, 0], (body) => body < 120);  // a fish
     await study.letGo();
