@@ -416,6 +416,16 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.knows("it hangs quietly", ({ time, kinetic }) => time > 4 && kinetic < 5e-4);
     await study.does("t", "a ripple runs", ({ kinetic }) => kinetic > 3e-3);
   },
+  marbles: async (study) => {
+    const flap = await study.tab.page.evaluate((body) => ({ body, was: iota.bodyRotation(body) }), await study.tab.page.evaluate(() => iota.bodies()[0]));
+    await study.key("n");
+    await study.tab.until("the flap lies on its other side", ({ body, was }) => (
+      Math.abs(iota.bodyRotation(body).reduce((sum, value, axis) => sum + value * was[axis], 0)) < 0.89), flap, patience);
+    await study.knows("marbles roll", ({ kinetic }) => kinetic > 1);
+    await study.does("c", "they start once more", ({ kinetic }) => kinetic < 0.5);
+    await study.drag([-some, -some], (body) => body !== flap.body);
+    await study.letGo();
+  },
   mechanisms: async (study) => {
     const weight = await study.tab.page.evaluate(() => iota.bodies().at(-1)!);
     const { joints } = study.facts;

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The run of marbles: all arrive in the box that the flap chooses, and none gains energy on the way."""
+
+from __future__ import annotations
+
+import pytest
+
+import iota
+from iota.studies import marbles
+
+SECONDS = 11.0  # until the last one has arrived
+
+
+def build() -> tuple[iota.World, marbles.Run]:
+    world = iota.World(iota.System())
+    marbles.present(world)
+    return world, marbles.Run(world)
+
+
+def run(world: iota.World, seconds: float) -> None:
+    for _ in range(round(seconds / world.dt)):
+        report = world.step()
+        assert report is not None and report.unconverged == 0 and report.worst_gap < 1e-6
+
+
+def in_box(made: marbles.Run, number: int) -> int:
+    """How many marbles lie in a box, on its floor."""
+    wide, _, deep = marbles.BOX
+    places = [marble.center_of_mass for marble in made.marbles]
+    return sum(
+        abs(place.x - marbles.BOXES[number]) < wide / 2
+        and abs(place.z) < deep / 2
+        and abs(place.y - marbles.WALL - marbles.RADIUS) < 1e-6
+        for place in places
+    )
+
+
+@pytest.mark.parametrize("thrown", [False, True])
+def test_all_marbles_arrive_in_the_box_that_the_flap_chooses(thrown: bool) -> None:
+    world, made = build()
+    if thrown:
+        world._state.actions["switch"].hook.function()
+    run(world, SECONDS)
+    assert made.flap.angle.value == pytest.approx(-marbles.SIDE if thrown else marbles.SIDE, abs=1e-6)
+    counts = [in_box(made, 0), in_box(made, 1)]
+    assert counts == ([marbles.MARBLES, 0] if thrown else [0, marbles.MARBLES])
+
+
+def test_energy_never_rises() -> None:
+    world, _ = build()
+    before = first = world.system.energy.total
+    for _ in range(round(SECONDS / world.dt)):
+        run(world, world.dt)
+        now = world.system.energy.total
+        assert now <= before + 1e-9 * first
+        before = now
+    assert before < 0.2 * first
+
+
+def test_no_marble_is_in_another_one_or_leaves_its_gutter() -> None:
+    world, made = build()
+    for step in range(round(SECONDS / world.dt)):
+        run(world, world.dt)
+        if step % 6:
+            continue
+        places = [marble.center_of_mass for marble in made.marbles]
+        for place in places:
+            assert place.y < marbles.BOX[1] + 0.3 or abs(place.z) < marbles.WIDTH / 2
+        assert min(abs(p - q) for n, p in enumerate(places) for q in places[:n]) > 2 * marbles.RADIUS - 1e-6
+
+
+def test_they_roll_once_more() -> None:
+    world, made = build()
+    run(world, 3.0)
+    world._state.actions["again"].hook.function()
+    assert all(abs(marble.position - place) < 1e-12 for marble, place in made.start.items())
+    run(world, SECONDS)
+    assert in_box(made, 1) == marbles.MARBLES
