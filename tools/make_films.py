@@ -38,7 +38,15 @@ OPTIONS = {"physics-class": ["--plots"]}
 # Duration of a film, s, and time of its thumbnail, if they differ from the defaults.
 SECONDS = {"chain": 12.0, "molecule": 12.0, "undersea": 28.0}
 USUAL = 10.0
-MOMENT = {"chain": 2.5, "fireworks": 5.1, "marbles": 3.0, "physics-class": 3.5, "playground": 0.6, "undersea": 6.4}
+MOMENT = {
+    "chain": 2.5,
+    "fireworks": 5.1,
+    "marbles": 3.0,
+    "physics-class": 3.5,
+    "playground": 0.6,
+    "undersea": 6.4,
+    "wrecking-ball": 2.3,
+}
 USUAL_MOMENT = 2.0
 
 

@@ -524,6 +524,14 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([20, some], (body) => body < 104 && body % 13 > 6);  // of the flag, far from its pole
     await study.letGo();
   },
+  "wrecking-ball": async (study) => {
+    await study.does("c", "all is built anew", ({ time }) => time < 1);
+    const { joints } = study.facts;
+    await study.does("l", "the rope lets the ball go", (now) => now.joints === joints - 1);
+    await study.knows("the ball swings", ({ kinetic }) => kinetic > 1000);
+    await study.drag([some, -some]);
+    await study.letGo();
+  },
 };
 
 /** A phone and a desk; usually each study is looked at in one of them. */
