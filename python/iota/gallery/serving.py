@@ -23,7 +23,10 @@ from iota.world.callbacks import print_error
 from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
-FIRST = ("chain", "ladder", "cradle", "undersea", "cloth", "playground", "physics-class", "fireworks")  # on the page
+FIRST = (  # on the page
+    "chain", "ladder", "stack", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground", "physics-class",
+    "fireworks",
+)  # fmt: skip
 LOOK = 0.1  # s, between two checks for visitors
 PATIENCE = 2.0  # s, within which a study has to end
 
