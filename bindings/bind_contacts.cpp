@@ -45,7 +45,8 @@ void bind_material(nb::module_& module) {
           nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__hash__", [](const Material& self) { return std::hash<double>{}(self.friction); })
       .def("__repr__", [](const Material& self) {
-        const std::string touches = self.touches == Touches::all ? "" : ", touches='" + to_word(touches_words, self.touches) + "'";
+        const std::string touches =
+            self.touches == Touches::all ? "" : ", touches='" + to_word(touches_words, self.touches) + "'";
         return text("Material(friction=", self.friction, touches, ")");
       });
 }

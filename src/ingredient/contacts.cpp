@@ -181,7 +181,8 @@ struct Places {
     };
     const bool with_q = !has_world_plane(c) && q.rank == 4, with_p = !has_world_point(c) && p.rank == 4;
     c.slips_turn = !has_world_plane(c) && (with_q || with_p);
-    if (c.slips_turn) set_direction(Arm::first_tangent, c.first, with_q), set_direction(Arm::second_tangent, c.second, with_q);
+    if (c.slips_turn)
+      set_direction(Arm::first_tangent, c.first, with_q), set_direction(Arm::second_tangent, c.second, with_q);
     const bool is_axis_of_q = is_round && !has_world_plane(c) && q.rank > 1;
     c.turns = with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
     if (c.turns) set_direction(Arm::turned, is_round ? c.axis : c.normal, with_q || is_axis_of_q);
@@ -193,8 +194,8 @@ Vec3 velocity_at(const Model& model, const Contact& c, std::uint32_t first, std:
 }
 
 /// The geometry of a touch. The origin is below the center, so that a normal that turns makes no torque by itself.
-void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const Vec3& spin_p, const Vec3& spin_q, double h,
-                  Sides& sides) {
+void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const Vec3& spin_p, const Vec3& spin_q,
+                  double h, Sides& sides) {
   const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
   take_basis(c, p, q);
   c.form = t.form, c.axis = t.axis;
@@ -237,7 +238,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     if (is_new && t.gap < -deepest * motion.size) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
-    fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part, fresh.other_feature = t.other_feature;
+    fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,
+    fresh.other_feature = t.other_feature;
     fresh.depth = std::min(0.0, t.gap);
     const std::uint32_t slot = is_new ? model.contacts.create(fresh) : *known;
     Contact& c = model.contacts[slot];
@@ -318,7 +320,8 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
   if (model.contacts.size() == 0) return;
   std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
-    if (has_points(model.bodies[body])) model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
+    if (has_points(model.bodies[body]))
+      model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
     const Contact& c = model.contacts[slot];
@@ -330,7 +333,9 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
       moves = moves || (is_here && !map.is_pinned(row.nodes[i]));
     }
     const auto nodes = std::span(row.nodes).first(c.point_count);
-    const auto has_node = [&](std::uint32_t node) { return std::find(nodes.begin(), nodes.begin() + c.of_p, node) != nodes.begin() + c.of_p; };
+    const auto has_node = [&](std::uint32_t node) {
+      return std::find(nodes.begin(), nodes.begin() + c.of_p, node) != nodes.begin() + c.of_p;
+    };
     // Inactive, or hinged to each other meanwhile.
     if (!is_here || !moves || std::any_of(nodes.begin() + c.of_p, nodes.end(), has_node)) continue;
     row.count = c.point_count;
@@ -459,20 +464,22 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
     const std::uint32_t first = c.p == body ? 0 : c.of_p, last = c.p == body ? c.of_p : c.point_count;
     const Vec3 arm = c.radius * c.normal;
     const double of_normal = c.form == TouchForm::round ? 0 : 1;
-    const BodyId part = step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
+    const BodyId part =
+        step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
     for (std::uint32_t i = first; i < last; ++i)
-      reader.take({.particle = c.points[i],
-                   .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
-                            c.weights[Arm::place][i] * c.drag,
-                   .part = part});
+      reader.take(
+          {.particle = c.points[i],
+           .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
+                    c.weights[Arm::place][i] * c.drag,
+           .part = part});
   });
 }
 
 void Contacts::check_links(const Model& model, model::Audit& audit) {
   audit.check_ends("contact", model.contacts, model.bodies);
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    audit.require(c.point_count >= 1 && c.of_p <= c.point_count && c.point_count <= c.points.size(), "contact ", slot, " refers to ", c.point_count,
-                  " points");
+    audit.require(c.point_count >= 1 && c.of_p <= c.point_count && c.point_count <= c.points.size(), "contact ", slot,
+                  " refers to ", c.point_count, " points");
     for (std::uint32_t i = 0; i < std::min<std::size_t>(c.point_count, c.points.size()); ++i)
       audit.require(model.particles.is_alive(c.points[i]), "contact ", slot,
                     " refers to a particle that does not exist");
@@ -481,12 +488,14 @@ void Contacts::check_links(const Model& model, model::Audit& audit) {
 
 void Contacts::validate(const Model& model, model::Audit& audit) {
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    audit.require(c.p != c.q && (has_points(model.bodies[c.p]) || has_points(model.bodies[c.q])), "contact ", slot, " is of one body, or of static ones");
+    audit.require(c.p != c.q && (has_points(model.bodies[c.p]) || has_points(model.bodies[c.q])), "contact ", slot,
+                  " is of one body, or of static ones");
     for (std::uint32_t i = 0; i < c.point_count; ++i)
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
-    audit.require(is_finite(c.force()) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
-                  "contact ", slot, " has no valid plane, force or friction");
+    audit.require(
+        is_finite(c.force()) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
+        "contact ", slot, " has no valid plane, force or friction");
   });
 }
 

@@ -26,12 +26,12 @@ struct Contact : model::Ends {
   Vec3 normal, first, second;  ///< now; they turn with a body, or keep their direction
   Vec3 axis;                   ///< of round things, see contact::Touch
   double radius = 0, friction = 0;
-  double ball = 0;     ///< part of the radius that is p's
-  double depth = 0;    ///< of an overlap that was there before the contact, m, not positive: it only shrinks
-  double push = 0;     ///< force along the normal on p in the last step, N
-  Vec3 drag;           ///< force of friction on it, N
-  double energy = 0;   ///< of its elastic strain, J
-  double approach = 0; ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
+  double ball = 0;             ///< part of the radius that is p's
+  double depth = 0;            ///< of an overlap that was there before the contact, m, not positive: it only shrinks
+  double push = 0;             ///< force along the normal on p in the last step, N
+  Vec3 drag;                   ///< force of friction on it, N
+  double energy = 0;           ///< of its elastic strain, J
+  double approach = 0;         ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
   std::uint64_t found_in = 0;  ///< step
 
   Vec3 force() const { return push * normal + drag; }
@@ -67,9 +67,9 @@ class Contacts : public NoAnswers {
   static void prepare(Model&, std::uint32_t body);
 
   struct Motion {
-    double size;                ///< of the smaller body, m
-    Vec3 spins[2];              ///< of both, rad/s
-    double h;                   ///< of the step, s
+    double size;    ///< of the smaller body, m
+    Vec3 spins[2];  ///< of both, rad/s
+    double h;       ///< of the step, s
   };
   /// The contacts of two bodies for a step. Those that they had before keep their forces.
   static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch>, const Motion&);

@@ -64,7 +64,13 @@ void ContactFinder::list_movers(model::Model& model, const contact::Outlines& ou
     if (body.kind == BodyKind::static_) return;
     const bool touches = body.kind != BodyKind::inactive && outlines.reach(slot) >= 0 && model.material(slot);
     if (!touches) return ingredient::Contacts::end(model, slot);
-    Mover mover{slot, body.kind != BodyKind::resting, body.count == 1 && outlines.described(slot).solids.empty(), outlines.reach(slot), model.position(body.first), {}, 0};
+    Mover mover{slot,
+                body.kind != BodyKind::resting,
+                body.count == 1 && outlines.described(slot).solids.empty(),
+                outlines.reach(slot),
+                model.position(body.first),
+                {},
+                0};
     for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
     for (std::size_t k = 0; k < body.rank; ++k)
       mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
@@ -126,7 +132,6 @@ bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
 bool are_plain(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   return !model.materials.has(a) || !model.materials.has(b);
 }
-
 
 }  // namespace
 

@@ -60,7 +60,8 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   }
   void curvature(const Vec3* x, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
     const double pull = is_round ? (clamp ? std::max(0.0, lambda[0]) : lambda[0]) / radius : 0;
-    const double of_normal = is_round || clamp ? 0 : lambda[0], of_first = clamp ? 0 : lambda[1], of_second = clamp ? 0 : lambda[2];
+    const double of_normal = is_round || clamp ? 0 : lambda[0], of_first = clamp ? 0 : lambda[1],
+                 of_second = clamp ? 0 : lambda[2];
     Mat3 by_centers, by_both, by_turns;  // of g_0 by arms 0 and 2
     if (pull != 0) {
       const Vec3 d = arm(0, x, 1), axis = arm(2, x, 1);

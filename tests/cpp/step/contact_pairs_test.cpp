@@ -144,7 +144,8 @@ TEST(ContactPairs, let_a_ball_pass_its_speed_on_as_inelastic_impacts_do) {
 TEST(ContactPairs, lets_a_ball_roll_on_a_plank_that_slides_away) {
   System system = make_world(IntegrationMode::energy_keeping, 0);  // the ground is smooth
   const BodyId plank = system.bodies().create(Box{{4, 0.1, 1}}, {.density = 100, .position = {0, 0.05, 0}});
-  const BodyId ball = system.bodies().create(Sphere{0.1}, {.density = 2000, .position = {-1, 0.2, 0}, .velocity = {1, 0, 0}});
+  const BodyId ball =
+      system.bodies().create(Sphere{0.1}, {.density = 2000, .position = {-1, 0.2, 0}, .velocity = {1, 0, 0}});
   system.bodies().set_material(plank, Material{0.5}), system.bodies().set_material(ball, Material{0.5});
   system.bodies().set_material(system.bodies().obstacles()[0], Material{0});
   const double m = system.bodies().mass(ball), all = m + system.bodies().mass(plank);
@@ -293,9 +294,14 @@ class RandomHeap {
   }
   void add(const Vec3& position) {
     const double a = size_ * (0.5 + 0.2 * any());
-    const std::vector<Shape> shapes{Sphere{a / 2},           Box{{a, 0.8 * a, 0.6 * a}}, Box{{a, a, a}},
-                                    Capsule{0.3 * a, 0.8 * a}, Cylinder{0.4 * a, 0.7 * a}, Cone{0.4 * a, 0.8 * a},
-                                    Ellipsoid{{a, 0.7 * a, 0.5 * a}}, Torus{0.35 * a, 0.12 * a}};
+    const std::vector<Shape> shapes{Sphere{a / 2},
+                                    Box{{a, 0.8 * a, 0.6 * a}},
+                                    Box{{a, a, a}},
+                                    Capsule{0.3 * a, 0.8 * a},
+                                    Cylinder{0.4 * a, 0.7 * a},
+                                    Cone{0.4 * a, 0.8 * a},
+                                    Ellipsoid{{a, 0.7 * a, 0.5 * a}},
+                                    Torus{0.35 * a, 0.12 * a}};
     const auto which = static_cast<std::size_t>(pick(static_cast<int>(shapes.size())));
     (void)system.bodies().create(shapes[which], {.position = position, .orientation = turn()});
   }
