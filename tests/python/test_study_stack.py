@@ -92,8 +92,9 @@ def test_everything_is_built_anew() -> None:
     made.tower[5].velocity = (0, 0, 2)
     run(world, 1.0)
     world._state.actions["build anew"].hook.function()
-    for body, (place, _) in made.start.items():
+    for body, (place, turn) in made.start.items():
         assert abs(body.position - place) < 1e-12
+        assert tuple(body.orientation) == pytest.approx(tuple(turn), abs=1e-9)
     run(world, 1.0)
     assert all(body.kind == "resting" for body in world.system.bodies)
     world._state.actions["push"].hook.function()
