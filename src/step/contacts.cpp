@@ -4,6 +4,7 @@
 #include "model/solid.h"
 
 #include <algorithm>
+#include <optional>
 #include <variant>
 
 namespace iota::step {
@@ -34,6 +35,15 @@ void keep_the_outermost(std::vector<contact::Touch>& touches, double size) {
   touches.resize(most);
 }
 
+bool is_particle(const model::Body& body, const contact::Outlines& outlines, std::uint32_t slot) {
+  return body.count == 1 && outlines.described(slot).solids.empty();
+}
+
+/// Whether it has an outline with a material now.
+bool may_touch(const model::Model& model, const contact::Outlines& outlines, std::uint32_t slot) {
+  return model.bodies[slot].kind != BodyKind::inactive && outlines.reach(slot) >= 0 && model.material(slot);
+}
+
 }  // namespace
 
 double ContactFinder::Obstacle::distance(const Vec3& place) const {
@@ -56,26 +66,25 @@ void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outli
   std::sort(obstacles_.begin(), obstacles_.end(), [](const Obstacle& a, const Obstacle& b) { return a.body < b.body; });
 }
 
+ContactFinder::Mover ContactFinder::mover_at(const model::Model& model, const contact::Outlines& outlines,
+                                             std::uint32_t slot) {
+  const model::Body& body = model.bodies[slot];
+  Mover mover{slot, is_particle(body, outlines, slot), outlines.reach(slot), model.position(body.first), {}, 0};
+  for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
+  for (std::size_t k = 0; k < body.rank; ++k)
+    mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
+  return mover;
+}
+
+// Those that rest are looked at only where one of the others comes near.
 void ContactFinder::list_movers(model::Model& model, const contact::Outlines& outlines) {
   movers_.clear();
-  mover_of_.resize(model.bodies.slot_count());
+  is_any_extended_ = false;
   model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
-    mover_of_[slot] = model::none;
     if (body.kind == BodyKind::static_) return;
-    const bool touches = body.kind != BodyKind::inactive && outlines.reach(slot) >= 0 && model.material(slot);
-    if (!touches) return ingredient::Contacts::end(model, slot);
-    Mover mover{slot,
-                body.kind != BodyKind::resting,
-                body.count == 1 && outlines.described(slot).solids.empty(),
-                outlines.reach(slot),
-                model.position(body.first),
-                {},
-                0};
-    for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
-    for (std::size_t k = 0; k < body.rank; ++k)
-      mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
-    mover_of_[slot] = static_cast<std::uint32_t>(movers_.size());
-    movers_.push_back(mover);
+    if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
+    is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot);
+    if (body.kind != BodyKind::resting) movers_.push_back(mover_at(model, outlines, slot));
   });
 }
 
@@ -88,25 +97,25 @@ double ContactFinder::within(const Mover& mover, const Mover* other) const {
 // Few obstacles are looked at one by one.
 void ContactFinder::find_obstacles(const model::Model& model) {
   for (const Mover& mover : movers_) {
-    if (!mover.is_awake || model.bodies[mover.body].kind == BodyKind::scripted) continue;
+    if (model.bodies[mover.body].kind == BodyKind::scripted) continue;
     const double reach = mover.reach + within(mover, nullptr);
     for (const Obstacle& obstacle : obstacles_)
       if (obstacle.distance(mover.place) <= reach) pairs_.push_back({mover.body, obstacle.body});
   }
 }
 
+// Particles alone do not touch each other: see are_plain.
 void ContactFinder::find_pairs(const model::Model& model, contact::Outlines& outlines) {
-  if (std::all_of(movers_.begin(), movers_.end(), [](const Mover& mover) { return mover.is_ball; })) return;
+  if (movers_.empty() || !is_any_extended_) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
   for (const Mover& mover : movers_) {
-    if (!mover.is_awake) continue;
     const double more = within(mover, nullptr);
     geometry::Bounds box = contact::bounds(tree[mover.body]);
     box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
     tree.overlapping(box, [&](std::uint32_t body) {
-      const Mover* const other = mover_of(body);
-      if (!other || body == mover.body) return;
-      if (norm(other->place - mover.place) > mover.reach + other->reach + within(mover, other)) return;
+      if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body)) return;
+      const Mover other = mover_at(model, outlines, body);
+      if (norm(other.place - mover.place) > mover.reach + other.reach + within(mover, &other)) return;
       pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});
     });
   }
@@ -148,13 +157,14 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   for (const Pair& pair : pairs_) touch(model, outlines, pair);
   if (model.contacts.size() > 0)
-    for (const Mover& mover : movers_)
-      if (mover.is_awake) ingredient::Contacts::end_old(model, mover.body);
+    for (const Mover& mover : movers_) ingredient::Contacts::end_old(model, mover.body);
 }
 
 void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair) {
   const auto [first, second] = pair;
-  const Mover &mover = *mover_of(first), *const other = mover_of(second);
+  const Mover mover = mover_at(model, outlines, first);
+  std::optional<Mover> other;
+  if (model.bodies[second].kind != BodyKind::static_) other = mover_at(model, outlines, second);
   const auto touches = [&](std::uint32_t body) { return model.material(body)->touches; };
   if (other && (touches(first) != Touches::all || touches(second) != Touches::all)) return;
   if (other && mover.is_ball && other->is_ball && are_plain(model, first, second)) return;
@@ -170,7 +180,7 @@ void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   const contact::Outline& outline = outlines.placed(first);
   if (other) (void)outlines.placed(second);
   const Vec3 way = h_ * (other ? mover.velocity - other->velocity : mover.velocity);
-  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other), found_, way);
+  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other ? &*other : nullptr), found_, way);
   keep_the_outermost(found_, size);
   ingredient::Contacts::take(model, first, second, found_, {size, {spins[0], spins[1]}, h_});
 }

@@ -28,29 +28,27 @@ class ContactFinder {
   /// A body that may touch others.
   struct Mover {
     std::uint32_t body;
-    bool is_awake, is_ball;  ///< a particle
-    double reach;            ///< m
+    bool is_ball;          ///< a particle
+    double reach;          ///< m
     Vec3 place, velocity;    ///< of its first particle; mean
     double spread;           ///< of the velocities of its points, m/s
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
   void list_obstacles(model::Model&, contact::Outlines&);
+  static Mover mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void list_movers(model::Model&, const contact::Outlines&);
   void find_obstacles(const model::Model&);
   void find_pairs(const model::Model&, contact::Outlines&);
   void touch(model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other) const;
-  const Mover* mover_of(std::uint32_t body) const {
-    return body < mover_of_.size() && mover_of_[body] < movers_.size() ? &movers_[mover_of_[body]] : nullptr;
-  }
 
   contact::TouchFinder touches_;
+  bool is_any_extended_ = false;  ///< more than a particle
   double h_ = 0, fall_ = 0;  ///< s; speed that gravity gives in this time, m/s
   // Scratch, kept for its capacity.
   std::vector<Obstacle> obstacles_;
-  std::vector<Mover> movers_;
-  std::vector<std::uint32_t> mover_of_;  ///< by body slot, valid for movers
+  std::vector<Mover> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<contact::Touch> found_;
 };

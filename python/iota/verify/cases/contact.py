@@ -30,17 +30,21 @@ def _step(system: iota.System, seconds: float, dt: float) -> None:
 
 
 def contact(run: Run) -> None:
-    """Contact with the ground.
+    """Contact with the ground and with each other.
 
-    Boxes, balls and cylinders on a plane with Coulomb friction, by rows of the same solve as joints. Expected values are
-    closed forms: the way of a sliding box, the speed at which a sliding ball begins to roll, the angles at which a box slides
-    and a tower tips, the weight on four corners.
+    Boxes, balls and cylinders on a plane and on each other with Coulomb friction, by rows of the same solve as joints.
+    Expected values are closed forms: the way of a sliding box, the speed at which a sliding ball begins to roll, the angles
+    at which a box slides and a tower tips, the weight on four corners, the overhang of a stack of blocks, the speeds of a
+    ball and of the plank on which it begins to roll.
     """
     dt = run.size(1 / 240, 1 / 120)
     _sliding(run, dt)
     _rolling(run, dt)
     _slopes(run, dt)
     _resting(run, dt)
+    _towers(run, dt)
+    _overhang(run, dt)
+    _plank(run, dt)
 
 
 def _sliding(run: Run, dt: float) -> None:
@@ -110,3 +114,53 @@ def _resting(run: Run, dt: float) -> None:
         forces = [point.force.y / (box.mass * G) for point in box.contacts]
         run.near(f"least share of its weight on a corner, {size} m", min(forces, default=0), 0.25, 1e-3)
         run.near(f"largest share, {size} m", max(forces, default=0), 0.25, 1e-3)
+
+
+def _towers(run: Run, dt: float) -> None:
+    for ratio in (1, 1000):
+        system = _on_a_slope(0, 0.5)
+        edge = 0.2
+        tower = [
+            system.body(
+                shape=iota.Box((edge, edge, edge)),
+                position=(0, (k + 0.5) * edge, 0),
+                density=1000 * (ratio if k == 9 else 1),
+            )
+            for k in range(10)
+        ]
+        _step(system, 3, dt)
+        way = max(abs(body.center_of_mass - (0, (k + 0.5) * edge, 0)) for k, body in enumerate(tower))
+        run.at_most(f"ten cubes of 0.2 m, the last {ratio} times as heavy: farthest way in 3 s, m", way, 1e-8 * ratio)
+        force = sum(point.force.y for point in tower[-1].contacts)
+        run.near("force below the last one, of its weight", force / (tower[-1].mass * G), 1, 1e-6)
+
+
+def _overhang(run: Run, dt: float) -> None:
+    """Of blocks on each other, the k-th from above reaches 1/(2 k) of its length beyond the next at most."""
+    for share, stands in ((0.99, True), (1.01, False)):
+        system = _on_a_slope(0, 0.5)
+        reach, blocks = 0.0, []
+        for k in range(5):  # from above
+            blocks.append(system.body(shape=iota.Box((1, 0.1, 0.4)), position=(-reach, 0.45 - 0.1 * k, 0)))
+            reach += share / (2 * (k + 1))
+        lowest = blocks[-1]
+        lowest.kind = "static"
+        lowest.material = iota.Material(friction=0.5)
+        _step(system, 2, dt)
+        name = f"height of the highest of four blocks at {share} of the farthest overhang, m"
+        if stands:
+            run.near(name, blocks[0].center_of_mass.y, 0.45, 1e-6)
+        else:
+            run.at_most(name, blocks[0].center_of_mass.y, 0.4)
+
+
+def _plank(run: Run, dt: float) -> None:
+    """The impulse of friction that ends the slip: v - J/m - J/M = J R^2/I, I = 2/5 m R^2."""
+    system = _on_a_slope(0, 0)
+    plank = system.body(shape=iota.Box((4, 0.1, 1)), position=(0, 0.05, 0), density=100)
+    ball = system.body(shape=iota.Sphere(0.1), position=(-1, 0.2, 0), velocity=(1, 0, 0), density=2000)
+    plank.material = ball.material = iota.Material(friction=0.5)
+    _step(system, 1.5, dt)
+    impulse = 1 / (1 / ball.mass + 1 / plank.mass + 2.5 / ball.mass)
+    run.near("speed of a ball that begins to roll on a plank on ice, m/s", ball.velocity.x, 1 - impulse / ball.mass, 2e-3)
+    run.near("speed of the plank, m/s", plank.velocity.x, impulse / plank.mass, 2e-3)
