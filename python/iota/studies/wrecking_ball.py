@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ball of half a ton on a chain of exact links swings into pillars of bricks; l lets it go, c builds all anew."""
+"""A ball of 400 kg on a chain of exact links swings into pillars of bricks; l lets it go, c builds all anew."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from iota import looks
 
 HOOK = iota.Vec3(-0.45, 2.9, 0)  # of the crane, m
 LENGTH, LINKS, LINK = 2.2, 11, 1.0  # of the chain, m; kg
-RADIUS, BALL = 0.25, 500.0  # m, kg
+RADIUS, BALL = 0.25, 400.0  # m, kg
 DRAWN = 0.95  # rad, by which the ball is drawn back
 BRICK, GAP = 0.15, 0.09  # m; between pillars
 PILLARS, ROWS = 5, 6
