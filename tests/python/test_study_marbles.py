@@ -8,7 +8,7 @@ import pytest
 import iota
 from iota.studies import marbles
 
-SECONDS = 11.0  # until the last one has arrived
+SECONDS = 12.0  # until the last one has arrived
 
 
 def build() -> tuple[iota.World, marbles.Run]:

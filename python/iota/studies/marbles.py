@@ -9,9 +9,8 @@ import iota
 from iota import looks
 
 RADIUS, GLASS = 0.03, 2500.0  # m, kg/m^3
-SMOOTH = iota.Material(
-    friction=0.1
-)  # of marbles: at 0.6 a row that pushes holds its first one in the air, at the end of a gutter
+# Of marbles: at 0.1 a row that pushes can hold its first one in the air, at the end of a gutter.
+SMOOTH = iota.Material(friction=0.03)
 MARBLES, ROW = 20, 0.09  # how many; from one to the next on the uppermost gutter, m
 LEAN = 0.11  # rad, of the gutters
 WIDTH, WALL, HIGH = 0.07, 0.012, 0.035  # of a gutter within, of its walls, of its sides, m
