@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/convex_part.h"
 
+#include "contact/outline.h"
+
 #include "math/mat3.h"
 
 #include <cmath>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contact/outline.h"
 #include "contact/polytope.h"
 
 #include <array>
@@ -9,6 +8,9 @@
 #include <vector>
 
 namespace iota::contact {
+
+struct Line;
+struct Solid;
 
 /// A name of a corner, an edge or a face: see Touch.
 struct FeatureName {

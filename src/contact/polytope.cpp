@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/polytope.h"
 
+#include <iota/shapes.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

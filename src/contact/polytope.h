@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <iota/shapes.h>
 #include <iota/vec3.h>
 
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+namespace iota {
+struct Mesh;
+}
 
 namespace iota::contact {
 

@@ -113,7 +113,8 @@ void ContactFinder::find_pairs(const model::Model& model, contact::Outlines& out
     geometry::Bounds box = contact::bounds(tree[mover.body]);
     box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
     tree.overlapping(box, [&](std::uint32_t body) {
-      if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body)) return;
+      if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body))
+        return;
       const Mover other = mover_at(model, outlines, body);
       if (norm(other.place - mover.place) > mover.reach + other.reach + within(mover, &other)) return;
       pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});
@@ -180,7 +181,8 @@ void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   const contact::Outline& outline = outlines.placed(first);
   if (other) (void)outlines.placed(second);
   const Vec3 way = h_ * (other ? mover.velocity - other->velocity : mover.velocity);
-  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other ? &*other : nullptr), found_, way);
+  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other ? &*other : nullptr),
+                found_, way);
   keep_the_outermost(found_, size);
   ingredient::Contacts::take(model, first, second, found_, {size, {spins[0], spins[1]}, h_});
 }

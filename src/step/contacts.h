@@ -30,8 +30,8 @@ class ContactFinder {
     std::uint32_t body;
     bool is_ball;          ///< a particle
     double reach;          ///< m
-    Vec3 place, velocity;    ///< of its first particle; mean
-    double spread;           ///< of the velocities of its points, m/s
+    Vec3 place, velocity;  ///< of its first particle; mean
+    double spread;         ///< of the velocities of its points, m/s
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
@@ -45,7 +45,7 @@ class ContactFinder {
 
   contact::TouchFinder touches_;
   bool is_any_extended_ = false;  ///< more than a particle
-  double h_ = 0, fall_ = 0;  ///< s; speed that gravity gives in this time, m/s
+  double h_ = 0, fall_ = 0;       ///< s; speed that gravity gives in this time, m/s
   // Scratch, kept for its capacity.
   std::vector<Obstacle> obstacles_;
   std::vector<Mover> movers_;  ///< those that are awake

@@ -42,7 +42,9 @@ class Piece:
     def box(self) -> Array:
         """Lowest and highest corner of a box around it along the world's axes, m."""
         low, high = self.bounds
-        middle, half = self.place + self.turn @ ((low + high) / 2), np.abs(self.turn) @ ((high - low) / 2)
+        middle, half = self.place + self.turn @ ((low + high) / 2), (high - low) / 2
+        if not isinstance(self.shape, iota.Sphere):  # the box of a ball does not turn
+            half = np.abs(self.turn) @ half
         return np.array([middle - half, middle + half])
 
     @property

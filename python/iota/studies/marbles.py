@@ -9,7 +9,7 @@ import iota
 from iota import looks
 
 RADIUS, GLASS = 0.03, 2500.0  # m, kg/m^3
-# Of marbles: at 0.1 a row that pushes can hold its first one in the air, at the end of a gutter.
+# With 0.1 a row of marbles that pushes can hold its first one in the air, at the end of a gutter.
 SMOOTH = iota.Material(friction=0.03)
 MARBLES, ROW = 20, 0.09  # how many; from one to the next on the uppermost gutter, m
 LEAN = 0.11  # rad, of the gutters

@@ -162,5 +162,7 @@ def _plank(run: Run, dt: float) -> None:
     plank.material = ball.material = iota.Material(friction=0.5)
     _step(system, 1.5, dt)
     impulse = 1 / (1 / ball.mass + 1 / plank.mass + 2.5 / ball.mass)
-    run.near("speed of a ball that begins to roll on a plank on ice, m/s", ball.velocity.x, 1 - impulse / ball.mass, 2e-3)
+    run.near(
+        "speed of a ball that begins to roll on a plank on ice, m/s", ball.velocity.x, 1 - impulse / ball.mass, 2e-3
+    )
     run.near("speed of the plank, m/s", plank.velocity.x, impulse / plank.mass, 2e-3)
