@@ -49,7 +49,7 @@ struct IntegratorSettings {
   int patience = 400;     ///< Newton iterations after which sub-steps are no longer halved
   double max_error = 0;   ///< estimated, of (sub-)steps, in link lengths per second; 0: no limit
 
-  /// Of a solve by the end-point rule with contacts, whose states cycle in what is not solved by then.
+  /// A solve by the end-point rule with contacts has so many: the states of what is not solved by then cycle.
   static constexpr int contact_iterations = 10;
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited

@@ -76,7 +76,7 @@ ContactFinder::Mover ContactFinder::mover_at(const model::Model& model, const co
   return mover;
 }
 
-// Those that rest are looked at only where one of the others comes near.
+// Resting ones are looked at only where one of the others comes near.
 void ContactFinder::list_movers(model::Model& model, const contact::Outlines& outlines) {
   movers_.clear();
   is_any_extended_ = false;

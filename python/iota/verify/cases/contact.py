@@ -136,7 +136,7 @@ def _towers(run: Run, dt: float) -> None:
 
 
 def _overhang(run: Run, dt: float) -> None:
-    """Of blocks on each other, the k-th from above reaches 1/(2 k) of its length beyond the next at most."""
+    """The k-th of blocks on each other, from above, reaches 1/(2 k) of its length beyond the next at most."""
     for share, stands in ((0.99, True), (1.01, False)):
         system = _on_a_slope(0, 0.5)
         reach, blocks = 0.0, []
