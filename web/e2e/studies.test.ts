@@ -504,7 +504,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, -some]);
     await study.letGo();
     await study.does("c", "everything stands again", ({ kinetic }) => kinetic < 1e-6);
-    await study.does("p", "the first domino falls", ({ kinetic }) => kinetic > 1e-4);
+    await study.does("k", "the first domino falls", ({ kinetic }) => kinetic > 1e-4);
   },
   undersea: async (study) => {
     await study.drag([some, 0], (body) => body < 120);  // a fish
@@ -527,7 +527,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   "wrecking-ball": async (study) => {
     await study.does("c", "all is built anew", ({ time }) => time < 1);
     const { joints } = study.facts;
-    await study.does("l", "the rope lets the ball go", (now) => now.joints === joints - 1);
+    await study.does("k", "the rope lets the ball go", (now) => now.joints === joints - 1);
     await study.knows("the ball swings", ({ kinetic }) => kinetic > 1000);
     await study.drag([some, -some]);
     await study.letGo();

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A table of things that stand by contact alone: towers, a pyramid, an anvil on matchboxes; p pushes dominoes, c builds all anew."""
+"""A table of things that stand by contact alone: towers, a pyramid, an anvil on matchboxes; k pushes dominoes, c builds all anew."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Stacks:
         self.matchboxes, self.anvil = self._weighed(iota.Vec3(0.72, 0, -0.08))
         self.dominoes, self.way = self._row()
         self.start = {body: (body.position, body.orientation) for body in self.system.bodies}
-        world.action("push", key="p", help="pushes the first domino", on="world")(self.push)
+        world.action("push", key="k", help="pushes the first domino", on="world")(self.push)
         world.action("build anew", key="c", help="everything stands again where it stood", on="world")(self.build_anew)
         world.at(1.0)(self.push)
 

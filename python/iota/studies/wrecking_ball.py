@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ball of 400 kg on a chain of exact links swings into pillars of bricks; l lets it go, c builds all anew."""
+"""A ball of 400 kg on a chain of exact links swings into pillars of bricks; k lets it go, c builds all anew."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Wrecker:
         eye = self.system.body().particle(POST, mass=1.0)
         eye.nail()
         self.rope = self.system.rope(eye, hold)
-        world.action("let go", key="l", help="lets the ball go", on="world")(self.let_go)
+        world.action("let go", key="k", help="lets the ball go", on="world")(self.let_go)
         world.action("build anew", key="c", help="builds the pillars, and draws the ball back", on="world")(world.reset)
         world.at(1.2)(self.let_go)
 

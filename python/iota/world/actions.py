@@ -11,7 +11,7 @@ from iota.world.callbacks import Hook
 # Keys of the page, which actions may replace: web/src/page/page_commands.ts and web/src/ui.
 PAGE_KEYS = {
     " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next style", "f": "fly", "g": "grid",
-    "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "i": "profile", "y": "who is here",
+    "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "i": "profile", ",": "who is here",
     "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing", "o": "select several",
     "ArrowRight": "select next", "ArrowDown": "select next", "ArrowLeft": "select previous", "ArrowUp": "select previous",
     **dict.fromkeys("wasdqe", "walk"),

@@ -228,7 +228,7 @@ export class Overlay implements PageListener, FramePart {
     return {
       name: "people",
       help: "who is here",
-      keys: ["y"],
+      keys: [","],
       places: ["bar"],
       title: () => `${world.clients.length} are here`,
       sign: () => peopleSign,
