@@ -158,15 +158,14 @@ class Sides {
 struct Places {
   Vec3 center, origin, point, other_point;
 
-  /// With the basis and the directions of the contact.
-  void set(Contact& c, const model::Body& p, const model::Body& q, Sides& sides) const {
+  /// Sets the first arm alone, which has the velocities at the center and the origin, ...
+  void set_center(Contact& c, Sides& sides) const {
     c.weights = {};
-    const auto set_arm = [&](Arm arm, const Vec3& of_p, const Vec3& of_q) {
-      const std::array<double, 4> plus = sides.of(0, of_p), minus = sides.of(1, of_q);
-      std::copy_n(plus.begin(), c.of_p, c.weights[arm].begin());
-      for (std::uint32_t i = c.of_p; i < c.point_count; ++i) c.weights[arm][i] = -minus[i - c.of_p];
-    };
-    set_arm(Arm::center, center, origin), set_arm(Arm::place, point, other_point);
+    set_arm(c, Arm::center, center, origin, sides);
+  }
+  /// ... and all others, with the basis and the directions of the contact.
+  void set_others(Contact& c, const model::Body& p, const model::Body& q, Sides& sides) const {
+    set_arm(c, Arm::place, point, other_point, sides);
     c.center = c.place = {};
     if (has_world_plane(c)) c.center = -1.0 * origin, c.place = -1.0 * other_point;
     if (has_world_point(c)) c.center = center, c.place = point;
@@ -187,10 +186,18 @@ struct Places {
     c.turns = with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
     if (c.turns) set_direction(Arm::turned, is_round ? c.axis : c.normal, with_q || is_axis_of_q);
   }
+
+ private:
+  static void set_arm(Contact& c, Arm arm, const Vec3& of_p, const Vec3& of_q, Sides& sides) {
+    const std::array<double, 4> plus = sides.of(0, of_p), minus = sides.of(1, of_q);
+    std::copy_n(plus.begin(), c.of_p, c.weights[arm].begin());
+    for (std::uint32_t i = c.of_p; i < c.point_count; ++i) c.weights[arm][i] = -minus[i - c.of_p];
+  }
 };
 
-Vec3 velocity_at(const Model& model, const Contact& c, std::uint32_t first, std::uint32_t last) {
-  return sum_over(c, Arm::center, first, last, [&](std::uint32_t p) { return model.velocity(p); });
+/// The velocity of the center less that of the origin, m/s.
+Vec3 relative_velocity(const Model& model, const Contact& c) {
+  return sum_over(c, Arm::center, 0, c.point_count, [&](std::uint32_t p) { return model.velocity(p); });
 }
 
 /// The geometry of a touch. The origin is below the center, so that a normal that turns makes no torque by itself.
@@ -208,16 +215,16 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   places.point = t.center + HalfTurn(spin_p, h).back(t.place - t.center);
   // If the gap closes in this step, the two points are at one place in its middle.
   places.other_point = t.place - 0.5 * t.gap * t.normal;
-  places.set(c, p, q, sides);
-  if (has_world_plane(c)) return;
-  // The point of q that touches in the middle of the step.
-  const Vec3 closing = velocity_at(model, c, 0, c.point_count), along = closing - dot(closing, t.normal) * t.normal;
-  if (is_round)
-    places.other_point = t.origin + HalfTurn(spin_q, h).back(places.other_point - t.origin) +
-                         (0.5 * h * (t.radius - c.ball) / t.radius) * along;
-  else
-    places.other_point += 0.5 * h * along;
-  places.set(c, p, q, sides);
+  places.set_center(c, sides);
+  if (!has_world_plane(c)) {  // the point of q that touches in the middle of the step
+    const Vec3 closing = relative_velocity(model, c), along = closing - dot(closing, t.normal) * t.normal;
+    if (is_round)
+      places.other_point = t.origin + HalfTurn(spin_q, h).back(places.other_point - t.origin) +
+                           (0.5 * h * (t.radius - c.ball) / t.radius) * along;
+    else
+      places.other_point += 0.5 * h * along;
+  }
+  places.set_others(c, p, q, sides);
 }
 
 }  // namespace
@@ -228,7 +235,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
   thread_local std::vector<std::uint32_t> former;
   find_between(model, first, second, former);
   const double friction = std::sqrt(model.material(first)->friction * model.material(second)->friction);
-  const bool is_eased = is_on_its_own(model, first) && is_on_its_own(model, second);
+  const auto is_eased = [&] { return is_on_its_own(model, first) && is_on_its_own(model, second); };
   Sides sides[2]{{model, first, second}, {model, second, first}};
   for (const contact::Touch& t : touches) {
     const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;
@@ -250,9 +257,9 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
     const double kept = norm(across);
     c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
-    c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, velocity_at(model, c, 0, c.point_count)));
+    c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
     if (c.depth < 0)
-      c.depth = std::max(std::min(0.0, t.gap), is_eased ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
+      c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
     if (has_changed) touch(model, c);
   }
 }
@@ -294,7 +301,7 @@ void Contacts::prepare(Model& model, std::uint32_t body) {
                         place_of(model, c, Arm::place, false), place_of(model, c, Arm::place, true)};
     Sides sides(model, c.p, c.q);
     take_basis(c, p, q);
-    places.set(c, p, q, sides);
+    places.set_center(c, sides), places.set_others(c, p, q, sides);
   });
 }
 
