@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from solved_steps import run_solved
 
 import iota
 from iota.studies import marbles
@@ -15,12 +16,6 @@ def build() -> tuple[iota.World, marbles.Run]:
     world = iota.World(iota.System())
     marbles.present(world)
     return world, marbles.Run(world)
-
-
-def run(world: iota.World, seconds: float) -> None:
-    for _ in range(round(seconds / world.dt)):
-        report = world.step()
-        assert report is not None and report.unconverged == 0 and report.worst_gap < 1e-6
 
 
 def in_box(made: marbles.Run, number: int) -> int:
@@ -40,7 +35,7 @@ def test_all_marbles_arrive_in_the_box_that_the_flap_chooses(thrown: bool) -> No
     world, made = build()
     if thrown:
         world._state.actions["switch"].hook.function()
-    run(world, SECONDS)
+    run_solved(world, SECONDS)
     assert made.flap.angle.value == pytest.approx(-marbles.SIDE if thrown else marbles.SIDE, abs=1e-6)
     counts = [in_box(made, 0), in_box(made, 1)]
     assert counts == ([marbles.MARBLES, 0] if thrown else [0, marbles.MARBLES])
@@ -50,7 +45,7 @@ def test_energy_never_rises() -> None:
     world, _ = build()
     before = first = world.system.energy.total
     for _ in range(round(SECONDS / world.dt)):
-        run(world, world.dt)
+        run_solved(world, world.dt)
         now = world.system.energy.total
         assert now <= before + 1e-9 * first
         before = now
@@ -60,7 +55,7 @@ def test_energy_never_rises() -> None:
 def test_no_marble_is_in_another_one_or_leaves_its_gutter() -> None:
     world, made = build()
     for step in range(round(SECONDS / world.dt)):
-        run(world, world.dt)
+        run_solved(world, world.dt)
         if step % 6:
             continue
         places = [marble.center_of_mass for marble in made.marbles]
@@ -71,8 +66,8 @@ def test_no_marble_is_in_another_one_or_leaves_its_gutter() -> None:
 
 def test_they_roll_once_more() -> None:
     world, made = build()
-    run(world, 3.0)
+    run_solved(world, 3.0)
     world._state.actions["again"].hook.function()
     assert all(abs(marble.position - place) < 1e-12 for marble, place in made.start.items())
-    run(world, SECONDS)
+    run_solved(world, SECONDS)
     assert in_box(made, 1) == marbles.MARBLES

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from solved_steps import run_solved
 
 import iota
 from iota.studies import stack
@@ -21,12 +22,6 @@ def build(rest_after: float = 0.0) -> tuple[iota.World, stack.Stacks]:
     return world, stack.Stacks(world)
 
 
-def run(world: iota.World, seconds: float) -> None:
-    for _ in range(round(seconds / world.dt)):
-        report = world.step()
-        assert report is not None and report.unconverged == 0 and report.worst_gap < 1e-6
-
-
 def tilt(body: iota.Body) -> float:
     """Of its upright axis, rad."""
     x, _, z, _ = body.orientation
@@ -38,7 +33,7 @@ def test_towers_stand_still_for_ten_seconds_under_a_thousand_times_their_mass() 
     assert made.anvil.mass == pytest.approx(1000 * made.matchboxes[0].mass)
     standing = [*made.tower, *made.matchboxes, made.anvil, *made.pyramid]
     begin = [body.center_of_mass for body in standing]
-    run(world, 10.0)
+    run_solved(world, 10.0)
     assert all(body.kind == "dynamic" for body in standing), "none is asleep"
     assert max(abs(body.center_of_mass - place) for body, place in zip(standing, begin, strict=True)) < 1e-6
 
@@ -47,7 +42,7 @@ def test_a_push_runs_through_all_dominoes_as_a_wave_of_constant_speed() -> None:
     world, made = build(0.5)
     times: list[float | None] = [None] * len(made.dominoes)
     while world.system.time < 4:
-        run(world, world.dt)
+        run_solved(world, world.dt)
         for number, domino in enumerate(made.dominoes):
             if times[number] is None and tilt(domino) > math.radians(10):
                 times[number] = world.system.time
@@ -62,24 +57,24 @@ def test_a_push_runs_through_all_dominoes_as_a_wave_of_constant_speed() -> None:
 
 def test_what_stands_sleeps_until_it_is_touched() -> None:
     world, made = build(0.5)
-    run(world, 0.9)
+    run_solved(world, 0.9)
     assert all(body.kind == "resting" for body in world.system.bodies)
-    run(world, 0.5)
+    run_solved(world, 0.5)
     assert made.dominoes[2].kind == "dynamic" and made.tower[0].kind == "resting"
 
 
 def test_a_block_that_is_pulled_out_brings_those_above_it_down() -> None:
     world, made = build(0.5)
-    run(world, 0.6)
+    run_solved(world, 0.6)
     block, above = made.pyramid[5], made.pyramid[7:]  # its pyramid has rows of 4, 3, 2 and 1
     begin = {body: body.center_of_mass for body in above}
     start = block.center_of_mass
     grip = world.system.grip(block)
     for step in range(120):
         grip.move(start + iota.Vec3(0, 0.1, 0.3) * min(1, step / 60))
-        run(world, world.dt)
+        run_solved(world, world.dt)
     grip.destroy()
-    run(world, 2.0)
+    run_solved(world, 2.0)
     assert block.center_of_mass.z > start.z + 0.2
     fallen = [body for body, place in begin.items() if body.center_of_mass.y < place.y - 0.5 * stack.BLOCK[1]]
     assert len(fallen) == len(above)
@@ -88,7 +83,7 @@ def test_a_block_that_is_pulled_out_brings_those_above_it_down() -> None:
 
 def test_everything_is_built_anew() -> None:
     world, made = build(0.5)
-    run(world, 3.0)
+    run_solved(world, 3.0)
     made.tower[5].velocity = (0, 0, 2)
     for _ in range(120):
         world.step()
@@ -97,8 +92,8 @@ def test_everything_is_built_anew() -> None:
     for body, (place, turn) in made.start.items():
         assert abs(body.position - place) < 1e-12
         assert tuple(body.orientation) == pytest.approx(tuple(turn), abs=1e-9)
-    run(world, 1.0)
+    run_solved(world, 1.0)
     assert all(body.kind == "resting" for body in world.system.bodies)
     world._state.actions["push"].hook.function()
-    run(world, 3.0)
+    run_solved(world, 3.0)
     assert min(tilt(domino) for domino in made.dominoes) > math.radians(60)

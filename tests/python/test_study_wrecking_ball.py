@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from solved_steps import solved_steps
 
 import iota
 from iota.studies import wrecking_ball
@@ -18,9 +19,7 @@ def build() -> tuple[iota.World, wrecking_ball.Wrecker]:
 def run(world: iota.World, made: wrecking_ball.Wrecker, seconds: float) -> float:
     """Returns the widest gap between links, and between the last one and the ball, m, from their places."""
     widest = 0.0
-    for _ in range(round(seconds / world.dt)):
-        report = world.step()
-        assert report is not None and report.unconverged == 0 and report.worst_gap < 1e-6
+    for _ in solved_steps(world, seconds):
         ends = [[particle.position for particle in link.particles[:2]] for link in made.chain]
         lengths = [abs(lower - upper) for upper, lower in ends]
         widest = max(widest, *(abs(length - wrecking_ball.LENGTH / wrecking_ball.LINKS) for length in lengths))

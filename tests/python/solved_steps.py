@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Steps of worlds in which contact holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import iota
+
+
+def solved_steps(world: iota.World, seconds: float) -> Iterator[iota.types.StepReport]:
+    """The reports of steps that are all solved, with gaps below 1e-6 m."""
+    for _ in range(round(seconds / world.dt)):
+        report = world.step()
+        assert report is not None and report.unconverged == 0 and report.worst_gap < 1e-6
+        yield report
+
+
+def run_solved(world: iota.World, seconds: float) -> None:
+    for _ in solved_steps(world, seconds):
+        pass
