@@ -102,6 +102,21 @@ def test_a_study_that_cannot_be_built_says_so_to_its_visitors_and_the_others_go_
     assert first_notice(gallery, "broken") == card, "a later visitor tries again"
 
 
+def test_what_a_process_says_before_it_ends_is_read_though_it_ends_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    listen = serving.Study._listen
+
+    def listen_late(study: serving.Study) -> None:
+        study._process.wait()
+        time.sleep(0.3)
+        listen(study)
+
+    monkeypatch.setattr(serving.Study, "_listen", listen_late)
+    study = serving.Study("broken")
+    wait_until(lambda: study.answer is not None or study.has_ended)
+    assert "No module named" in study.answer["error"]
+    study.end()
+
+
 def test_a_study_that_hangs_or_ends_leaves_the_others_alone(gallery: Gallery) -> None:
     with PageClient(gallery.url_of("molecule")) as other, PageClient(gallery.url_of("chain")) as page:
         page.wait_for(lambda: page.last["poses"]["step"] > 10)

@@ -40,7 +40,8 @@ class Study:
         self._answer: dict[str, Any] | None = None
         words = [sys.executable, "-m", "iota.gallery.study", name]
         self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        threading.Thread(target=self._listen, name="iota-study", daemon=True).start()
+        self._listener = threading.Thread(target=self._listen, name="iota-study", daemon=True)
+        self._listener.start()
 
     def _listen(self) -> None:
         assert self._process.stdout is not None
@@ -59,7 +60,8 @@ class Study:
 
     @property
     def has_ended(self) -> bool:
-        return self._process.poll() is not None
+        """And what it said last has been read."""
+        return self._process.poll() is not None and not self._listener.is_alive()
 
     def ask_to_end(self) -> None:
         assert self._process.stdin is not None
