@@ -126,6 +126,7 @@ void bind_step_report(nb::module_& module) {
                         &StepReport::fallbacks,
                         &StepReport::unconverged,
                         &StepReport::cut_short,
+                        &StepReport::approximate,
                         &StepReport::error,
                         &StepReport::worst_gap,
                         &StepReport::energy,
@@ -169,6 +170,8 @@ void bind_step_report(nb::module_& module) {
       .def_ro("unconverged", &StepReport::unconverged, "Articulates left with a least violation instead of a solution.")
       .def_ro("cut_short", &StepReport::cut_short,
               "Islands whose budget ended before their solution: see `System.budget_iterations` and `System.islands`.")
+      .def_ro("approximate", &StepReport::approximate,
+              "Islands whose contacts were solved one by one, as they are too many: see `System.budget_contacts`.")
       .def_ro(
           "error", &StepReport::error,
           "Of mode 'accurate': the largest estimate of the local error of an island, in mean lengths of its links per\n"

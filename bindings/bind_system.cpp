@@ -84,6 +84,7 @@ void bind_islands(nb::module_& module) {
       .def_prop_ro("fallbacks", field(&R::fallbacks), "See `StepReport.fallbacks`.")
       .def_prop_ro("converged", field(&R::converged), "False: left with a least violation instead of a solution.")
       .def_prop_ro("cut_short", field(&R::cut_short), "The budget ended before the solution.")
+      .def_prop_ro("approximate", field(&R::approximate), "See `StepReport.approximate`.")
       .def_prop_ro("gap", field(&R::gap), "Largest violation of a constraint at the end, m.")
       .def_prop_ro("error", field(&R::error), "See `StepReport.error`.")
       .def_prop_ro("lost", field(&R::lost), "Energy, by the integration scheme, J.")
@@ -91,9 +92,10 @@ void bind_islands(nb::module_& module) {
       .def("__repr__", [](const IslandView& self) {
         const IslandReport& r = self.report;
         char text[160];
-        std::snprintf(text, sizeof text, "<IslandReport: %d bodies, %d iterations, %d sub-steps, gap %.3g m%s%s>",
+        std::snprintf(text, sizeof text, "<IslandReport: %d bodies, %d iterations, %d sub-steps, gap %.3g m%s%s%s>",
                       static_cast<int>(r.bodies.size()), r.iterations, r.substeps, r.gap,
-                      r.converged ? "" : ", not converged", r.cut_short ? ", cut short" : "");
+                      r.converged ? "" : ", not converged", r.cut_short ? ", cut short" : "",
+                      r.approximate ? ", approximate" : "");
         return std::string(text);
       });
 }
@@ -121,16 +123,31 @@ void bind_settings(nb::class_<SystemObject>& type) {
           "budget_iterations", [](SystemObject& self) { return self.use().budget().iterations; },
           [](SystemObject& self, int value) {
             System& engine = self.use_between_steps("budget_iterations = ...");
-            engine.set_budget({value, engine.budget().seconds});
+            StepBudget budget = engine.budget();
+            budget.iterations = value;
+            engine.set_budget(budget);
           },
           "Most iterations of Newton's method in a step for bodies that are solved together; 0: unlimited. Results are\n"
           "repeatable. If it ends before the solution, the points move on and stay together as well as possible:\n"
           "`StepReport.cut_short` counts that, and `islands` tells where and how wide the gaps are.")
       .def_prop_rw(
+          "budget_contacts", [](SystemObject& self) { return self.use().budget().contacts; },
+          [](SystemObject& self, double value) {
+            System& engine = self.use_between_steps("budget_contacts = ...");
+            StepBudget budget = engine.budget();
+            budget.contacts = finite_not_negative(value, "budget_contacts", "multiplications");
+            engine.set_budget(budget);
+          },
+          "Multiplications that a step may take to solve the contacts of bodies that nothing else connects, all together\n"
+          "and exactly; 0: unlimited. A heap that would take more is solved approximately, contact by contact, in time\n"
+          "that is linear in its size: `StepReport.approximate` counts that. Results are repeatable.")
+      .def_prop_rw(
           "budget_seconds", [](SystemObject& self) { return self.use().budget().seconds; },
           [](SystemObject& self, double value) {
             System& engine = self.use_between_steps("budget_seconds = ...");
-            engine.set_budget({engine.budget().iterations, finite_not_negative(value, "budget_seconds", "s")});
+            StepBudget budget = engine.budget();
+            budget.seconds = finite_not_negative(value, "budget_seconds", "s");
+            engine.set_budget(budget);
           },
           "s of real time that a step may search for solutions, 0: unlimited; otherwise as `budget_iterations`. Results\n"
           "depend on the machine.")

@@ -86,6 +86,7 @@ struct [[nodiscard]] StepReport {
   int fallbacks = 0;     ///< (sub-)steps that the robust scheme took in place of the energy-keeping one
   int unconverged = 0;   ///< articulates left with a least violation instead of a solution
   int cut_short = 0;     ///< islands whose budget ended before their solution: see StepBudget, System::islands
+  int approximate = 0;   ///< islands whose contacts were solved one by one: see StepBudget::contacts
   double error = 0;      ///< largest estimate of an island, see IslandReport::error; only of mode accurate
   double worst_gap = 0;  ///< largest hinge separation or rigidity error, m
   Energy energy;
@@ -112,6 +113,7 @@ struct IslandReport {
   int fallbacks = 0;       ///< see StepReport
   bool converged = true;   ///< false: left with a least violation instead of a solution
   bool cut_short = false;  ///< the budget ended before the solution
+  bool approximate = false;  ///< contacts were solved one by one: see StepBudget::contacts
   double gap = 0;          ///< largest violation of a constraint at the end, m
   /// Estimated local error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt,
   /// without what the motion makes of earlier ones. Only of mode accurate; without sub-steps that fell back to the robust scheme.

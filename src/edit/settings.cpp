@@ -27,7 +27,9 @@ void apply(Editor& e, const SetBudget& c) {
   if (c.budget.iterations < 0)
     throw std::invalid_argument(text("budget.iterations must be zero or more, got ", c.budget.iterations));
   require_not_negative("budget.seconds", c.budget.seconds);
+  require_not_negative("budget.contacts", c.budget.contacts);
   e.model.budget_iterations = c.budget.iterations, e.model.budget_seconds = c.budget.seconds;
+  e.model.budget_contacts = c.budget.contacts;
 }
 
 void apply(Editor& e, const SetSolver& c) {

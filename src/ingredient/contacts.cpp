@@ -24,6 +24,9 @@ constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one, in sizes of the body, is
 /// left alone.
 constexpr double easing_time = 0.1, deepest = 0.1;
+/// The overlaps that sweeps leave (solver/heap.h), in sizes of the body: they are more than those of the equations, which take
+/// them over as they are if they are small.
+constexpr double least_of_sweeps = 1e-6, small_of_sweeps = 3e-3;
 
 enum Arm : std::size_t { center, place, turned, first_tangent, second_tangent };
 
@@ -258,8 +261,12 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const double kept = norm(across);
     c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
     c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
-    if (c.depth < 0)
-      c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
+    if (t.gap < c.depth - least_of_sweeps * motion.size && is_eased()) c.depth = t.gap, c.is_of_sweeps = 1;
+    if (c.depth < 0) {
+      const double kept = c.is_of_sweeps ? std::max(c.depth, -small_of_sweeps * motion.size) : 0;
+      const double eased = is_eased() ? kept + (c.depth - kept) * std::exp(-motion.h / easing_time) : c.depth;
+      c.depth = std::max(std::min(0.0, t.gap), eased);
+    }
     if (has_changed) touch(model, c);
   }
 }

@@ -5,6 +5,7 @@
 #include "model/structure.h"
 
 #include <iota/kinds.h>
+#include <iota/options.h>
 
 #include <array>
 #include <cstdint>
@@ -38,7 +39,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
   double tolerance = 1e-4;    ///< of mode accurate, see System::tolerance
   int budget_iterations = 0;  ///< see StepBudget
-  double budget_seconds = 0;
+  double budget_seconds = 0, budget_contacts = StepBudget{}.contacts;
   double damping = 0;
   /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};
@@ -92,7 +93,8 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
 template <class Archive>
 void Model::archive(Archive& ar) {
   Structure::archive(ar);
-  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget_iterations), ar.value(budget_seconds);
+  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget_iterations), ar.value(budget_seconds),
+      ar.value(budget_contacts);
   ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step);
   ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy),

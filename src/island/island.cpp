@@ -241,13 +241,13 @@ const model::Articulate& Island::articulate(const Model& model) const {
   return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
 }
 
-void Island::try_step(const Model& model, double h, Clock::time_point deadline) {
+void Island::try_step(const Model& model, double h, const Limits& limits) {
   if (tried_ != Tried::nothing) integrator_->take_back();
   last_ = {};
   if (idle_)
     tried_ = try_prescribed(model, h);
   else
-    tried_ = stays_asleep(model) ? Tried::still : try_motion(model, h, deadline);
+    tried_ = stays_asleep(model) ? Tried::still : try_motion(model, h, limits);
 }
 
 Island::Tried Island::try_prescribed(const Model& model, double h) {
@@ -261,7 +261,7 @@ Island::Tried Island::try_prescribed(const Model& model, double h) {
   return Tried::prescribed;
 }
 
-Island::Tried Island::try_motion(const Model& model, double h, Clock::time_point deadline) {
+Island::Tried Island::try_motion(const Model& model, double h, const Limits& limits) {
   load(model, h);
   use_solver(model.solver);
   double given = 0;  // by jumps of prescribed velocities, J
@@ -276,7 +276,8 @@ Island::Tried Island::try_motion(const Model& model, double h, Clock::time_point
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
   problem_.unsolved_steps = memory.unsolved_steps;
   solver::IntegratorSettings settings = settings_of(model);
-  settings.max_iterations = model.budget_iterations, settings.deadline = deadline;
+  settings.max_iterations = model.budget_iterations, settings.deadline = limits.deadline;
+  if (model.budget_contacts > 0) settings.contact_budget = limits.share * model.budget_contacts;
   last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
@@ -331,6 +332,7 @@ IslandReport Island::report(const Model& model, const solver::AdvanceReport& las
                       .fallbacks = last.fallbacks,
                       .converged = last.converged,
                       .cut_short = last.cut_short,
+                      .approximate = last.is_approximate,
                       .gap = problem_.worst_gap(problem_.position.data()),
                       .error = last.error,
                       .lost = last.lost,

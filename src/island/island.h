@@ -85,11 +85,16 @@ class Island {
   void load(const model::Model&, double h);
 
   using Clock = std::chrono::steady_clock;
+  struct Limits {
+    Clock::time_point deadline = Clock::time_point::max();  ///< when to stop looking for a solution
+    double share = 1;                                       ///< of StepBudget::contacts
+  };
   /// Tries a step of h seconds by the model's settings, in the island's own problem: the model does not change.
-  /// `deadline`: when to stop looking for a solution, see StepBudget. Another try begins where this one did, and from
+  /// Limits: see StepBudget. Another try begins where this one did, and from
   /// the same state of the model it gives the same bits (with large factors only if they are forgotten before both:
   /// those of an earlier step serve one try).
-  void try_step(const model::Model&, double h, Clock::time_point deadline = Clock::time_point::max());
+  void try_step(const model::Model&, double h, const Limits&);
+  void try_step(const model::Model& model, double h) { try_step(model, h, {}); }
   /// Stores the latest try, of h seconds, in the model. Without a try since the last commit it stores nothing.
   const solver::AdvanceReport& commit(model::Model&, double h);
 
@@ -162,7 +167,7 @@ class Island {
     overflown  ///< forces were too large for numbers: the points keep their places, at rest
   };
   Tried try_prescribed(const model::Model&, double h);
-  Tried try_motion(const model::Model&, double h, Clock::time_point deadline);
+  Tried try_motion(const model::Model&, double h, const Limits&);
   void commit_motion(model::Model&, double h);
   bool is_driven(const model::Model&) const;  ///< by prescribed motion
   double velocity_jump(double h) const;       ///< see ingredient::NoAnswers

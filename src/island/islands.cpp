@@ -578,8 +578,11 @@ void Islands::put_to_rest(Model& model, std::uint32_t articulate) {
 }
 
 void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
+  const auto share = [&](const Island& island) {
+    return static_cast<double>(island.size()) / static_cast<double>(std::max(total_size_, island.size()));
+  };
   const auto step = [&](Island& island) -> const solver::AdvanceReport& {
-    island.try_step(model, h, deadline);
+    island.try_step(model, h, {deadline, share(island)});
     return island.commit(model, h);
   };
   if (index < awake_.size()) return (void)step(*awake_[index]);

@@ -12,8 +12,9 @@ struct [[nodiscard]] AdvanceReport {
   int handed_back = 0;  ///< solves in which the chosen solver found no root
   int fallbacks = 0;    ///< mid-point sub-steps that the end-point scheme took
   bool converged = true;
+  bool is_approximate = false;  ///< contacts were solved by sweeps: see Heap
   bool cut_short = false;     ///< by the settings' most iterations
-  double gap = 0;             ///< worst at the end of a step that was cut short, m
+  double gap = 0;             ///< worst at the end of a step that was cut short or is approximate, m
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< work of dampers, friction, dashpots and impacts, J
   double lost = 0, made = 0;  ///< by the scheme, J: what a (sub-)step leaves unexplained

@@ -18,6 +18,10 @@ struct Strain {
   double released = 0;   ///< by the compliance of this (sub-)step
   double of_stored = 0;  ///< and by what they had stored
 };
+/// Mean length of the bodies' rods, m; joints and curves have their own lengths. Without rods, of the forces between
+/// points; else 1 m.
+double mean_reference_length(const Problem&);
+
 /// Residuals of the equations of a step; all scaled, dimensionless.
 struct Residual {
   double worst = 0;      ///< of all equations, without forces that are round-off

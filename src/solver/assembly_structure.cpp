@@ -131,8 +131,8 @@ double calc_extent(const ForceArm& arm, const Vec3* x) {
   return extent;
 }
 
-/// Mean length of the bodies' rods; joints and curves have their own lengths. Without rods, of the forces between
-/// points; else 1 m.
+}  // namespace
+
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
@@ -144,6 +144,8 @@ double mean_reference_length(const Problem& problem) {
     });
   return sum > 0 ? sum / static_cast<double>(count) : 1;
 }
+
+namespace {
 
 /// Rows of nails and of carried points use the same length.
 double set_reference_lengths(Problem& problem) {

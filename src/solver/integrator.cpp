@@ -34,13 +34,33 @@ bool is_free_body(const Problem& problem) {
   return rods == rows && rods == n * (n - 1) / 2;
 }
 
+int most_iterations(double budget, double cost) {
+  const double most = budget / std::max(cost, 1.0);
+  return most < 1e6 ? static_cast<int>(most) : std::numeric_limits<int>::max();
+}
+
 }  // namespace
 
 void Integrator::compile(Problem& problem) {
   may_be_in_pieces_ = false, pieces_.clear();
+  is_due_ = !problem.items_of<ContactConstraint>().empty();
+  if (!is_due_) return analyze(problem);
+  problem.fit_pools();
+  reference_length_ = mean_reference_length(problem);
+  make_room(problem);
+}
+
+void Integrator::analyze(Problem& problem) {
+  is_due_ = false;
   const bool is_alike = newton_.compile(problem);
   if (spin_) is_alike ? spin_->forget_masses() : spin_->forget();
   make_room(problem);
+}
+
+void Integrator::make_ready(Problem& problem) {
+  if (!is_due_) return;
+  analyze(problem);
+  newton_.place_forces_by_velocity(problem);
 }
 
 void Integrator::follow(Problem& problem) {
@@ -52,6 +72,8 @@ void Integrator::follow(Problem& problem) {
 
 void Integrator::make_room(const Problem& problem) {
   has_advanced_ = is_taken_back_ = false;
+  is_heap_known_ = false;
+  if (!is_due_) reference_length_ = newton_.reference_length();
   if (local_) local_->forget();
   lumped_mass_.clear();
   multipliers_saved_.resize(problem.multiplier_count());
@@ -61,10 +83,20 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   AdvanceReport report;
   if (settings.max_turn != settings_.max_turn) least_turn_cosine_ = std::cos(settings.max_turn);
   settings_ = settings;
-  newton_.add_times_to(times_of_thread());
   step_length_ = h;
+  double cost = 0;
+  if (is_beyond_budget(problem, cost)) {
+    problem.has_new_rows = false, problem.standing_gap = 0;
+    energy_ = {};
+    energy_.measure(problem, 0);
+    sweep(problem, {.h = h}, report);
+    return report;
+  }
+  make_ready(problem);
+  newton_.add_times_to(times_of_thread());
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
+  if (is_heap_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_budget, cost));
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
@@ -81,8 +113,9 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   if (taken < 1) advance_part(problem, {.from = taken, .h = (1 - taken) * h}, by_end_point ? 1 : 0, report);
   if (holds_offsets_) restore_bounds(problem);
   const bool is_unsolved = taken == 0 && !solves_part_;
-  problem.unsolved_steps = is_unsolved && (is_brief || !is_cut_short_) ? problem.unsolved_steps + 1 : 0;
-  if (is_cut_short_ && !is_brief) {
+  const bool is_new = is_unsolved && (is_brief || !is_cut_short_);
+  problem.unsolved_steps = is_new || report.is_approximate ? problem.unsolved_steps + 1 : 0;
+  if (is_cut_short_ && !is_brief && !report.is_approximate) {
     report.cut_short = true;
     report.gap = problem.worst_gap(problem.position.data());
   }
@@ -135,8 +168,10 @@ void Integrator::find_holds(Problem& problem, const Vec3* x) {
 }
 
 void Integrator::advance_part(Problem& problem, const Part& part, std::size_t first, AdvanceReport& report) {
+  if (report.is_approximate) return;
   for (std::size_t i = first; i < attempts.size(); ++i) {
     const Attempt& attempt = attempts[i];
+    if (is_heap_ && attempt.compliance > exact_rows) break;  // sweeps do better
     const bool turns = attempt.scheme == Scheme::mid_point && may_halve(part, report) &&
                        will_turn_too_far(problem, part.h);  // no need to try
     if (!turns && take(problem, part, attempt, report)) return;
@@ -147,8 +182,51 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
     }
     if (attempt.scheme == Scheme::mid_point) ++report.fallbacks;
   }
+  if (is_heap_) return sweep(problem, {.from = part.from, .h = (1 - part.from) * step_length_}, report);
   report.converged = false;
   coast(problem, part.h, report);
+}
+
+// Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
+// so that this one is not tried. What a factor costs depends on the structure alone, so that a restored problem takes the
+// same way.
+bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
+  constexpr double fewest = 4, of_closing = 60;  // iterations
+  const double budget = settings_.contact_budget;
+  if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) {
+    is_heap_ = false;
+    return false;
+  }
+  if (!heap_) heap_ = std::make_unique<Heap>();
+  if (!std::exchange(is_heap_known_, true)) {
+    is_heap_ = heap_->find_bodies(problem);
+    heap_cost_ = is_heap_ ? heap_->cost_of_factor() : 0;
+  }
+  cost = heap_cost_;
+  if (!is_heap_) return false;
+  std::uint64_t& swept = problem.unsolved_steps;
+  const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
+  const bool is_large = fewest * cost > budget;
+  const bool waits = swept % IntegratorSettings::retried_after != 0;
+  const bool is_beyond = is_large || waits || ((swept > 0 || of_closing * cost > budget) && is_open());
+  if (is_large) is_due_ = true;
+  if (is_beyond) ++swept;
+  return is_beyond;
+}
+
+// To the end of the step, in place of the equations of all contacts: these would close its overlaps at once.
+void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
+  has_corrected_ = is_instant_ = false;
+  const HeapReport swept = heap_->advance(problem, part.h, part.to);
+  energy_.measure_change(problem, part.to, swept.external_work);
+  report.external_work += swept.external_work;
+  // Of impacts and friction, which are not told apart from what the sub-steps lose.
+  report.dissipated += std::exchange(energy_.missing, std::min(0.0, energy_.missing)) - energy_.missing;
+  energy_.close(problem, reference_length(), part.h, report);
+  report.is_approximate = true;
+  report.gap = std::max(report.gap, swept.depth);
+  ++report.substeps;
+  solves_part_ = true;
 }
 
 // Heaps that the end-point rule cannot solve: of 20 bodies that fall, 3 to 37 of 300 steps.

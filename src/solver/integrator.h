@@ -3,6 +3,7 @@
 
 #include "solver/advance_report.h"
 #include "solver/energy_balance.h"
+#include "solver/heap.h"
 #include "solver/holds.h"
 #include "solver/judge.h"
 #include "solver/local_projection.h"
@@ -22,11 +23,16 @@ namespace iota::solver {
 /// step allocates nothing.
 class Integrator {
  public:
+  /// Problems with contacts are analyzed when they are solved: heaps may never be.
   void compile(Problem& problem);
+  /// Whether it can follow a change of structure; else the problem is built and compiled again.
+  bool can_follow() const { return !is_due_; }
   /// After a change of structure by the problem's own functions: see Problem::open.
   void follow(Problem& problem);
-  bool place_forces(Problem& problem) const { return newton_.place_forces(problem); }  ///< see Assembly
-  void place_forces_by_velocity(Problem& problem) const { newton_.place_forces_by_velocity(problem); }
+  bool place_forces(Problem& problem) const { return is_due_ || newton_.place_forces(problem); }  ///< see Assembly
+  void place_forces_by_velocity(Problem& problem) const {
+    if (!is_due_) newton_.place_forces_by_velocity(problem);
+  }
 
   /// Advances positions, velocities and multipliers of `problem` by h seconds.
   /// Constraints that are violated at the start are first closed by moving positions only; remaining gaps are held at
@@ -61,14 +67,15 @@ class Integrator {
   }
 
   /// The place of a node in the order of elimination of what is compiled.
-  std::uint32_t node_rank(std::uint32_t node) const { return newton_.node_rank(node); }
+  std::uint32_t node_rank(std::uint32_t node) const { return is_due_ ? node : newton_.node_rank(node); }
   void forget_factors() { newton_.forget_factors(); }                     ///< see Newton
-  double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
+  double reference_length() const { return reference_length_; }           ///< of what is compiled, m
 
   /// The solver of the equations of steps; null: the built-in Newton.
   void set_external(Solver* solver) { newton_.set_external(solver); }
 
   void project_velocities(Problem& problem, double h = 0, std::span<const Vec3> impulses = {}) {
+    make_ready(problem);
     newton_.project_velocities(problem, h, impulses);
   }
 
@@ -84,6 +91,10 @@ class Integrator {
     }
   };
   void make_room(const Problem&);
+  void make_ready(Problem&);
+  void analyze(Problem&);
+  bool is_beyond_budget(Problem&, double& cost);
+  void sweep(Problem&, const Part&, AdvanceReport&);
   void look_at(Problem&);
   void begin_like_the_latest();
   void note_beginning();
@@ -152,6 +163,12 @@ class Integrator {
   bool close_bit_by_bit(Problem&);
 
   Newton newton_;
+  bool is_due_ = false;  ///< not analyzed yet
+  double reference_length_ = 1;
+  std::unique_ptr<Heap> heap_;               // if there ever were contacts
+  bool is_heap_ = false;                     // bodies that only contacts connect
+  bool is_heap_known_ = false;               // since the latest change of structure
+  double heap_cost_ = 0;                     // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed
   std::vector<std::uint32_t> center_;        // of the latest
   std::unique_ptr<RungeKutta> runge_kutta_;  // if it was needed

@@ -134,6 +134,7 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
 }
 
 bool Integrator::project_locally(Problem& problem, bool positions, std::span<const std::uint32_t> nodes) {
+  make_ready(problem);
   constexpr double open = 0.1 * closed_gap;
   constexpr std::size_t most = 64;
   if (!LocalProjection::is_worthwhile(problem)) return false;
@@ -175,6 +176,7 @@ bool Integrator::project_in_one_solve(Problem& problem) {
 }
 
 bool Integrator::project_positions(Problem& problem) {
+  make_ready(problem);
   AdvanceReport ignored;
   problem.copy_multipliers_to(multipliers_saved_);
   problem.clear_offsets();

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 // The limits by which the solver decides, each relative to lengths, masses, energies or times of the problem itself.
 // `docs/measurements.md` gives the measurements behind them.
@@ -51,6 +52,11 @@ struct IntegratorSettings {
 
   /// A solve by the end-point rule with contacts has so many: the states of what is not solved by then cycle.
   static constexpr int contact_iterations = 10;
+
+  /// Multiplications of all factors of a step of bodies that only contacts connect. What would need more is solved
+  /// approximately: see Heap.
+  double contact_budget = std::numeric_limits<double>::infinity();
+  static constexpr std::uint64_t retried_after = 16;  ///< steps, if one has needed more
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
   /// When all solves of a step have to end, but the last resort's.

@@ -127,7 +127,7 @@ void Stepper::advance_islands(StepReport& report) {
     report.substeps_max = std::max(report.substeps_max, r.substeps);
     report.fallbacks += r.fallbacks;
     report.unconverged += !r.converged;
-    report.cut_short += r.cut_short;
+    report.cut_short += r.cut_short, report.approximate += r.is_approximate;
     report.error = std::max(report.error, r.error);
     model.dissipated += r.dissipated;
     model.lost += r.lost;

@@ -91,7 +91,7 @@ void add_step(StepReport& sum, const StepReport& next) {
   sum.dt += next.dt;
   sum.iterations_max = std::max(sum.iterations_max, next.iterations_max);
   sum.substeps_max = std::max(sum.substeps_max, next.substeps_max);
-  sum.cut_short += next.cut_short, sum.error = std::max(sum.error, next.error);
+  sum.cut_short += next.cut_short, sum.approximate += next.approximate, sum.error = std::max(sum.error, next.error);
   sum.fallbacks += next.fallbacks, sum.unconverged += next.unconverged;
   sum.step = next.step, sum.time = next.time, sum.energy = next.energy;
   sum.worst_gap = std::max(sum.worst_gap, next.worst_gap);
@@ -117,7 +117,7 @@ IntegrationMode System::mode() const { return core_->model.mode; }
 
 double System::tolerance() const { return core_->model.tolerance; }
 
-StepBudget System::budget() const { return {core_->model.budget_iterations, core_->model.budget_seconds}; }
+StepBudget System::budget() const { return {core_->model.budget_iterations, core_->model.budget_seconds, core_->model.budget_contacts}; }
 
 std::vector<IslandReport> System::islands() const { return core_->islands.reports(core_->model); }
 

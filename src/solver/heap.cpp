@@ -1,0 +1,438 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/heap.h"
+
+#include "solver/pieces.h"
+#include "solver/rigid_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+namespace iota::solver {
+
+namespace {
+
+/// Measured with towers, pyramids and heaps of 50 to 1000 bodies (docs/contact.md): with less a tower of ten sways or falls.
+constexpr int sub_steps = 8, sweeps = 2;
+constexpr double fastest_push = 1;  // m/s, with which an overlap ends
+
+Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
+void set_column(Mat3& m, int k, const Vec3& v) { m.m[0][k] = v.x, m.m[1][k] = v.y, m.m[2][k] = v.z; }
+
+}  // namespace
+
+/// How a contact answers to an overlap: by an impulse that pushes it apart with a frequency and damping that no sub-step overshoots,
+/// or not at all.
+struct Heap::Softness {
+  double rate = 0, mass = 1, impulse = 0;
+  Softness() = default;
+  Softness(double frequency, double h) {
+    constexpr double damping = 10;  // of the critical one
+    const double omega = 2 * std::numbers::pi * frequency, a1 = 2 * damping + h * omega, a2 = h * omega * a1;
+    rate = omega / a1, mass = a2 / (1 + a2), impulse = 1 / (1 + a2);
+  }
+};
+
+bool Heap::find_bodies(const Problem& problem) {
+  bool is_heap = problem.counted_angles.empty() && problem.has_used<ContactConstraint>();
+  std::vector<std::uint8_t> is_target(problem.size(), 0);
+  std::vector<std::uint32_t> lengths(problem.size(), 0);  // at each node
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if constexpr (std::is_same_v<C, AffineConstraint>) {
+      for (const AffineConstraint& c : pool.items) {
+        is_heap = is_heap && c.count == 1;
+        is_target[c.nodes[0]] = 1;
+      }
+    } else if constexpr (std::is_same_v<C, DistanceConstraint>) {
+      is_heap = is_heap && (pool.items.empty() || !pool.has_laws());
+      for (const DistanceConstraint& c : pool.items)
+        for (const std::uint32_t node : c.nodes) ++lengths[node];
+    } else if constexpr (!std::is_same_v<C, ContactConstraint>) {
+      is_heap = is_heap && pool.items.empty();
+    }
+  });
+  problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
+    is_heap = is_heap && (std::is_same_v<F, GripForce> || pool.items.empty());
+  });
+  if (!is_heap) return false;
+  const std::uint32_t count = find_pieces(problem, Connection::lengths, body_of_);
+  bodies_.assign(count, {});
+  for (std::uint32_t node = 0; node < problem.size(); ++node) {
+    Body& body = bodies_[body_of_[node]];
+    if (body.count == most_points) return false;
+    body.is_driven = is_target[node];
+    body.nodes[body.count++] = node;
+  }
+  for (const Body& body : bodies_)
+    for (std::uint32_t i = 0; i < body.count; ++i)
+      if (lengths[body.nodes[i]] != body.count - 1 || is_target[body.nodes[i]] != body.is_driven) return false;
+  pairs_.clear();
+  for (const ContactConstraint& c : problem.items_of<ContactConstraint>()) {
+    const std::uint32_t a = body_of_[c.nodes[0]], b = body_of_[c.nodes[c.count - 1]];
+    if (a != b && !bodies_[a].is_driven && !bodies_[b].is_driven) pairs_.push_back({std::min(a, b), std::max(a, b)});
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  return true;
+}
+
+// Eliminates bodies in the order of their degrees. A body with d others in its front costs a product of so many blocks.
+double Heap::cost_of_factor() {
+  constexpr double most = 1e9;
+  constexpr double of_block = 18 * 18 * 18;  // twelve places and six lengths
+  std::vector<std::vector<std::uint32_t>> neighbors(bodies_.size());
+  for (const auto& [a, b] : pairs_) neighbors[a].push_back(b), neighbors[b].push_back(a);
+  std::vector<std::vector<std::uint32_t>> by_degree(1);
+  const auto list = [&](std::uint32_t body) {
+    const std::size_t degree = neighbors[body].size();
+    if (by_degree.size() <= degree) by_degree.resize(degree + 1);
+    by_degree[degree].push_back(body);
+  };
+  for (std::uint32_t i = static_cast<std::uint32_t>(bodies_.size()); i-- > 0;)
+    if (!bodies_[i].is_driven) list(i);
+  std::vector<std::uint8_t> is_gone(bodies_.size(), 0);
+  std::vector<std::uint32_t> merged;
+  double cost = 0;
+  for (std::size_t degree = 0; degree < by_degree.size() && cost < most;) {
+    if (by_degree[degree].empty()) {
+      ++degree;
+      continue;
+    }
+    const std::uint32_t body = by_degree[degree].back();
+    by_degree[degree].pop_back();
+    if (is_gone[body] || neighbors[body].size() != degree) continue;  // it is listed elsewhere
+    is_gone[body] = 1;
+    const double front = static_cast<double>(degree) + 1;
+    cost += of_block * front * front;
+    const std::vector<std::uint32_t> around = std::move(neighbors[body]);
+    for (const std::uint32_t other : around) {
+      std::vector<std::uint32_t>& list_of_other = neighbors[other];
+      merged.clear();
+      std::sort(list_of_other.begin(), list_of_other.end());
+      std::set_union(list_of_other.begin(), list_of_other.end(), around.begin(), around.end(),
+                     std::back_inserter(merged));
+      std::erase_if(merged, [&](std::uint32_t n) { return n == body || n == other; });
+      list_of_other = merged;
+      list(other);
+    }
+    degree = degree > 0 ? degree - 1 : 0;
+    if (!around.empty()) degree = 0;
+  }
+  return std::min(cost, most);
+}
+
+void Heap::load_bodies(const Problem& problem, double h) {
+  std::vector<Vec3> momentum(bodies_.size());
+  std::vector<double> mass(bodies_.size(), 0);
+  for (Body& body : bodies_) body.center = {}, body.inertia = {}, body.spin = body.moved = {}, body.turn = {};
+  for (std::uint32_t node = 0; node < problem.size(); ++node) {
+    const std::uint32_t b = body_of_[node];
+    mass[b] += problem.mass[node];
+    bodies_[b].center += problem.mass[node] * problem.position[node];
+    momentum[b] += problem.mass[node] * problem.velocity[node];
+  }
+  for (const auto& c : problem.mass_couplings) {
+    const std::uint32_t b = body_of_[c.a];
+    mass[b] += 2 * c.mass;
+    bodies_[b].center += c.mass * (problem.position[c.a] + problem.position[c.b]);
+    momentum[b] += c.mass * (problem.velocity[c.a] + problem.velocity[c.b]);
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    body.by_mass = 0, body.by_inertia = {};
+    if (body.is_driven || !(mass[i] > 0)) continue;
+    body.by_mass = 1 / mass[i];
+    body.center *= body.by_mass, body.velocity = body.by_mass * momentum[i];
+  }
+  std::vector<Vec3> angular(bodies_.size());
+  const auto add = [&](double m, std::uint32_t p, std::uint32_t q) {
+    const std::uint32_t b = body_of_[p];
+    const Vec3 rp = problem.position[p] - bodies_[b].center, rq = problem.position[q] - bodies_[b].center;
+    angular[b] += m * cross(rp, problem.velocity[q] - bodies_[b].velocity);
+    bodies_[b].inertia += m * (Mat3::diagonal(dot(rp, rq)) + -1.0 * Mat3::outer(rq, rp));
+  };
+  for (std::uint32_t node = 0; node < problem.size(); ++node) add(problem.mass[node], node, node);
+  for (const auto& c : problem.mass_couplings) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    body.gain = body.turning = {};
+    if (body.by_mass == 0) continue;
+    const SymmetricEigen eigen = symmetric_eigen(body.inertia);
+    constexpr double thin = 1e-9;
+    const double largest = std::max({eigen.values[0], eigen.values[1], eigen.values[2]});
+    for (int k = 0; k < 3; ++k)
+      if (eigen.values[k] > thin * largest)
+        body.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
+    body.by_inertia_at_begin = body.by_inertia;
+    body.spin = body.by_inertia * angular[i];
+    body.gain = h * problem.gravity;
+    for (std::uint32_t k = 0; k < body.count; ++k) {
+      body.arms[k] = problem.position[body.nodes[k]] - body.center;
+      if (problem.force.empty()) continue;
+      const Vec3& force = problem.force[body.nodes[k]];
+      body.gain += (h * body.by_mass) * force, body.turning += h * cross(body.arms[k], force);
+    }
+  }
+  for (const BodyTorque& t : problem.torques) bodies_[body_of_[t.nodes[0]]].turning += h * t.torque;
+}
+
+namespace {
+
+/// The sums over the points of both bodies of a contact of weight times f(node): of the first one, and of the second one,
+/// whose weights are negative.
+template <class Of>
+std::pair<Vec3, Vec3> sums_of(const ContactConstraint& c, std::size_t arm, std::uint32_t of_first, Of of) {
+  std::pair<Vec3, Vec3> sums;
+  for (std::uint32_t i = 0; i < c.count; ++i)
+    (i < of_first ? sums.first : sums.second) += (i < of_first ? 1 : -1) * c.weights[arm][i] * of(c.nodes[i]);
+  return sums;
+}
+
+/// A unit vector, or another one.
+Vec3 unit_or(const Vec3& v, const Vec3& other) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : other;
+}
+
+}  // namespace
+
+void Heap::load_points(Problem& problem, double h) {
+  points_.clear();
+  auto& pool = problem.pool_of<ContactConstraint>();
+  points_.reserve(pool.items.size());
+  const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
+  const Vec3* const x = problem.position.data();
+  const auto is_free = [&](std::uint32_t body) { return body != none && !bodies_[body].is_driven; };
+  for (std::size_t i = 0; i < pool.items.size(); ++i) {
+    const ContactConstraint& c = pool.items[i];
+    Point point;
+    point.row = static_cast<std::uint32_t>(i);
+    double sum = 0;
+    for (std::uint32_t k = 0; k < c.count; ++k) sum += c.weights[0][k];
+    const bool has_world_point = c.first_side == 0 && sum < 0;
+    const std::uint32_t of_first = c.first_side > 0 ? c.first_side : has_world_point ? 0 : c.count;
+    if (of_first > 0) point.a = body_of_[c.nodes[0]];
+    if (of_first < c.count) point.b = body_of_[c.nodes[of_first]];
+    if (!is_free(point.a) && !is_free(point.b)) continue;
+    const auto place = [&](std::uint32_t node) -> const Vec3& { return x[node]; };
+    auto [center, origin] = sums_of(c, 0, of_first, place);
+    auto [touching, other] = sums_of(c, 1, of_first, place);
+    if (has_world_point)
+      center = c.constant[0], touching = c.constant[1];
+    else if (point.b == none)
+      origin = -1.0 * c.constant[0], other = -1.0 * c.constant[1];
+    const Vec3 turned = c.arm(2, x, 1), way = center - origin;
+    point.normal = c.is_round ? unit_or(c.across(way, turned), up) : unit_or(turned, up);
+    const Vec3 tangent = c.arm(3, x, 1);
+    point.first = unit_or(tangent - dot(tangent, point.normal) * point.normal, any_perpendicular(point.normal));
+    point.second = cross(point.normal, point.first);
+    point.gap_at_begin = c.is_round ? norm(c.across(way, turned)) - c.radius : dot(point.normal, way) - c.radius;
+    point.friction = c.friction;
+    // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
+    const Vec3 at = center + dot(touching - center, point.normal) * point.normal;
+    point.height = dot(at, up);
+    const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
+    const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
+    double inverse[3]{};
+    const Vec3 directions[3] = {point.normal, point.first, point.second};
+    const auto load_side = [&](std::uint32_t b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
+                               Vec3& gap_arm) {
+      if (!is_free(b)) {
+        if (b != none) point.drift += sign * moving;
+        arm = at, gap_arm = gap_place, point.is_at_rest = true;
+        return;
+      }
+      const Body& body = bodies_[b];
+      arm = at - body.center, gap_arm = gap_place - body.center;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 moment = cross(arm, directions[k]);
+        inverse[k] += body.by_mass + dot(moment, body.by_inertia * moment);
+      }
+    };
+    load_side(point.a, center, drift_a, 1, point.arm_a, point.gap_a);
+    load_side(point.b, origin, drift_b, -1, point.arm_b, point.gap_b);
+    point.gap = point.gap_at_begin, point.arm_a_at_begin = point.arm_a, point.arm_b_at_begin = point.arm_b;
+    point.mass = 1 / inverse[0], point.mass_first = 1 / inverse[1], point.mass_second = 1 / inverse[2];
+    const double* const l = pool.multiplier(i);
+    const Vec3 old = -(l[1] * c.arm(3, x, 1) + l[2] * c.arm(4, x, 1));
+    point.impulse = -h * l[0];
+    point.impulse_first = h * dot(old, point.first), point.impulse_second = h * dot(old, point.second);
+    points_.push_back(point);
+  }
+  // From above to below: a pyramid of 55 cubes creeps by 3e-6 m a second, in the other order by 4e-4 m.
+  std::stable_sort(points_.begin(), points_.end(), [](const Point& p, const Point& q) { return p.height > q.height; });
+}
+
+void Heap::load_grips(const Problem& problem) {
+  grips_.clear();
+  const std::span forces = problem.items_of<GripForce>();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const GripForce& force = forces[i];
+    Grip grip{.body = body_of_[force.arm.nodes[0]], .item = static_cast<std::uint32_t>(i), .by_matrix = {}};
+    const Body& body = bodies_[grip.body];
+    if (body.by_mass == 0) continue;
+    grip.error = force.arm.value(problem.position.data());
+    grip.arm = grip.error + force.arm.origin - body.center;
+    grips_.push_back(grip);
+  }
+}
+
+// Held forces, and grips by the end-point rule.
+void Heap::push(double h, const Problem& problem, HeapReport& report) {
+  for (Body& body : bodies_) {
+    if (body.by_mass == 0) continue;
+    const Vec3 gained = body.gain - h * problem.gravity, turned = body.by_inertia * body.turning;
+    body.velocity += 0.5 * body.gain, body.spin += 0.5 * turned;
+    report.external_work += dot(gained, body.velocity) / body.by_mass + dot(body.turning, body.spin);
+    body.velocity += 0.5 * body.gain, body.spin += 0.5 * turned;
+  }
+  const std::span forces = problem.items_of<GripForce>();
+  for (const Grip& grip : grips_) {
+    Body& body = bodies_[grip.body];
+    const GripForce& force = forces[grip.item];
+    const Vec3 arm = rotate(body.turn, grip.arm), error = grip.error + body.moved + arm - grip.arm;
+    const Vec3 velocity = body.velocity + cross(body.spin, arm);
+    const double resistance = h * (force.damping + h * force.stiffness);
+    Mat3 matrix;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 unit = unit_vector(k);
+      set_column(matrix, k,
+                 unit + resistance * (body.by_mass * unit + cross(body.by_inertia * cross(arm, unit), arm)));
+    }
+    const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
+    body.velocity += body.by_mass * impulse, body.spin += body.by_inertia * cross(arm, impulse);
+    report.external_work += 0.5 * dot(impulse, velocity + body.velocity + cross(body.spin, arm));
+  }
+}
+
+void Heap::apply(const Point& point, const Vec3& impulse) {
+  if (point.a != none) {
+    Body& body = bodies_[point.a];
+    body.velocity += body.by_mass * impulse, body.spin += body.by_inertia * cross(point.arm_a, impulse);
+  }
+  if (point.b != none) {
+    Body& body = bodies_[point.b];
+    body.velocity -= body.by_mass * impulse, body.spin -= body.by_inertia * cross(point.arm_b, impulse);
+  }
+}
+
+Vec3 Heap::relative_velocity(const Point& point) const {
+  Vec3 v = point.drift;
+  if (point.a != none && bodies_[point.a].by_mass > 0)
+    v += bodies_[point.a].velocity + cross(bodies_[point.a].spin, point.arm_a);
+  if (point.b != none && bodies_[point.b].by_mass > 0)
+    v -= bodies_[point.b].velocity + cross(bodies_[point.b].spin, point.arm_b);
+  return v;
+}
+
+void Heap::sweep(double h, const Softness& soft) {
+  for (int k = 0; k < sweeps; ++k)
+    for (Point& point : points_) solve_point(point, h, soft);
+}
+
+void Heap::solve_point(Point& point, double h, const Softness& soft) {
+  const double approach = dot(point.normal, relative_velocity(point)), before = point.impulse;
+  double push = point.gap / h, of_mass = 1, of_impulse = 0;
+  if (point.gap <= 0)
+    push = std::max(soft.rate * point.gap, -fastest_push), of_mass = soft.mass, of_impulse = soft.impulse;
+  point.impulse = std::max(0.0, before - point.mass * of_mass * (approach + push) - of_impulse * before);
+  apply(point, (point.impulse - before) * point.normal);
+  if (point.friction == 0) return;
+  const Vec3 slip = relative_velocity(point);
+  const double first = point.impulse_first, second = point.impulse_second;
+  point.impulse_first -= point.mass_first * dot(point.first, slip);
+  point.impulse_second -= point.mass_second * dot(point.second, slip);
+  const double most = point.friction * point.impulse,
+               square = point.impulse_first * point.impulse_first + point.impulse_second * point.impulse_second;
+  if (square > most * most) {
+    const double part = most / std::sqrt(square);
+    point.impulse_first *= part, point.impulse_second *= part;
+  }
+  apply(point, (point.impulse_first - first) * point.first + (point.impulse_second - second) * point.second);
+}
+
+// Gaps, and the arms of forces: both sides have theirs at one place, so that angular momentum is kept.
+void Heap::refresh_points() {
+  for (Point& point : points_) {
+    Vec3 closing = point.drifted;
+    const auto add_side = [&](std::uint32_t b, double sign, const Vec3& arm) {
+      if (b == none || bodies_[b].by_mass == 0) return;
+      closing += sign * (bodies_[b].moved + bodies_[b].turned * arm - arm);
+    };
+    add_side(point.a, 1, point.gap_a), add_side(point.b, -1, point.gap_b);
+    point.gap = point.gap_at_begin + dot(point.normal, closing);
+    if (point.is_at_rest) continue;
+    const Vec3 apart = 0.5 * (bodies_[point.a].moved - bodies_[point.b].moved);
+    point.arm_a = point.arm_a_at_begin - apart, point.arm_b = point.arm_b_at_begin + apart;
+  }
+}
+
+void Heap::move(double h) {
+  for (Body& body : bodies_) {
+    if (body.by_mass == 0) continue;
+    body.moved += h * body.velocity;
+    const Vec3 angular = rotate(body.turn, body.inertia * rotate(conjugate(body.turn), body.spin));
+    const auto spin_of = [&](const Quaternion& turn) {
+      return rotate(turn, body.by_inertia_at_begin * rotate(conjugate(turn), angular));
+    };
+    const Quaternion half = multiply(turn_by((0.5 * h) * body.spin), body.turn);
+    body.turn = normalized(multiply(turn_by(h * spin_of(half)), body.turn));
+    body.spin = spin_of(body.turn);
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 unit = unit_vector(k);
+      set_column(body.turned, k, rotate(body.turn, unit));
+      set_column(body.by_inertia, k, rotate(body.turn, body.by_inertia_at_begin * rotate(conjugate(body.turn), unit)));
+    }
+  }
+}
+
+void Heap::store(Problem& problem, double h, HeapReport& report) const {
+  for (const Body& body : bodies_) {
+    if (body.by_mass == 0) continue;
+    for (std::uint32_t k = 0; k < body.count; ++k) {
+      const Vec3 arm = rotate(body.turn, body.arms[k]);
+      problem.position[body.nodes[k]] = body.center + body.moved + arm;
+      problem.velocity[body.nodes[k]] = body.velocity + cross(body.spin, arm);
+    }
+  }
+  auto& pool = problem.pool_of<ContactConstraint>();
+  std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0);
+  for (const Point& point : points_) {
+    const ContactConstraint& c = pool.items[point.row];
+    double* const l = pool.multiplier(point.row);
+    const Vec3 drag = (1 / h) * (point.sum_first * point.first + point.sum_second * point.second);
+    l[0] = -point.sum / h;
+    l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
+    report.depth = std::max(report.depth, -point.gap);
+  }
+}
+
+HeapReport Heap::advance(Problem& problem, double h, double fraction) {
+  HeapReport report;
+  const double part = h / sub_steps;
+  const Softness pushing(0.25 / part, part), plain;
+  load_bodies(problem, part);
+  load_points(problem, part);
+  load_grips(problem);
+  for (int k = 0; k < sub_steps; ++k) {
+    push(part, problem, report);
+    for (const Point& point : points_)
+      apply(point, point.impulse * point.normal + point.impulse_first * point.first +
+                       point.impulse_second * point.second);
+    sweep(part, pushing);
+    move(part);
+    for (Point& point : points_) point.drifted += part * point.drift;
+    refresh_points();
+    sweep(part, plain);
+    for (Point& point : points_)
+      point.sum += point.impulse, point.sum_first += point.impulse_first, point.sum_second += point.impulse_second;
+  }
+  for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
+    problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
+  store(problem, h, report);
+  return report;
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/mat3.h"
+#include "solver/problem.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace iota::solver {
+
+/// What a step by sweeps leaves.
+struct HeapReport {
+  double external_work = 0;  ///< of held forces, torques and grips, J
+  double depth = 0;          ///< largest overlap at the end, m
+};
+
+/// A problem of rigid bodies that only contacts connect, beyond the size at which the equations of all contacts can be
+/// solved at once. Its step is approximate: in short sub-steps each contact is solved alone, with impulses that are kept
+/// from one sub-step to the next ("small steps": Macklin et al., Small Steps in Physics Simulation, 2019,
+/// doi:10.1145/3309486.3340247; soft contacts and a pass that takes their push out of the velocities: E. Catto, Solver2D,
+/// 2024). A body has six unknowns and turns as a rigid one, so that momentum and angular momentum are exact. Time is
+/// linear in the number of contacts.
+class Heap {
+ public:
+  /// After a change of structure: whether only contacts connect rigid bodies, which are free, or driven as a whole.
+  bool find_bodies(const Problem&);
+  /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
+  double cost_of_factor();
+  /// A (sub-)step of h seconds, at whose end targets have gone this fraction of their way.
+  HeapReport advance(Problem&, double h, double fraction);
+
+ private:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr std::size_t most_points = 4;
+
+  struct Body {
+    std::array<std::uint32_t, most_points> nodes{};
+    std::uint32_t count = 0;
+    bool is_driven = false;  ///< its points follow targets
+    // In a step.
+    double by_mass = 0;           ///< 1/kg; 0: driven
+    Vec3 velocity, spin;          ///< m/s, rad/s
+    Mat3 inertia, by_inertia;     ///< about the center, at the begin; the latter now; along the line of a rod zero
+    Mat3 by_inertia_at_begin;
+    Vec3 center, moved;           ///< at the begin; since then, m
+    Quaternion turn;              ///< since the begin
+    Mat3 turned;                  ///< the same as a matrix
+    Vec3 gain, turning;           ///< of held forces in a sub-step: m/s, N m s
+    std::array<Vec3, most_points> arms;  ///< of the points at the begin, m
+  };
+  /// Body `none`: the world.
+  struct Point {
+    std::uint32_t a = none, b = none, row = 0;
+    double friction = 0;
+    Vec3 normal, first, second;
+    Vec3 arm_a, arm_b;    ///< from the centers to where the forces act, now
+    Vec3 arm_a_at_begin, arm_b_at_begin;
+    Vec3 gap_a, gap_b;    ///< from the centers to the places that have the gap, at the begin
+    Vec3 drift, drifted;  ///< velocity of driven sides, m/s; way since the begin, m
+    double gap = 0, gap_at_begin = 0;  ///< m
+    double mass = 0, mass_first = 0, mass_second = 0;  ///< kg
+    double impulse = 0, impulse_first = 0, impulse_second = 0;  ///< in a sub-step, N s
+    double sum = 0, sum_first = 0, sum_second = 0;              ///< in the step
+    double height = 0;                                          ///< against gravity
+    bool is_at_rest = false;                                    ///< one side does not move
+  };
+  struct Grip {
+    std::uint32_t body = none, item = 0;
+    Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
+    Mat3 by_matrix;
+  };
+
+  void load_bodies(const Problem&, double h);
+  void load_points(Problem&, double h);
+  void load_grips(const Problem&);
+  void push(double h, const Problem&, HeapReport&);
+  void move(double h);
+  struct Softness;
+  void sweep(double h, const Softness&);
+  void solve_point(Point&, double h, const Softness&);
+  void refresh_points();
+  void apply(const Point&, const Vec3& impulse);
+  Vec3 relative_velocity(const Point&) const;
+  void store(Problem&, double h, HeapReport&) const;
+
+  std::vector<std::uint32_t> body_of_;  // of each node
+  std::vector<Body> bodies_;
+  std::vector<Point> points_;
+  std::vector<Grip> grips_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch
+};
+
+}  // namespace iota::solver

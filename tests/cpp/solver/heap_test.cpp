@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Heaps whose contacts are solved one by one: judged from places, velocities and momenta, beside the equations of all contacts.
+#include "solver/heap.h"
+
+#include "gravity.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace iota {
+namespace {
+
+enum class Way { exact, sweeps };
+
+System make_heap_world(Way way, const Vec3& gravity = {0, -9.81, 0}) {
+  System system({.gravity = gravity});
+  StepBudget budget = system.budget();
+  budget.contacts = way == Way::exact ? 0 : 1;
+  system.set_budget(budget);
+  system.set_usual_material(Material{0.5});
+  if (gravity != Vec3{}) {
+    const BodyId ground = system.bodies().create_obstacle(HalfSpace{{0, 1, 0}}, {}, {});
+    system.bodies().set_material(ground, Material{0.5});
+  }
+  return system;
+}
+BodyId add_cube(System& system, const Vec3& position, double edge = 0.2) {
+  return system.bodies().create(Box{{edge, edge, edge}}, SolidOptions{.position = position});
+}
+std::vector<BodyId> add_pyramid(System& system, int rows, double edge = 0.2) {
+  std::vector<BodyId> all;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < rows - y; ++x)
+      all.push_back(add_cube(system, {1.05 * edge * (x - 0.5 * (rows - y - 1)), edge * (y + 0.5), 0}, edge));
+  return all;
+}
+std::vector<Vec3> centers_of(const System& system, const std::vector<BodyId>& bodies) {
+  std::vector<Vec3> all;
+  for (const BodyId body : bodies) all.push_back(system.bodies().center_of_mass(body));
+  return all;
+}
+double largest_way(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  double most = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, norm(to[i] - from[i]));
+  return most;
+}
+
+TEST(Heap, by_sweeps_stands_as_a_pyramid_at_any_size) {
+  for (const double edge : {0.002, 0.2, 20.0}) {
+    System system = make_heap_world(Way::sweeps, {0, -9.81 * edge / 0.2, 0});
+    const std::vector<BodyId> pyramid = add_pyramid(system, 6, edge);
+    const std::vector<Vec3> before = centers_of(system, pyramid);
+    for (int i = 0; i < 120; ++i) EXPECT_EQ(system.step(1.0 / 60).approximate, 1);
+    EXPECT_LT(largest_way(before, centers_of(system, pyramid)), 0.01 * edge) << edge;
+  }
+}
+
+TEST(Heap, by_sweeps_keeps_momentum_and_angular_momentum_of_what_collides_in_space) {
+  System system = make_heap_world(Way::sweeps, {});
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  std::vector<BodyId> all;
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 place{0.5 * (i % 3) + 0.05 * u(random), 0.5 * (i / 3 % 2), 0.5 * (i / 6)};
+    const BodyId body = i % 3 == 0 ? add_cube(system, place)
+                        : i % 3 == 1 ? system.bodies().create(Sphere{0.1}, SolidOptions{.position = place})
+                                     : system.bodies().create(Capsule{0.08, 0.2}, SolidOptions{.position = place});
+    system.bodies().set_velocity(body, -2 * (place - Vec3{0.5, 0.25, 0.25}) + 0.3 * Vec3{u(random), u(random), u(random)});
+    system.bodies().set_angular_velocity(body, 5 * Vec3{u(random), u(random), u(random)});
+    all.push_back(body);
+  }
+  const auto momenta = [&] {
+    Vec3 p, l;
+    for (const BodyId body : all) {
+      const double m = system.bodies().mass(body);
+      const Vec3 v = system.bodies().velocity(body), c = system.bodies().center_of_mass(body);
+      p += m * v, l += system.bodies().angular_momentum(body) + m * cross(c, v);
+    }
+    return std::pair(p, l);
+  };
+  const auto [p, l] = momenta();
+  const double energy = system.energy().kinetic;
+  int approximate = 0;
+  for (int i = 0; i < 120; ++i) approximate += system.step(1.0 / 120).approximate;
+  EXPECT_GT(approximate, 0);
+  const auto [q, k] = momenta();
+  EXPECT_LT(norm(q - p), 1e-9 * norm(l));
+  EXPECT_LT(norm(k - l), 1e-9 * norm(l));
+  EXPECT_LT(system.energy().kinetic, energy);
+}
+
+TEST(Heap, by_sweeps_slides_and_rolls_as_the_equations_of_all_contacts) {
+  const auto run = [](Way way) {
+    System system = make_heap_world(way);
+    // Pairs, so that the sweeps are not of one body: a plank on which a ball is, and a box behind it.
+    const BodyId plank = system.bodies().create(Box{{2, 0.1, 0.5}}, SolidOptions{.position = {0, 0.05, 0}});
+    const BodyId ball = system.bodies().create(Sphere{0.1}, SolidOptions{.position = {-0.5, 0.2, 0}});
+    const BodyId box = add_cube(system, {0.5, 0.2, 0});
+    system.bodies().set_velocity(ball, {1, 0, 0});
+    system.bodies().set_velocity(box, {1.5, 0, 0});
+    for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+    return centers_of(system, {plank, ball, box});
+  };
+  const std::vector<Vec3> exact = run(Way::exact), swept = run(Way::sweeps);
+  EXPECT_LT(largest_way(exact, swept), 5e-3);
+  EXPECT_GT(exact[1].x, -0.2);
+}
+
+TEST(Heap, is_chosen_where_the_factor_would_take_more_than_the_budget) {
+  System system = make_heap_world(Way::exact);
+  add_pyramid(system, 5);
+  EXPECT_EQ(system.step(1.0 / 60).approximate, 0);
+  StepBudget budget = system.budget();
+  budget.contacts = 1e9;
+  system.set_budget(budget);
+  EXPECT_EQ(system.step(1.0 / 60).approximate, 0);
+  budget.contacts = 1e4;
+  system.set_budget(budget);
+  EXPECT_EQ(system.step(1.0 / 60).approximate, 1);
+}
+
+TEST(Heap, by_sweeps_follows_a_hand_and_a_moving_floor) {
+  System system = make_heap_world(Way::sweeps);
+  const BodyId floor = add_cube(system, {0, 0.5, 0}, 0.6);
+  system.bodies().set_kind(floor, BodyKind::scripted);
+  const BodyId low = add_cube(system, {0, 0.9, 0}), high = add_cube(system, {0, 1.1, 0});
+  for (int i = 0; i < 120; ++i) {
+    system.bodies().set_position(floor, {0.2 * (i + 1) / 120.0, 0.5, 0});
+    (void)system.step(1.0 / 120);
+  }
+  EXPECT_NEAR(system.bodies().center_of_mass(low).x, 0.2, 2e-3);
+  EXPECT_NEAR(system.bodies().center_of_mass(high).y, 1.1, 2e-3);
+  const GripId grip = system.grips().create(high, {}, {0.2, 1.1, 0});
+  for (int i = 0; i < 240; ++i) {
+    system.grips().move(grip, {0.2, 1.5, 0});
+    (void)system.step(1.0 / 120);
+  }
+  EXPECT_NEAR(system.bodies().center_of_mass(high).y, 1.5, 0.05);
+  EXPECT_NEAR(system.bodies().center_of_mass(low).y, 0.9, 2e-3);
+}
+
+TEST(Heap, that_falls_is_solved_in_each_step_and_restored_with_the_same_bits) {
+  System system = make_heap_world(Way::sweeps);
+  StepBudget budget = system.budget();
+  budget.contacts = 3e5;
+  system.set_budget(budget);
+  for (int i = 0; i < 24; ++i) add_cube(system, {0.21 * (i % 2), 0.12 + 0.22 * (i / 4), 0.21 * (i / 2 % 2)}, 0.15 + 0.002 * i);
+  int approximate = 0;
+  for (int i = 0; i < 30; ++i) {
+    const StepReport report = system.step(1.0 / 60);
+    EXPECT_EQ(report.unconverged, 0);
+    approximate += report.approximate;
+  }
+  EXPECT_GT(approximate, 0);
+  System copy;
+  copy.restore(system.snapshot());
+  for (int i = 0; i < 20; ++i) (void)system.step(1.0 / 60), (void)copy.step(1.0 / 60);
+  EXPECT_EQ(system.snapshot().bytes, copy.snapshot().bytes);
+}
+
+}  // namespace
+}  // namespace iota
