@@ -283,6 +283,8 @@ void end_if(Model& model, std::uint32_t body, Test test) {
 
 }  // namespace
 
+void Contacts::take_over(Model& restored, Model& before) { restored.restores = before.restores + 1; }
+
 void Contacts::end_old(Model& model, std::uint32_t body) {
   end_if(model, body, [&](const Contact& c) { return c.found_in != model.step + 1; });
 }
@@ -389,6 +391,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
     row.weights = c.weights;
+    row.impulse = {};
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
     row.is_round = c.form == TouchForm::round && c.radius + c.depth > 0;
@@ -421,11 +424,18 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
       c.normal = unit_or(arm(Arm::turned), c.normal);
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = solver::strain_energy(row, l);
+    c.impulse = -1.0 * (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
   });
 }
 
 Vec3 Contacts::place(const Model& model, const Contact& c) {
   return place_of(model, c, Arm::center, false) - c.ball * c.normal;
+}
+
+double Contacts::gap(const Model& model, const Contact& c) {
+  const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
+  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
+  return dot(c.normal, d) - c.radius;
 }
 
 Impact Contacts::hardest_impact(const Model& model) {
@@ -451,18 +461,11 @@ void for_each_contact(const Scope& scope, Visit visit) {
   });
 }
 
-/// The gap at the end of the last step, m.
-double gap_of(const Model& model, const Contact& c) {
-  const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
-  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
-  return dot(c.normal, d) - c.radius;
-}
-
 }  // namespace
 
 double Contacts::worst_gap(const Scope& scope) {
   solver::Largest worst;
-  for_each_contact(scope, [&](const Contact& c) { worst.add(std::max(0.0, c.depth - gap_of(scope.model, c))); });
+  for_each_contact(scope, [&](const Contact& c) { worst.add(std::max(0.0, c.depth - gap(scope.model, c))); });
   return worst.value;
 }
 
@@ -508,7 +511,7 @@ void Contacts::validate(const Model& model, model::Audit& audit) {
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
     audit.require(
-        is_finite(c.force()) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
+        is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
         "contact ", slot, " has no valid plane, force or friction");
   });
 }

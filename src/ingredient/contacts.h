@@ -31,11 +31,14 @@ struct Contact : model::Ends {
   double push = 0;             ///< force along the normal on p in the last step, N
   Vec3 drag;                   ///< force of friction on it, N
   double energy = 0;           ///< of its elastic strain, J
+  Vec3 impulse;                ///< on p in the last step, with that of an impact, N s
   double approach = 0;         ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
   std::uint64_t found_in = 0;  ///< step
 
   Vec3 force() const { return push * normal + drag; }
   bool carries() const { return push != 0 || drag != Vec3{}; }
+  /// Also in a part of the step only.
+  bool has_touched() const { return carries() || impulse != Vec3{}; }
 };
 
 /// Contacts of two bodies: bounded rows with Coulomb friction, see solver/constraints/contact.h. The step finds them before it
@@ -45,12 +48,14 @@ class Contacts : public NoAnswers {
  public:
   struct Tables {
     model::EndTable<Contact, Id<"contact">> contacts;  ///< the ends are bodies
+    std::uint64_t restores = 0;                        ///< of this model; not saved
 
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       contacts.archive(ar, structure.bodies.slot_count());
     }
   };
+  static void take_over(Model& restored, Model& before);
   static void validate(const Model&, model::Audit&);
   static void check_links(const Model&, model::Audit&);
   static double worst_gap(const Scope&);
@@ -79,6 +84,8 @@ class Contacts : public NoAnswers {
   static void end(Model&, std::uint32_t body);
   /// The place where the bodies touch, m.
   static Vec3 place(const Model&, const Contact&);
+  /// At the end of the last step, m.
+  static double gap(const Model&, const Contact&);
   /// The hardest of those that began to carry in the last step.
   static Impact hardest_impact(const Model&);
 

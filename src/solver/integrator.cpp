@@ -347,10 +347,18 @@ void Integrator::commit(Problem& problem, const Stage& stage, const StepEnergy& 
     problem.velocity[i] += ((stage.is_mid_point() ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = newton_.solution()[i];
   }
+  add_impulses(problem, stage.h);
   track(problem, stage.fraction);
   has_corrected_ = is_instant_ = false;
   ++report.substeps;
   solves_part_ = true;
+}
+
+void Integrator::add_impulses(Problem& problem, double h) {
+  if (!problem.has_used<ContactConstraint>()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t i = 0; i < pool.items.size(); ++i)
+    for (std::size_t r = 0; r < ContactConstraint::rows; ++r) pool.items[i].impulse[r] += h * pool.multiplier(i)[r];
 }
 
 void Integrator::track(Problem& problem, double fraction) {

@@ -120,6 +120,7 @@ class Integrator {
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
   static void track(Problem&, double fraction);
+  static void add_impulses(Problem&, double h);
 
   std::span<const double> lumped_masses(const Problem&);
   void make_guess(const Problem&, const Stage&);

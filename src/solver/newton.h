@@ -129,6 +129,7 @@ class Newton {
   void add_mean_rates(const C&, double* row) const;
   void add_step_to_velocities(Problem&);
   void give_back_momentum(Problem&, std::span<const Vec3> impulses) const;
+  void add_impulses(Problem&) const;
 
   Assembly assembly_;
   ActiveSet active_set_;

@@ -60,10 +60,20 @@ std::optional<double> Newton::project_velocities_after(Problem& problem, const S
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
   const std::optional<double> kinetic = project_onto_sides(problem, wanted, known.kinetic);
+  if (kinetic) add_impulses(problem);
   if (!kinetic || !known.is_isolated) return kinetic;
   give_back_momentum(problem, {});
   if (has_laws_ || problem.has_used<CouplingConstraint>()) give_back_angular_momentum(problem, u_saved_);
   return problem.kinetic_energy();
+}
+
+// Contacts tell their impulses: an impact of the mid-point rule is complete only with the velocities at its end.
+void Newton::add_impulses(Problem& problem) const {
+  if (!problem.has_used<ContactConstraint>() || impulses_.empty()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k)
+    for (std::size_t r = 0; r < ContactConstraint::rows; ++r)
+      pool.items[k].impulse[r] += impulses_[pool.slots[k].unknown + r];
 }
 
 void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change) {

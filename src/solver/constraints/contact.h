@@ -31,7 +31,8 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
-  bool is_round = false;  ///< the radius is that of both together, above zero
+  std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
+  bool is_round = false;            ///< the radius is that of both together, above zero
 
   /// Arms 2 to 4, which do not turn with a body.
   void set_directions(const std::array<Vec3, 3>& of) {
