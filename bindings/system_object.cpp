@@ -181,6 +181,7 @@ StepReport SystemObject::step(double dt, int count) {
     for (int i = 1; i < count && !has_failed(); ++i) add_step(report, system.step(dt));
   }
   stops = report.stops;
+  contacts = report.contacts;
   step_edits = report.edits;
   broken = report.broken;
   // Functions that the engine has dropped: ours is the only remaining reference.

@@ -97,6 +97,7 @@ class SystemObject {
   std::optional<RestructureReport> step_edits;                ///< requested during the last step
   std::vector<Broken> broken;                                 ///< in the last step
   std::vector<StopEvent> stops;                               ///< in the last step
+  std::vector<ContactEvent> contacts;                         ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();

@@ -119,7 +119,7 @@ class Bodies : public View {
   /// None: System::usual_material counts, but for static bodies, which touch nothing then.
   std::optional<Material> material(BodyId) const;
   void set_material(BodyId, const std::optional<Material>&);
-  /// The places where it touched obstacles in the last step.
+  /// The places where it touched others in the last step. All of them: Contacts::points.
   std::vector<ContactPoint> contacts(BodyId) const;
   double damping(BodyId) const;
   void set_damping(BodyId, double per_second);

@@ -4,7 +4,9 @@
 #include <iota/ids.h>
 #include <iota/vec3.h>
 
+#include <compare>
 #include <cstdint>
+#include <vector>
 
 namespace iota {
 
@@ -23,10 +25,42 @@ struct Material {
 
 /// A place where a body touches another one.
 struct ContactPoint {
-  BodyId other;
-  Vec3 position;  ///< world, m
-  Vec3 normal;    ///< unit vector towards the body
-  Vec3 force;     ///< on the body in the last step, N
+  BodyId body, other;
+  Vec3 position;        ///< world, m
+  Vec3 normal;          ///< unit vector towards the body
+  Vec3 force;           ///< on the body in the last step, N
+  double gap = 0;       ///< m, negative: overlap
+  double slip = 0;      ///< speed of the body along the other one's surface, m/s
+  bool slides = false;  ///< friction has its largest value; otherwise the place sticks
+
+  Vec3 friction() const { return force - dot(force, normal) * normal; }
+};
+
+/// A body, or the bodies with a particle in a group: one of the two ids is null.
+struct ContactParty {
+  BodyId body;
+  GroupId group;
+
+  friend auto operator<=>(const ContactParty&, const ContactParty&) = default;
+};
+
+/// Which touches a watch tells of. Those that begin with less are not told, nor are their ends.
+struct ContactFilter {
+  std::vector<ContactParty> a, b;  ///< one body is of a, the other one of b; empty: any body
+  double min_impulse = 0;          ///< N s
+  double min_speed = 0;            ///< m/s
+  double cooldown = 0;  ///< after a begin that was told, the next one of the two bodies is not, for so long, s
+};
+
+/// Two bodies begin or cease to touch each other.
+struct ContactEvent {
+  std::uint32_t watch = 0;
+  bool began = false;
+  BodyId body, other;  ///< of sides a and b of the filter; may be stale at an end
+  Vec3 position;       ///< world, m; at an end the last one
+  Vec3 normal;         ///< unit vector towards the body
+  double impulse = 0;  ///< of the step in which they began to touch, N s
+  double speed = 0;    ///< of the approach before it, m/s
 };
 
 /// The hardest touch of a step. speed: of the approach, m/s; 0: nothing began to touch.

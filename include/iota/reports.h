@@ -98,6 +98,7 @@ struct [[nodiscard]] StepReport {
   std::vector<Broken> broken;
   std::vector<StopEvent> stops;
   Impact impact;
+  std::vector<ContactEvent> contacts;      ///< for the watches of System::contacts
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< requested during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...

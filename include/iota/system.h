@@ -5,6 +5,7 @@
 #include <iota/bodies.h>
 #include <iota/bonds.h>
 #include <iota/constraints.h>
+#include <iota/contacts.h>
 #include <iota/edits.h>
 #include <iota/emitters.h>
 #include <iota/fields.h>
@@ -71,6 +72,7 @@ class System {
   Record record() { return Record(*core_); }
   Viewer viewer() { return Viewer(*core_); }
   Places places() { return Places(*core_); }
+  Contacts contacts() { return Contacts(*core_); }
   // For a constant system only the functions that read can be called.
   const Bodies bodies() const { return Bodies(*core_); }
   const Particles particles() const { return Particles(*core_); }
@@ -87,6 +89,7 @@ class System {
   const Emitters emitters() const { return Emitters(*core_); }
   const Edits edits() const { return Edits(*core_); }
   const Viewer viewer() const { return Viewer(*core_); }
+  const Contacts contacts() const { return Contacts(*core_); }
   /// The same, for code that is written once for several views.
   template <class V>
   V view() {

@@ -46,6 +46,7 @@ void apply(Editor& e, const Destroy<GroupId>& c) {
   });
   model.particles.for_each(
       [&](std::uint32_t p, const model::Particle&) { model.particles[p].groups &= ~(1u << slot); });
+  ingredient::IgnoredContacts::forget_group(model, c.id);
   model.groups.destroy(slot);
   ++model.members_revision;
 }

@@ -9,6 +9,7 @@
 #include "ingredient/emitters.h"
 #include "ingredient/fields.h"
 #include "ingredient/grips.h"
+#include "ingredient/ignored_contacts.h"
 #include "ingredient/joints.h"
 #include "ingredient/laws.h"
 #include "ingredient/masses.h"
@@ -46,7 +47,8 @@ using Ingredients = std::tuple<  //
     Names,                       //
     CosmeticBonds,               //
     AngleSprings,                //
-    Contacts>;
+    Contacts,                    //
+    IgnoredContacts>;
 
 /// The ingredient with a command among its own; void if there is none.
 template <class C, class List = Ingredients>

@@ -170,6 +170,7 @@ void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   if (other && (touches(first) != Touches::all || touches(second) != Touches::all)) return;
   if (other && mover.is_ball && other->is_ball && are_plain(model, first, second)) return;
   if (other && !model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return;
+  if (ingredient::IgnoredContacts::include(model, first, second)) return;
   if (are_joined(model, first, second)) return;
   // Only a body with three dimensions carries a spin.
   const auto spin = [&](std::uint32_t body) {

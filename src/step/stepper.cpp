@@ -24,6 +24,7 @@ StepReport Stepper::step(double dt) {
   deadline_ = seconds > 0 && seconds < 1e6
                   ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
                   : Clock::time_point::max();
+  watches_.begin_step(editor_.model, outlines_);
   door_.begin_step();
   model::choose_usual_radius(editor_.model);
   take_held_forces(report);
@@ -31,6 +32,7 @@ StepReport Stepper::step(double dt) {
   update_islands(dt);
   advance_islands(report);
   door_.end_step();
+  watches_.end_step(editor_.model, outlines_, report);
   apply_edits(report);
   fill(report);
   return report;

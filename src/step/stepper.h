@@ -3,6 +3,7 @@
 
 #include "edit/door.h"
 #include "ingredient/outcome.h"
+#include "step/contact_watches.h"
 #include "step/contacts.h"
 
 namespace iota::step {
@@ -10,8 +11,8 @@ namespace iota::step {
 /// One step of the whole system.
 class Stepper {
  public:
-  Stepper(edit::Editor& editor, edit::Door& door, contact::Outlines& outlines)
-      : editor_(editor), door_(door), outlines_(outlines) {}
+  Stepper(edit::Editor& editor, edit::Door& door, contact::Outlines& outlines, ContactWatches& watches)
+      : editor_(editor), door_(door), outlines_(outlines), watches_(watches) {}
 
   /// Advances by dt seconds. Throws std::invalid_argument for another dt than 0 < dt <= 1, and nothing else.
   StepReport step(double dt);
@@ -28,6 +29,7 @@ class Stepper {
   edit::Editor& editor_;
   edit::Door& door_;
   contact::Outlines& outlines_;
+  ContactWatches& watches_;
   ContactFinder contacts_;
   // Scratch of the present step, kept for its capacity.
   double made_ = 0;  // by the islands in this step, J

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ingredient/contact_readings.h"
 #include "ingredient/loads.h"
 #include "ingredient/quantities.h"
 #include "model/outline.h"
@@ -217,21 +218,7 @@ void Bodies::set_material(BodyId body, const std::optional<Material>& material) 
 }
 
 std::vector<ContactPoint> Bodies::contacts(BodyId id) const {
-  const model::Model& model = core_.model;
-  const std::uint32_t body = core_.slot(id);
-  std::vector<std::uint32_t> slots;
-  model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
-  std::sort(slots.begin(), slots.end());
-  std::vector<ContactPoint> points;
-  for (const std::uint32_t slot : slots) {
-    const ingredient::Contact& c = model.contacts[slot];
-    if (!c.carries()) continue;
-    const bool is_point = c.p == body;
-    const double sign = is_point ? 1 : -1;
-    points.push_back({model.bodies.id(is_point ? c.q : c.p), ingredient::Contacts::place(model, c), sign * c.normal,
-                      sign * c.force()});
-  }
-  return points;
+  return ingredient::contact_points(core_.model, core_.slot(id));
 }
 
 double Bodies::mass(BodyId id) const { return core_.model.body_mass(core_.slot(id)); }

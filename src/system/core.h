@@ -19,7 +19,8 @@ struct Core {
   edit::Editor editor{model, islands, held, orientations, parallel};
   edit::Door door{editor};
   contact::Outlines outlines{model};
-  step::Stepper stepper{editor, door, outlines};
+  step::ContactWatches watches;
+  step::Stepper stepper{editor, door, outlines, watches};
 
   /// All changes go through it.
   template <class C>

@@ -100,6 +100,7 @@ void add_step(StepReport& sum, const StepReport& next) {
   append(sum.switched_off_constraints, next.switched_off_constraints);
   append(sum.broken, next.broken);
   append(sum.stops, next.stops);
+  append(sum.contacts, next.contacts);
   append(sum.born, next.born), append(sum.died, next.died);
   append(sum.warnings, next.warnings);
   if (next.edits && !sum.edits) sum.edits.emplace();

@@ -275,7 +275,7 @@ PYTHON_MISTAKES: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     ),
     "another library's drawing": (lambda w: w.polyline([V, V]), r"no attribute 'polyline': it is world.drawings.line\(points\)"),  # type: ignore[attr-defined]
     "another library's shape": (lambda w: w.polygon([V]), r"no attribute 'polygon': it is world.drawings.shape\(looks.polygon\("),  # type: ignore[attr-defined]
-    "the former name of a decorator": (lambda w: w.on_contact, "no attribute 'on_contact': it is world.on_stop"),  # type: ignore[attr-defined]
+    "what the system has": (lambda w: w.contacts, "no attribute 'contacts': it is world.system.contacts"),  # type: ignore[attr-defined]
     "what is not in a world": (lambda w: w.pausd, "a World has no attribute 'pausd'; did you mean 'world.clock.paused'"),  # type: ignore[attr-defined]
     "what is not in a thing": (lambda w: w.label("a").positon, "a Label has no attribute 'positon'; did you mean 'at'"),  # type: ignore[attr-defined]
     "what a thing has by another name": (lambda w: setattr(w.label("a"), "positon", V), "no attribute 'positon'; did you mean 'at'"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Broken, StopEvent, System, Vec3
+from iota._core import Body, Broken, ContactEvent, StopEvent, System, Vec3
 from iota.world.notices import Notices
 
 
@@ -46,7 +46,8 @@ class Event:
 
     point: where a pointer hit the body, or the place of a hand, world, m; None without a hit. origin, direction: of the
     pointer's ray, if known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a drag
-    or hover, "start" or "end" of a stop. hold: number of the hand. key: that was pressed or released. stop,
+    or hover, "start" or "end" of a stop or contact. contact, other: the ContactEvent, and its body of side b; None if that
+    is gone. hold: number of the hand. key: that was pressed or released. stop,
     broken: the StopEvent or Broken. hand: of a moved pointer. reason: why a drag ended: "released", "left" (the page was
     closed), "destroyed" (the body; then target is None) or "reset" (also by undo and rewind)."""
 
@@ -63,6 +64,8 @@ class Event:
     key: str = ""
     stop: StopEvent | None = None
     broken: Broken | None = None
+    contact: ContactEvent | None = None
+    other: Body | None = None
     hand: Hand | None = None
     reason: str = ""
     notices: Notices = field(default_factory=Notices, repr=False, compare=False)

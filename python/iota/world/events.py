@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from iota._core import System
 from iota.world.callbacks import Hook, add_once
-from iota.world.listeners import Listener, Listeners, bodies_of, things_of
+from iota.world.listeners import Listener, Listeners, bodies_of, parties_of, things_of
 from iota.world.parts import Part
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
@@ -22,8 +23,8 @@ class Events(Part):
     the function.
     """
 
-    def __init__(self, listeners: Listeners) -> None:
-        self._listeners = listeners
+    def __init__(self, listeners: Listeners, system: Any) -> None:
+        self._listeners, self._system = listeners, system
 
     def on_step(self, function: Callback) -> Callback:
         """Decorator: calls a function before each step."""
@@ -109,6 +110,43 @@ class Events(Part):
             if event.phase == "start" and event.stop.coordinate == "angle": print("shut")
         """
         return self._hear("stop", on)
+
+    def on_contact(
+        self,
+        a: Any = "anything",
+        b: Any = "anything",
+        *,
+        min_impulse: float = 0.0,
+        min_speed: float = 0.0,
+        cooldown: float = 0.0,
+    ) -> Any:
+        """Decorator: two bodies begin (event.phase "start") or cease ("end") to touch. Called between two steps;
+        event.target is of a and event.other of b, event.point the place; event.contact also has the normal, the impulse
+        and the speed of the approach. a, b: a body, several, a Group, or "anything". The engine filters: see
+        `System.watch_contacts`. A reset or an undo tells nothing: the touches of then have begun already.
+
+        @world.on_contact(ball, min_speed=0.3, cooldown=0.1)
+        def hit(event):
+            if event.phase == "start": bell.play(event.point, volume=event.contact.speed)
+        """
+        if callable(a):  # without parentheses
+            return self.on_contact()(a)
+        if not isinstance(self._system, System):
+            raise TypeError("on_contact needs a System; another Simulator has no contacts")
+        sides = parties_of(a), parties_of(b)
+        limits = {"min_impulse": min_impulse, "min_speed": min_speed, "cooldown": cooldown}
+
+        def register(function: Callback) -> Callback:
+            watch = self._system.watch_contacts(*sides, **limits)
+            try:
+                wanted = (*sides, *limits.values())
+                self._listeners.add(Listener("contact", Hook.of(function), watch=watch, wanted=wanted))
+            except BaseException:
+                watch.end()
+                raise
+            return function
+
+        return register
 
     def on_break(self, on: Any = "anything") -> Any:
         """Decorator: a constraint, bond, hinge or nail broke because of its load: event.broken has it and the load. on:

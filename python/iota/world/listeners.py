@@ -8,11 +8,25 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from iota._core import Body, Constraint, Group, Particle
+from iota._core import Body, Constraint, ContactWatch, Group, Particle
 from iota.simulator import SimulatedBody
 from iota.world.callbacks import Hook, twice
 
-KINDS = ("click", "press", "release", "drag", "hover", "pointer", "key", "join", "leave", "frame", "stop", "break")
+KINDS = (
+    "click",
+    "press",
+    "release",
+    "drag",
+    "hover",
+    "pointer",
+    "key",
+    "join",
+    "leave",
+    "frame",
+    "stop",
+    "break",
+    "contact",
+)
 
 
 @dataclass(frozen=True)
@@ -36,7 +50,7 @@ Bodies = frozenset[Any] | Members | None
 @dataclass(frozen=True, eq=False)
 class Listener:
     """A function and its events. bodies: None for any body, empty for empty space. takes_over: replaces the default
-    reaction. on_release: for the release of a key."""
+    reaction. on_release: for the release of a key. watch, wanted: of contacts, with what it was made of."""
 
     kind: str
     hook: Hook
@@ -44,14 +58,18 @@ class Listener:
     key: str | None = None
     on_release: bool = False
     takes_over: bool = False
+    watch: ContactWatch | None = None
+    wanted: tuple[Any, ...] = ()
 
     def is_same_as(self, other: Listener) -> bool:
         """Whether both call one function for the same events."""
-        mine, theirs = ((each.hook.function, each.bodies, each.key, each.on_release) for each in (self, other))
+        mine, theirs = (
+            (each.hook.function, each.bodies, each.key, each.on_release, each.wanted) for each in (self, other)
+        )
         return self.kind == other.kind and mine == theirs
 
     def hears(self, body: Any) -> bool:
-        if self.kind in ("join", "leave", "frame", "pointer"):
+        if self.kind in ("join", "leave", "frame", "pointer", "contact"):
             return True
         if body is None:
             return self.bodies == frozenset()
@@ -74,6 +92,21 @@ def things_of(target: Any) -> Bodies:
         if found and all(isinstance(each, frozenset) and each for each in found):
             return frozenset().union(*found)  # type: ignore[arg-type]
     raise TypeError(f"must be a body, a constraint, several, a group, or 'anything', not {target!r}")
+
+
+def parties_of(target: Any) -> tuple[Body | Group, ...] | None:
+    """The bodies and groups of a side of contacts; None for any body. Raises TypeError for other targets."""
+    if target == "anything":
+        return None
+    if isinstance(target, Body | Group):
+        return (target,)
+    if isinstance(target, Particle):
+        return (target.body,)
+    if isinstance(target, Iterable) and not isinstance(target, str):
+        found = [parties_of(each) for each in target]
+        if found and all(found):
+            return tuple(party for each in found for party in each or ())
+    raise TypeError(f"must be a body, a group, several, or 'anything', not {target!r}")
 
 
 def bodies_of(target: Any) -> Bodies:
@@ -114,6 +147,9 @@ class Listeners:
     def remove(self, function: Callable[..., Any]) -> bool:
         """Removes a function from all events; False if it is not known."""
         before = self._count()
+        for each in self._by_kind["contact"]:
+            if each.watch is not None and each.hook.function == function:
+                each.watch.end()
         for kind, listeners in self._by_kind.items():
             self._by_kind[kind] = [each for each in listeners if each.hook.function != function]
         self.on_step = [each for each in self.on_step if each.function != function]

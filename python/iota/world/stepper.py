@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from iota._core import Broken, StepReport, StepTimes, System
+from iota._core import Body, Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
 from iota.world.event import Event
 from iota.world.keeping import Keeper
+from iota.world.listeners import Listener
 from iota.world.scene import Camera
 from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
@@ -31,6 +32,7 @@ class Stepper:
     def __init__(self, state: State, guard: Guard) -> None:
         self._state, self._guard = state, guard
         self._off: set[Hook] = set()  # functions that raised since the last reset
+        self._untold: set[tuple[Hook, Body, Body]] = set()  # touches whose begin was not told, nor will their end be
         self._start: bytes | None = None
         self._camera: Camera | None = None  # at the start
         self._keeper: Keeper | None = None
@@ -135,7 +137,7 @@ class Stepper:
         self._state.things.play("impact", impact.position, impact.speed / max(usual, impact.speed))
 
     def _tell_what_happened(self) -> None:
-        """Calls the script's functions for stops and breaks."""
+        """Calls the script's functions for stops, breaks and contacts."""
         system, listeners = self._state.system, self._state.listeners
         if listeners.has("stop"):
             for stop in system.stops:
@@ -150,6 +152,23 @@ class Stepper:
                 things = _broken_things(broken)
                 for each in listeners.of_any("break", things):
                     self._tell(each.hook, "break", broken=broken, point=broken.position)
+        for each in listeners.of("contact") if listeners.has("contact") else ():
+            self._tell_contacts(each)
+
+    def _tell_contacts(self, listener: Listener) -> None:
+        assert listener.watch is not None
+        for contact in listener.watch.events:
+            body, other = (each if each.alive else each.survivor for each in (contact.body, contact.other))
+            touch = (listener.hook, contact.body, contact.other)
+            if contact.began and (body is None or other is None):  # destroyed by an earlier function
+                self._untold.add(touch)
+                continue
+            if not contact.began and touch in self._untold:
+                self._untold.remove(touch)
+                continue
+            phase, place = "start" if contact.began else "end", contact.position
+            more = {"target": body, "other": other, "contact": contact, "phase": phase, "point": place}
+            self._tell(listener.hook, "contact", **more)
 
     def _tell(self, hook: Hook, name: str, **more: Any) -> None:
         if hook not in self._off and not self._call(f"on_{name} ({hook.name})", hook, name, again=True, **more):

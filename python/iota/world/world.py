@@ -62,7 +62,7 @@ ELSEWHERE = (
     # Names of other libraries.
     | {name: f"world.drawings.shape(looks.{name}(...))" for name in SOLIDS}
     | {
-        "on_contact": "world.on_stop",
+        "contacts": "world.system.contacts",
         "polyline": "world.drawings.line(points), with closed=True back to the first",
         "lines": "world.drawings.segments(starts, ends, radius=...)",
         "curve": "world.drawings.tube(points, radius=...)",
@@ -121,7 +121,7 @@ class World:
         self._real_time = RealTime(state.clock)
         self._drawings = Drawings(state.things, state.notices, state.scene)
         self._controls = Controls(state.things, state.actions, lambda action, bodies: inputs.act(action, 0, bodies))
-        self._events = Events(state.listeners)
+        self._events = Events(state.listeners, state.system)
         self._tools = Tools(
             state.system,
             state.visuals,
@@ -231,6 +231,7 @@ class World:
     on_frame = forward(Events.on_frame)
     on_stop = forward(Events.on_stop)
     on_break = forward(Events.on_break)
+    on_contact = forward(Events.on_contact)
 
     @property
     def dt(self) -> float:
