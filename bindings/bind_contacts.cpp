@@ -80,7 +80,8 @@ nb::object party_object(const nb::object& system_object, SystemObject* system, c
 constexpr const char* material_doc =
     "How the outline of a body touches others: see `Body.material` and `System.usual_material`.\n\n"
     "friction: Coulomb's coefficient; of two bodies that touch the geometric mean counts.\n"
-    "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n\n"
+    "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n"
+    "'sensor': it feels and gives no force; `World.on_contact` and `System.watch_contacts` tell what enters and leaves it.\n\n"
     "    ice = iota.Material(friction=0.02)\n"
     "    rink = system.obstacle(iota.HalfSpace((0, 1, 0)), material=ice)\n"
     "    puck.material = ice";

@@ -27,8 +27,10 @@ inline constexpr Words<BodyKind, 5> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"scripted", BodyKind::scripted},
                                                 {"inactive", BodyKind::inactive},
                                                 {"resting", BodyKind::resting}}};
-inline constexpr Words<Touches, 3> touches_words{
-    {{"all", Touches::all}, {"obstacles", Touches::obstacles}, {"nothing", Touches::nothing}}};
+inline constexpr Words<Touches, 4> touches_words{{{"all", Touches::all},
+                                                  {"obstacles", Touches::obstacles},
+                                                  {"nothing", Touches::nothing},
+                                                  {"sensor", Touches::sensor}}};
 
 /// The value of a word; ValueError that lists the words for any other.
 template <class Value, std::size_t count>

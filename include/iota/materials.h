@@ -11,8 +11,9 @@
 namespace iota {
 
 /// The bodies that a body touches: those that stand and those that move, those that stand, or none. Both must agree.
+/// A sensor has no contacts: watches tell what enters and leaves it, see System::contacts.
 /// As wide as a double, so that a Material has no padding.
-enum class Touches : std::uint64_t { all, obstacles, nothing };
+enum class Touches : std::uint64_t { all, obstacles, nothing, sensor };
 
 /// How the outline of a body touches others. A body without a material touches nothing.
 struct Material {

@@ -21,7 +21,7 @@ namespace iota {
 template <>
 struct LastEnumerator<IntegrationMode> : std::integral_constant<IntegrationMode, IntegrationMode::accurate> {};
 template <>
-struct LastEnumerator<Touches> : std::integral_constant<Touches, Touches::nothing> {};
+struct LastEnumerator<Touches> : std::integral_constant<Touches, Touches::sensor> {};
 template <>
 struct LastEnumerator<BodyKind> : std::integral_constant<BodyKind, BodyKind::resting> {};
 template <>

@@ -510,9 +510,9 @@ void Contacts::validate(const Model& model, model::Audit& audit) {
     for (std::uint32_t i = 0; i < c.point_count; ++i)
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
-    audit.require(
-        is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
-        "contact ", slot, " has no valid plane, force or friction");
+    audit.require(is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 &&
+                      c.friction >= 0 && c.depth <= 0,
+                  "contact ", slot, " has no valid plane, force or friction");
   });
 }
 

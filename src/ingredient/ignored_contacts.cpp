@@ -58,11 +58,16 @@ bool belongs(const Model& model, std::uint32_t slot, const ContactParty& party) 
   return false;
 }
 
+// Pairs with a group come first in their order, since a group has the null body; of two bodies one is searched for.
 bool IgnoredContacts::include(const Model& model, std::uint32_t body, std::uint32_t other) {
-  return std::any_of(model.ignored_contacts.begin(), model.ignored_contacts.end(), [&](const IgnoredPair& pair) {
-    return (belongs(model, body, pair.a) && belongs(model, other, pair.b)) ||
-           (belongs(model, other, pair.a) && belongs(model, body, pair.b));
-  });
+  const std::vector<IgnoredPair>& pairs = model.ignored_contacts;
+  if (pairs.empty()) return false;
+  auto pair = pairs.begin();
+  for (; pair != pairs.end() && pair->a.group; ++pair)
+    if ((belongs(model, body, pair->a) && belongs(model, other, pair->b)) ||
+        (belongs(model, other, pair->a) && belongs(model, body, pair->b)))
+      return true;
+  return std::binary_search(pair, pairs.end(), in_order({model.bodies.id(body), {}}, {model.bodies.id(other), {}}));
 }
 
 void IgnoredContacts::apply(Model& model, const IgnoreContacts& c) {

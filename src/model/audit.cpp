@@ -73,12 +73,12 @@ void Audit::check_links() {
   });
   require(std::isfinite(model_.usual_material.friction) && model_.usual_material.friction >= 0,
           "the usual material has friction ", model_.usual_material.friction);
-  require(model_.usual_material.touches <= Touches::nothing, "the usual material touches unknown bodies");
+  require(model_.usual_material.touches <= Touches::sensor, "the usual material touches unknown bodies");
   model_.materials.for_each([&](std::uint32_t slot, const Material& material) {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a material");
     require(std::isfinite(material.friction) && material.friction >= 0, "body ", slot, " has friction ",
             material.friction);
-    require(material.touches <= Touches::nothing, "body ", slot, " touches unknown bodies");
+    require(material.touches <= Touches::sensor, "body ", slot, " touches unknown bodies");
   });
   require(std::isfinite(model_.usual_radius) && model_.usual_radius >= 0, "the usual radius is ", model_.usual_radius);
   model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {

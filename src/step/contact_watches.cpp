@@ -23,9 +23,9 @@ bool is_awake(const model::Body& body) { return body.kind == BodyKind::dynamic |
 std::pair<BodyId, BodyId> in_order(BodyId a, BodyId b) { return a < b ? std::pair(a, b) : std::pair(b, a); }
 
 /// The gap of two bodies that ends their touch, m.
-double end_gap(const model::Model& model, const contact::Outlines& outlines, const Contact& c) {
+double end_gap(const model::Model& model, const contact::Outlines& outlines, std::uint32_t a, std::uint32_t b) {
   double size = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t body : {c.p, c.q})
+  for (const std::uint32_t body : {a, b})
     if (model.bodies[body].kind != BodyKind::static_ && outlines.reach(body) > 0)
       size = std::min(size, outlines.reach(body));
   return end_share * size;
@@ -61,7 +61,7 @@ void ContactWatches::begin_step(const model::Model& model, contact::Outlines& ou
 
 // Touches that there were before keep their numbers.
 void ContactWatches::look_anew(const model::Model& model, contact::Outlines& outlines) {
-  restores_ = model.restores;
+  restores_ = model.restores, knows_sensed_ = model.step == 0;
   outlines.describe();
   list_near(model, outlines, true);
   still_.clear();
@@ -75,14 +75,19 @@ void ContactWatches::look_anew(const model::Model& model, contact::Outlines& out
   touching_.swap(still_);
 }
 
-void ContactWatches::list_near(const model::Model& model, const contact::Outlines& outlines, bool also_asleep) {
+void ContactWatches::list_near(const model::Model& model, const contact::Outlines& outlines, bool also_asleep,
+                               const std::vector<Sensed>& sensed) {
   near_.clear();
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
     if (!also_asleep && !is_awake(model.bodies[c.p]) && !is_awake(model.bodies[c.q])) return;
     const bool has_touched = c.has_touched();
-    if (has_touched || ingredient::Contacts::gap(model, c) <= end_gap(model, outlines, c))
-      near_.push_back({in_order(model.bodies.id(c.p), model.bodies.id(c.q)), slot, has_touched});
+    if (has_touched || ingredient::Contacts::gap(model, c) <= end_gap(model, outlines, c.p, c.q))
+      near_.push_back({in_order(model.bodies.id(c.p), model.bodies.id(c.q)), slot, nullptr, has_touched});
   });
+  for (const Sensed& each : sensed)
+    if (each.gap <= end_gap(model, outlines, each.body, each.other))
+      near_.push_back(
+          {in_order(model.bodies.id(each.body), model.bodies.id(each.other)), model::none, &each, each.gap <= 0});
   std::sort(near_.begin(), near_.end(),
             [](const Near& a, const Near& b) { return std::tie(a.pair, a.slot) < std::tie(b.pair, b.slot); });
 }
@@ -112,6 +117,15 @@ void ContactWatches::follow_edits(const model::Model& model) {
 
 // The place is that of the hardest contact of the pair.
 ContactWatches::Change ContactWatches::begin(const model::Model& model, std::size_t first, std::size_t last, double h) {
+  if (const Sensed* const sensed = near_[first].sensed) {
+    Change change{
+        {near_[first].pair, ++last_touch_, model.bodies.id(sensed->body), model.bodies.id(sensed->other), {}, {}},
+        true,
+        0,
+        sensed->speed};
+    place(model, near_[first], change.touching);
+    return change;
+  }
   const ingredient::ContactPair pair = ingredient::pair_of(model, model.contacts[near_[first].slot]);
   Change change{{near_[first].pair, ++last_touch_, model.bodies.id(pair.body), model.bodies.id(pair.other), {}, {}},
                 true};
@@ -132,6 +146,17 @@ ContactWatches::Change ContactWatches::begin(const model::Model& model, std::siz
   return change;
 }
 
+void ContactWatches::place(const model::Model& model, const Near& near, Touching& t) {
+  if (near.sensed) {
+    t.position = near.sensed->position;
+    t.normal = (model.bodies.id(near.sensed->body) == t.body ? 1.0 : -1.0) * near.sensed->normal;
+    return;
+  }
+  const Contact& c = model.contacts[near.slot];
+  t.position = ingredient::Contacts::place(model, c);
+  t.normal = (model.bodies.id(c.p) == t.body ? 1.0 : -1.0) * c.normal;
+}
+
 void ContactWatches::compare(const model::Model& model, double h) {
   still_.clear();
   auto known = touching_.begin();
@@ -150,23 +175,24 @@ void ContactWatches::compare(const model::Model& model, double h) {
       has_touched = has_touched || near_[last].has_touched;
     while (known != touching_.end() && known->pair < pair) pass_over(*known++);
     if (known != touching_.end() && known->pair == pair) {
-      Touching& t = still_.emplace_back(*known++);
-      const Contact& c = model.contacts[near_[first].slot];
-      t.position = ingredient::Contacts::place(model, c);
-      t.normal = (model.bodies.id(c.p) == t.body ? 1.0 : -1.0) * c.normal;
+      place(model, near_[first], still_.emplace_back(*known++));
+    } else if (near_[first].sensed && !knows_sensed_) {
+      still_.push_back(begin(model, first, last, h).touching);
     } else if (has_touched) {
       still_.push_back(changes_.emplace_back(begin(model, first, last, h)).touching);
     }
   }
   while (known != touching_.end()) pass_over(*known++);
   touching_.swap(still_);
+  knows_sensed_ = true;
 }
 
-void ContactWatches::end_step(const model::Model& model, contact::Outlines& outlines, StepReport& report) {
+void ContactWatches::end_step(const model::Model& model, contact::Outlines& outlines, const std::vector<Sensed>& sensed,
+                              StepReport& report) {
   if (watches_.empty()) return;
   changes_.clear();
   follow_edits(model);
-  list_near(model, outlines, false);
+  list_near(model, outlines, false, sensed);
   compare(model, report.dt);
   std::sort(changes_.begin(), changes_.end(), [](const Change& a, const Change& b) {
     return std::tie(a.touching.pair, a.began, a.touching.number) <

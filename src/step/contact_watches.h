@@ -3,6 +3,7 @@
 
 #include "contact/outlines.h"
 #include "ingredient/contact_readings.h"
+#include "step/contacts.h"
 
 #include <iota/reports.h>
 
@@ -14,7 +15,8 @@ namespace iota::step {
 
 /// Finds the touches that begin and end in a step, and tells them to the watches whose filters they pass. Costs nothing
 /// without a watch. Two bodies touch from a step in which their contacts carry a load until they are further apart than
-/// a ten-thousandth of the smaller one: what rests opens and closes by round-off, which is no end.
+/// a ten-thousandth of the smaller one: what rests opens and closes by round-off, which is no end. A sensor and what is
+/// in it touch without a load.
 class ContactWatches {
  public:
   /// Returns its number. Touches of now have begun already.
@@ -24,7 +26,7 @@ class ContactWatches {
   /// After a restore other bodies touch: no report tells of that.
   void begin_step(const model::Model&, contact::Outlines&);
   /// After the solution and before edits, which end contacts.
-  void end_step(const model::Model&, contact::Outlines&, StepReport&);
+  void end_step(const model::Model&, contact::Outlines&, const std::vector<Sensed>&, StepReport&);
 
  private:
   using Pair = std::pair<BodyId, BodyId>;  ///< the first one has the lower slot
@@ -39,10 +41,11 @@ class ContactWatches {
     bool began;
     double impulse = 0, speed = 0;
   };
-  /// A contact that has touched, or whose gap is small.
+  /// A contact that has touched, or whose gap is small; or a pair with a sensor.
   struct Near {
     Pair pair;
-    std::uint32_t slot;
+    std::uint32_t slot;  ///< of the contact
+    const Sensed* sensed = nullptr;
     bool has_touched;
   };
   struct Told {
@@ -57,10 +60,11 @@ class ContactWatches {
   };
 
   void look_anew(const model::Model&, contact::Outlines&);
-  void list_near(const model::Model&, const contact::Outlines&, bool also_asleep);
+  void list_near(const model::Model&, const contact::Outlines&, bool also_asleep, const std::vector<Sensed>& = {});
   void follow_edits(const model::Model&);
   void compare(const model::Model&, double h);
   Change begin(const model::Model&, std::size_t first, std::size_t last, double h);
+  static void place(const model::Model&, const Near&, Touching&);
   static void tell(const model::Model&, Watch&, const Change&, StepReport&);
   static bool passes(const model::Model&, Watch&, const Change&);
 
@@ -68,6 +72,7 @@ class ContactWatches {
   std::uint32_t last_watch_ = 0;
   std::uint64_t last_touch_ = 0, restores_ = 0;
   std::vector<Touching> touching_;  ///< sorted by pairs
+  bool knows_sensed_ = true;        ///< otherwise what is in a sensor was there before
   // Scratch of one step, kept for its capacity.
   std::vector<Near> near_;
   std::vector<Touching> still_;

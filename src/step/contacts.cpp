@@ -55,7 +55,8 @@ void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outli
   model.materials.for_each([&](std::uint32_t body, const Material&) {
     if (model.bodies[body].kind != BodyKind::static_ || !outlines.has(body) || !model.material(body)) return;
     const contact::Outline& outline = outlines.placed(body);
-    Obstacle obstacle{body, contact::bounds(outline), false, {}, {}};
+    const bool is_sensor = model.material(body)->touches == Touches::sensor;
+    Obstacle obstacle{body, contact::bounds(outline), false, is_sensor, {}, {}};
     if (outline.solids.size() == 1 && outline.lines.empty())
       if (const auto* const half = std::get_if<HalfSpace>(&outline.solids[0].form->shape)) {
         obstacle.is_half_space = true, obstacle.origin = outline.solids[0].position;
@@ -97,10 +98,11 @@ double ContactFinder::within(const Mover& mover, const Mover* other) const {
 // Few obstacles are looked at one by one.
 void ContactFinder::find_obstacles(const model::Model& model) {
   for (const Mover& mover : movers_) {
-    if (model.bodies[mover.body].kind == BodyKind::scripted) continue;
+    const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
     for (const Obstacle& obstacle : obstacles_)
-      if (obstacle.distance(mover.place) <= reach) pairs_.push_back({mover.body, obstacle.body});
+      if ((!is_scripted || obstacle.is_sensor) && obstacle.distance(mover.place) <= reach)
+        pairs_.push_back({mover.body, obstacle.body});
   }
 }
 
@@ -149,7 +151,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   h_ = h, fall_ = h * norm(model.acting_gravity());
-  pairs_.clear();
+  pairs_.clear(), sensed_.clear();
   list_obstacles(model, outlines);
   list_movers(model, outlines);
   find_obstacles(model);
@@ -161,8 +163,31 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     for (const Mover& mover : movers_) ingredient::Contacts::end_old(model, mover.body);
 }
 
+void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines, const Pair& pair) {
+  constexpr double close = 1e-3;  // of the size
+  const auto [first, second] = pair;
+  const bool are_both = model.material(first)->touches == model.material(second)->touches;
+  if (are_both || ingredient::IgnoredContacts::include(model, first, second) || are_joined(model, first, second))
+    return;
+  const Mover mover = mover_at(model, outlines, first);
+  const bool is_fixed = model.bodies[second].kind == BodyKind::static_;
+  const Vec3 other_velocity = is_fixed ? Vec3{} : mover_at(model, outlines, second).velocity;
+  found_.clear();
+  const contact::Outline& outline = outlines.placed(first);
+  if (!is_fixed) (void)outlines.placed(second);
+  touches_.find(outline, {}, outlines.described(second), {}, close * mover.reach, found_);
+  if (found_.empty()) return;
+  const contact::Touch& deepest =
+      *std::min_element(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.gap < b.gap; });
+  const Vec3 normal = (deepest.is_turned ? -1.0 : 1.0) * deepest.normal;
+  const double speed = std::max(0.0, -dot(mover.velocity - other_velocity, normal));
+  sensed_.push_back({first, second, deepest.place, normal, deepest.gap, speed});
+}
+
 void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair) {
   const auto [first, second] = pair;
+  if (model.material(first)->touches == Touches::sensor || model.material(second)->touches == Touches::sensor)
+    return sense(model, outlines, pair);
   const Mover mover = mover_at(model, outlines, first);
   std::optional<Mover> other;
   if (model.bodies[second].kind != BodyKind::static_) other = mover_at(model, outlines, second);

@@ -10,18 +10,28 @@
 
 namespace iota::step {
 
+/// Two bodies of which one is a sensor, with the place where the other one is deepest in it.
+struct Sensed {
+  std::uint32_t body, other;
+  Vec3 position, normal;  ///< the latter towards the body
+  double gap;             ///< m
+  double speed;           ///< of the approach, m/s
+};
+
 /// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
 /// Bodies that are hinged or jointed to each other do not touch, nor do two particles with the usual material.
 class ContactFinder {
  public:
   /// For a step of h seconds. Costs nothing while nothing has a material.
   void find(model::Model&, contact::Outlines&, double h);
+  /// The pairs with a sensor whose gap is small or negative, at the start of the step.
+  const std::vector<Sensed>& sensed() const { return sensed_; }
 
  private:
   struct Obstacle {
     std::uint32_t body;
     geometry::Bounds box;
-    bool is_half_space;
+    bool is_half_space, is_sensor;
     Vec3 origin, normal;                 ///< of a half-space
     double distance(const Vec3&) const;  ///< m, at most
   };
@@ -41,6 +51,7 @@ class ContactFinder {
   void find_obstacles(const model::Model&);
   void find_pairs(const model::Model&, contact::Outlines&);
   void touch(model::Model&, contact::Outlines&, const Pair&);
+  void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other) const;
 
   contact::TouchFinder touches_;
@@ -50,6 +61,7 @@ class ContactFinder {
   std::vector<Obstacle> obstacles_;
   std::vector<Mover> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
+  std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
 };
 

@@ -32,7 +32,7 @@ StepReport Stepper::step(double dt) {
   update_islands(dt);
   advance_islands(report);
   door_.end_step();
-  watches_.end_step(editor_.model, outlines_, report);
+  watches_.end_step(editor_.model, outlines_, contacts_.sensed(), report);
   apply_edits(report);
   fill(report);
   return report;

@@ -175,6 +175,27 @@ def test_bodies_and_groups_pass_through_each_other_on_request() -> None:
     assert third.position.y < -0.3
 
 
+def test_a_sensor_counts_what_falls_through_it() -> None:
+    system, ground = make_system()
+    world = iota.World(system, dt=1 / 120, ground=None)
+    hoop = system.obstacle(iota.Box((1, 0.1, 1)), position=(0, 1, 0), material=iota.Material(touches="sensor"))
+    balls = [make_ball(system, 0, 1.5), make_ball(system, 5, 1.5), make_ball(system, 0.2, 2)]
+    inside: list[iota.Body] = []
+    most = 0
+
+    @world.on_contact(b=hoop)
+    def through(event: iota.Event) -> None:
+        nonlocal most
+        (inside.append if event.phase == "start" else inside.remove)(event.body)
+        most = max(most, len(inside))
+
+    run(world, 0.3)
+    assert inside == [balls[0]]
+    run(world, 1)
+    assert inside == [] and most == 1 and balls[0].position.y == pytest.approx(0.1, abs=1e-5)
+    assert repr(hoop.material) == "Material(friction=0.5, touches='sensor')" and ground.alive
+
+
 MISTAKES = {
     "a number": (lambda s, b: s.watch_contacts(3), TypeError, "a must be a body, a group, several of them, or None"),
     "nothing": (lambda s, b: s.watch_contacts(b=[]), TypeError, "b must be a body, a group"),

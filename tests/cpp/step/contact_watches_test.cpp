@@ -245,6 +245,57 @@ TEST(ContactWatches, let_begins_and_ends_take_turns_in_a_heap_with_edits_for_any
   }
 }
 
+TEST(ContactWatches, tell_what_enters_and_leaves_a_sensor_which_feels_no_force) {
+  const std::vector<Shape> zones{Box{{2, 1, 2}}, Sphere{0.5}, Cylinder{1, 1}, Capsule{0.4, 0.2}, Cone{1, 1}};
+  const std::vector<Shape> falling{Sphere{0.1}, Box{{0.2, 0.2, 0.2}}, Capsule{0.05, 0.1}, Cylinder{0.1, 0.2}};
+  for (const Shape& zone : zones)
+    for (const Shape& shape : falling) {
+      Watched world;
+      System& system = world.system;
+      const BodyId sensor = system.bodies().create_obstacle(zone, {0, 3, 0}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)});
+      system.bodies().set_material(sensor, Material{.touches = Touches::sensor});
+      const BodyId body = system.bodies().create(shape, {.position = {0, 5, 0}});
+      (void)system.contacts().watch({.a = {ContactParty{sensor, {}}}});
+      std::vector<double> heights;
+      for (int i = 0; i < 110; ++i) {
+        world.run(1.0 / 120);
+        if (heights.size() < world.events.size()) heights.push_back(system.bodies().center_of_mass(body).y);
+      }
+      EXPECT_NEAR(system.bodies().velocity(body).y, -g * 110 / 120, 1e-9) << "it falls freely";
+      ASSERT_EQ(world.events.size(), 2u) << zone.index() << " " << shape.index();
+      EXPECT_TRUE(world.events[0].began && !world.events[1].began);
+      EXPECT_TRUE(world.events[0].body == sensor && world.events[0].other == body);
+      EXPECT_GT(world.events[0].speed, 3);
+      EXPECT_EQ(world.events[0].impulse, 0);
+      EXPECT_GT(heights[0], 3.1) << "at its upper side";
+      EXPECT_LT(heights[1], 2.9) << "below its lower one";
+      EXPECT_TRUE(system.contacts().points().empty());
+    }
+}
+
+TEST(ContactWatches, know_what_sleeps_in_a_sensor_and_sensors_that_move) {
+  Watched world;
+  System& system = world.system;
+  system.set_rest({.after = 0.2, .speed = 0.01});
+  const BodyId box = system.bodies().create(Box{{0.2, 0.2, 0.2}}, {.position = {0, 0.1, 0}});
+  const BodyId zone = system.bodies().create(Box{{1, 1, 1}}, {.position = {0, 0.5, 0}, .kind = BodyKind::scripted});
+  const BodyId other_zone = system.bodies().create_obstacle(Box{{1, 1, 1}});
+  for (const BodyId body : {zone, other_zone}) system.bodies().set_material(body, Material{.touches = Touches::sensor});
+  (void)system.contacts().watch({.a = {ContactParty{box, {}}}});
+  world.run(1);
+  ASSERT_EQ(system.bodies().kind(box), BodyKind::resting);
+  std::set<BodyId> began;
+  for (const ContactEvent& event : world.events) EXPECT_TRUE(event.began && began.insert(event.other).second);
+  EXPECT_EQ(began, (std::set<BodyId>{world.ground, zone, other_zone}));
+  world.events.clear();
+  for (int i = 0; i < 60; ++i) {
+    system.bodies().set_pose(zone, {0.05 * i, 0.5, 0}, {});
+    world.run(1.0 / 120);
+  }
+  ASSERT_EQ(world.events.size(), 1u);
+  EXPECT_TRUE(!world.events[0].began && world.events[0].other == zone);
+}
+
 TEST(ContactWatches, do_not_change_the_motion) {
   std::vector<std::uint64_t> hashes;
   for (const bool is_watched : {false, true}) {
