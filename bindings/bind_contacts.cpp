@@ -80,39 +80,59 @@ nb::object party_object(const nb::object& system_object, SystemObject* system, c
 constexpr const char* material_doc =
     "How the outline of a body touches others: see `Body.material` and `System.usual_material`.\n\n"
     "friction: Coulomb's coefficient; of two bodies that touch the geometric mean counts.\n"
+    "restitution: speed at which two bodies leave each other after an impact, of that at which they met, 0 to 1; of two\n"
+    "bodies the larger one counts.\n"
+    "rolling: coefficient of rolling resistance; the torque against rolling is at most this times the normal force and the\n"
+    "radius, so that a ball on level ground slows down by 5/7 rolling g. Of two bodies the larger one counts.\n"
     "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n"
     "'sensor': it feels and gives no force; `World.on_contact` and `System.watch_contacts` tell what enters and leaves it.\n\n"
     "    ice = iota.Material(friction=0.02)\n"
+    "    rubber = iota.Material(friction=0.9, restitution=0.8, rolling=0.01)\n"
     "    rink = system.obstacle(iota.HalfSpace((0, 1, 0)), material=ice)\n"
-    "    puck.material = ice";
+    "    puck.material = ice\n\n"
+    "Raises ValueError for a negative or infinite coefficient and for a restitution above 1.";
 
 void bind_material(nb::module_& module) {
   nb::class_<Material> type(module, "Material", material_doc);
-  const auto make = [](Material* self, double friction, const TouchesWord& touches) {
-    new (self) Material{finite_not_negative(friction, "friction", ""), to_touches(touches)};
+  const auto make = [](Material* self, double friction, double restitution, double rolling,
+                       const TouchesWord& touches) {
+    if (finite_not_negative(restitution, "restitution", "") > 1)
+      throw std::invalid_argument(text("restitution must be at most 1, not ", restitution));
+    new (self) Material{finite_not_negative(friction, "friction", ""), to_touches(touches), restitution,
+                        finite_not_negative(rolling, "rolling", "")};
   };
   const auto touches_of = [](const Material& self) { return TouchesWord{to_word(touches_words, self.touches)}; };
-  type.def("__init__", make, nb::kw_only(), "friction"_a = Material{}.friction, "touches"_a = TouchesWord{"all"})
+  type.def("__init__", make, nb::kw_only(), "friction"_a = Material{}.friction,
+           "restitution"_a = Material{}.restitution, "rolling"_a = Material{}.rolling, "touches"_a = TouchesWord{"all"})
       .def(
           "__getstate__",
-          [touches_of](const Material& self) { return nb::make_tuple(self.friction, touches_of(self)); },
+          [touches_of](const Material& self) {
+            return nb::make_tuple(self.friction, self.restitution, self.rolling, touches_of(self));
+          },
           nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
       .def(
           "__setstate__",
-          [make](Material& self, const std::tuple<double, TouchesWord>& state) {
-            make(&self, std::get<0>(state), std::get<1>(state));
+          [make](Material& self, const std::tuple<double, double, double, TouchesWord>& state) {
+            const auto& [friction, restitution, rolling, touches] = state;
+            make(&self, friction, restitution, rolling, touches);
           },
           nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def_ro("friction", &Material::friction)
+      .def_ro("restitution", &Material::restitution)
+      .def_ro("rolling", &Material::rolling)
       .def_prop_ro("touches", touches_of)
       .def(
           "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator(),
           nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__hash__", [](const Material& self) { return std::hash<double>{}(self.friction); })
       .def("__repr__", [](const Material& self) {
+        const auto unless_usual = [](const char* name, double value) {
+          return value == 0 ? std::string() : text(", ", name, "=", value);
+        };
         const std::string touches =
             self.touches == Touches::all ? "" : ", touches='" + to_word(touches_words, self.touches) + "'";
-        return text("Material(friction=", self.friction, touches, ")");
+        return text("Material(friction=", self.friction, unless_usual("restitution", self.restitution),
+                    unless_usual("rolling", self.rolling), touches, ")");
       });
 }
 

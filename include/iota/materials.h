@@ -20,6 +20,12 @@ struct Material {
   /// Coulomb's coefficient. Of two bodies that touch the geometric mean counts.
   double friction = 0.5;
   Touches touches = Touches::all;
+  /// The speed at which two bodies leave each other after an impact, of that at which they met: 0 to 1. Two bodies have the
+  /// larger one.
+  double restitution = 0;
+  /// The coefficient of rolling resistance: the torque against rolling is at most this times the normal force and the radius.
+  /// Two bodies have the larger one.
+  double rolling = 0;
 
   friend bool operator==(const Material&, const Material&) = default;
 };

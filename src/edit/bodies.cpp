@@ -253,7 +253,7 @@ void apply(Editor& e, const SetRadius& c) {
 void apply(Editor& e, const SetMaterial& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
-  require_not_negative("friction", c.value.friction);
+  require_material(c.value);
   if (c.touches)
     model.materials.make(body) = c.value;
   else

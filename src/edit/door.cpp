@@ -141,7 +141,7 @@ namespace {
 // Commands are numbered by their places in the list: its length is a part of the version, so that one more is another
 // format. Change the letter before it if a command changes, is replaced or moved.
 constexpr auto commands = static_cast<char>(std::variant_size_v<edit::Command>);
-constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', '9', commands}, "recording"};
+constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', 'A', commands}, "recording"};
 
 }  // namespace
 

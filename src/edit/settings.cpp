@@ -57,7 +57,7 @@ void apply(Editor& e, const SetUsualRadius& c) {
 }
 
 void apply(Editor& e, const SetUsualMaterial& c) {
-  require_not_negative("friction", c.value.friction);
+  require_material(c.value);
   e.model.usual_material = c.value, e.model.has_usual_material = c.touches;
 }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace iota::ingredient {
 
@@ -232,12 +233,53 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
 
 }  // namespace
 
+namespace {
+
+/// Whether it has a spin, or stands.
+bool has_orientation(const model::Body& body) { return !has_points(body) || body.rank == 4; }
+
+/// Rolling resistance acts at the first place where two bodies touch, by the force at all of them in the last step. At one
+/// place it may roll in two directions, along a line in one, on a face in none.
+void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double coefficient,
+                    const Contacts::Motion& motion, std::uint32_t first) {
+  double push = 0;
+  for (const std::uint32_t slot : slots) push += model.contacts[slot].energy != 0 ? model.contacts[slot].push : 0;
+  for (const std::uint32_t slot : slots) {
+    Contact& c = model.contacts[slot];
+    const double radius = std::max(c.ball, c.radius - c.ball);
+    const bool resists = slot == slots[0] && slots.size() <= 2 && coefficient > 0 && radius > 0 &&
+                         has_orientation(model.bodies[c.p]) && has_orientation(model.bodies[c.q]);
+    const std::uint32_t before = std::exchange(c.roll_rows, resists ? 3 - static_cast<std::uint32_t>(slots.size()) : 0);
+    if (c.roll_rows != before) touch(model, c);
+    if (!resists) {
+      c.rolling = c.carried = 0, c.torque = {};
+      continue;
+    }
+    const Vec3 &spin_p = motion.spins[c.p != first], &spin_q = motion.spins[c.p == first];
+    // A slow roll keeps its direction: that of a ball at rest would be noise.
+    const Vec3 way = motion.h * cross(spin_p - spin_q, c.normal);
+    Vec3 along = norm(way) > 1e-6 ? way : c.roll_first;
+    if (slots.size() == 2)
+      along = cross(Contacts::place(model, model.contacts[slots[1]]) - Contacts::place(model, c), c.normal);
+    c.roll_first = unit_or(along - dot(along, c.normal) * c.normal, c.first),
+    c.roll_second = cross(c.normal, c.roll_first);
+    c.roller = HalfTurn(spin_p, motion.h).back(c.normal);
+    const HalfTurn turn_of_q(spin_q, motion.h);
+    c.roll_first = turn_of_q.back(c.roll_first), c.roll_second = turn_of_q.back(c.roll_second);
+    c.rolling = coefficient * radius, c.carried = push;
+  }
+}
+
+}  // namespace
+
 void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch> touches,
                     const Motion& motion) {
   if (touches.empty()) return;
   thread_local std::vector<std::uint32_t> former;
   find_between(model, first, second, former);
-  const double friction = std::sqrt(model.material(first)->friction * model.material(second)->friction);
+  const Material &one = *model.material(first), &other = *model.material(second);
+  thread_local std::vector<std::uint32_t> taken;
+  taken.clear();
   const auto is_eased = [&] { return is_on_its_own(model, first) && is_on_its_own(model, second); };
   Sides sides[2]{{model, first, second}, {model, second, first}};
   for (const contact::Touch& t : touches) {
@@ -255,7 +297,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     Contact& c = model.contacts[slot];
     const bool has_changed = is_new || !has_basis(c, model.bodies[p], model.bodies[q]);
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
-    c.friction = friction;
+    c.friction = std::sqrt(one.friction * other.friction);
+    c.restitution = std::max(one.restitution, other.restitution);
     c.found_in = model.step + 1;
     const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
     const double kept = norm(across);
@@ -268,7 +311,9 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
       c.depth = std::max(std::min(0.0, t.gap), eased);
     }
     if (has_changed) touch(model, c);
+    taken.push_back(slot);
   }
+  resist_rolling(model, taken, std::max(one.rolling, other.rolling), motion, first);
 }
 
 namespace {
@@ -358,6 +403,10 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     row.first_side = has_world_plane(c) ? 0 : c.of_p;
     row.weights = c.weights;  // they tell which arms are places of the world: Problem::set_origin
     problem.add(row, {owner, {}, slot});
+    solver::BilinearConstraint roll;
+    roll.nodes = row.nodes, roll.count = row.count, roll.first_side = row.first_side;
+    for (std::uint8_t k = 0; k < c.roll_rows; ++k) problem.add(roll, {owner, {k}, slot});
+    if (c.roll_rows > 0) (void)problem.pool_of<solver::BilinearConstraint>().law(0);
   }
 }
 
@@ -384,8 +433,58 @@ double size_of(const solver::ContactConstraint& row, const Contact& c, const Pro
 
 }  // namespace
 
+namespace {
+
+/// The gap at the end of the last step, m.
+double gap_of(const Model& model, const Contact& c) {
+  const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
+  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
+  return dot(c.normal, d) - c.radius;
+}
+
+/// The force that would stop the bodies at their contact if nothing else held them, N: for a step in which they begin to touch.
+double stopping_force(const Model& model, const Contact& c, std::span<const std::uint32_t> at, const IslandNodes& nodes,
+                      double h, const Problem& problem) {
+  double gap = std::max(0.0, gap_of(model, c) - c.depth), compliance = 0;
+  for (std::uint32_t i = 0; i < c.point_count; ++i) {
+    const double w = c.weights[Arm::center][i];
+    const bool is_free = !nodes.pinned[at[i]];
+    Vec3 way = h * problem.velocity[at[i]];
+    if (is_free) way += 0.5 * h * h * problem.gravity, compliance += 0.5 * h * h * w * w / problem.mass[at[i]];
+    gap += w * dot(c.normal, way);
+  }
+  return compliance > 0 ? std::max(0.0, -gap / compliance) : 0;
+}
+
+/// The rows against rolling: the angle between a direction of p and one of q is held, up to a torque.
+void load_rolling(std::uint8_t owner, const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
+  if (!problem.has_used<solver::BilinearConstraint>()) return;
+  auto& rows = problem.pool_of<solver::BilinearConstraint>();
+  for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const Contact& c = model.contacts[key.slot];
+    solver::BilinearConstraint& row = rows.items[i];
+    Sides sides(model, c.p, c.q);
+    const Vec3& along = key.part[0] == 0 ? c.roll_first : c.roll_second;
+    row.weights = {};
+    const auto set_arm = [&](std::size_t arm, const Vec3& direction, bool of_q) {
+      const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
+      if (count == 0) return row.set_constant(static_cast<int>(arm), direction);
+      const Vec3 origin = model.position(c.points[first]);
+      const std::array<double, 4> start = sides.of(of_q, origin), end = sides.of(of_q, origin + direction);
+      for (std::uint32_t k = 0; k < count; ++k) row.weights[arm][first + k] = end[k] - start[k];
+    };
+    set_arm(0, c.roller, false), set_arm(1, along, true);
+    const double force = c.carried > 0 ? c.carried : stopping_force(model, c, row.nodes, nodes, h, problem);
+    rows.law(i)[0] = {.lower = -c.rolling * force, .upper = c.rolling * force, .hold = true};
+    *rows.multiplier(i) = dot(c.torque, along);
+  });
+}
+
+}  // namespace
+
 void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
   if (!problem.has_used<solver::ContactConstraint>()) return;
+  load_rolling(owner, model, nodes, h, problem);
   auto& rows = problem.pool_of<solver::ContactConstraint>();
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
@@ -399,13 +498,14 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.set_directions({constant(c.turns, row.is_round ? c.axis : c.normal), constant(c.slips_turn, c.first),
                         constant(c.slips_turn, c.second)});
     row.radius = c.radius + c.depth;
-    row.friction = c.friction;
+    row.friction = c.friction, row.restitution = c.restitution;
     const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;
     row.compliance = tangent_softness * of_place;
     row.reference = std::max({size_of(row, c, problem), c.radius, 1e-9});
     double* const l = rows.multiplier(i);
     l[0] = -c.push, l[1] = -dot(c.drag, c.first), l[2] = -dot(c.drag, c.second);
+    if (c.energy == 0) std::fill_n(l, 3, 0.0);  // it has left
   });
 }
 
@@ -423,8 +523,15 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
     else if (c.turns)
       c.normal = unit_or(arm(Arm::turned), c.normal);
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
-    c.energy = solver::strain_energy(row, l);
+    c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
     c.impulse = -1.0 * (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
+    c.torque = {};
+  });
+  if (!problem.has_used<solver::BilinearConstraint>()) return;
+  const auto& rolls = problem.pool_of<solver::BilinearConstraint>();
+  for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    Contact& c = model.contacts[key.slot];
+    c.torque += *rolls.multiplier(i) * (key.part[0] == 0 ? c.roll_first : c.roll_second);
   });
 }
 
@@ -489,6 +596,15 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
            .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
                     c.weights[Arm::place][i] * c.drag,
            .part = part});
+    if (c.roll_rows == 0) return;
+    const int side = c.p == body ? 0 : 1;
+    Sides sides(step.model, c.p, c.q);
+    const Vec3 origin = step.model.position(c.points[first]);
+    const std::array<double, 4> start = sides.of(side, origin), end = sides.of(side, origin + c.roller);
+    for (std::uint32_t i = first; i < last; ++i)
+      reader.take({.particle = c.points[i],
+                   .force = (side == 0 ? -1 : 1) * (end[i - first] - start[i - first]) * c.torque,
+                   .part = part});
   });
 }
 

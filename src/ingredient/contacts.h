@@ -18,15 +18,20 @@ struct Contact : model::Ends {
   contact::TouchForm form = contact::TouchForm::face;
   std::uint8_t turns = 0, slips_turn = 0;  ///< arm 2 turns with a body; arms 3 and 4 do
   std::uint8_t is_of_sweeps = 0;           ///< its overlap was left by sweeps
-  std::array<std::uint32_t, 8> points{};  ///< the basis of p, then that of q, of those that are not static
-  std::uint32_t point_count = 0, of_p = 0, padding2 = 0;  ///< all points, those of p
+  std::array<std::uint32_t, 8> points{};    ///< the basis of p, then that of q, of those that are not static
+  std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
+  std::uint32_t roll_rows = 0;              ///< of rolling resistance, at one of the places of two bodies
   /// The weights of the points in the arms of solver::ContactConstraint.
   std::array<std::array<double, 8>, 5> weights{};
   Vec3 center, place;          ///< of a static body instead: the constants of the first two arms, in the world
   Vec3 normal, first, second;  ///< now; they turn with a body, or keep their direction
   Vec3 axis;                   ///< of round things, see contact::Touch
-  double radius = 0, friction = 0;
-  double ball = 0;             ///< part of the radius that is p's
+  double radius = 0, friction = 0, restitution = 0;
+  double ball = 0;                       ///< part of the radius that is p's
+  double rolling = 0;                    ///< bound of the torque against rolling, of the force, m
+  double carried = 0;                    ///< by all places of both in the last step, N
+  Vec3 roller;                           ///< the direction of p that will be the normal in the middle of the step
+  Vec3 roll_first, roll_second, torque;  ///< the directions of q in which p may roll; the multipliers along them, N m
   double depth = 0;            ///< of an overlap that was there before the contact, m, not positive: it only shrinks
   double push = 0;             ///< force along the normal on p in the last step, N
   Vec3 drag;                   ///< force of friction on it, N

@@ -5,6 +5,7 @@
 #include "math/text.h"
 
 #include <iota/attributes.h>
+#include <iota/materials.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,13 @@ inline void require_mass(std::string_view name, double v) {
 
 inline void require_not_negative(std::string_view name, double v) {
   if (!(v >= 0) || !std::isfinite(v)) refuse(name, "be zero or more and finite", v);
+}
+
+inline void require_material(const Material& material) {
+  require_not_negative("friction", material.friction);
+  if (!(material.restitution >= 0 && material.restitution <= 1))
+    refuse("restitution", "be between 0 and 1", material.restitution);
+  require_not_negative("rolling", material.rolling);
 }
 
 inline void require_break_force(double newtons, std::string_view name = "break_force") {

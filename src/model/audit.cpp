@@ -71,14 +71,16 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a radius");
     require(std::isfinite(radius) && radius > 0, "body ", slot, " has radius ", radius);
   });
-  require(std::isfinite(model_.usual_material.friction) && model_.usual_material.friction >= 0,
-          "the usual material has friction ", model_.usual_material.friction);
-  require(model_.usual_material.touches <= Touches::sensor, "the usual material touches unknown bodies");
+  const auto check = [this](const Material& m, std::string_view whose) {
+    require(std::isfinite(m.friction) && m.friction >= 0, whose, " has friction ", m.friction);
+    require(m.restitution >= 0 && m.restitution <= 1, whose, " has restitution ", m.restitution);
+    require(std::isfinite(m.rolling) && m.rolling >= 0, whose, " has rolling resistance ", m.rolling);
+    require(m.touches <= Touches::sensor, whose, " touches unknown bodies");
+  };
+  check(model_.usual_material, "the usual material");
   model_.materials.for_each([&](std::uint32_t slot, const Material& material) {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a material");
-    require(std::isfinite(material.friction) && material.friction >= 0, "body ", slot, " has friction ",
-            material.friction);
-    require(material.touches <= Touches::sensor, "body ", slot, " touches unknown bodies");
+    check(material, text("the material of body ", slot));
   });
   require(std::isfinite(model_.usual_radius) && model_.usual_radius >= 0, "the usual radius is ", model_.usual_radius);
   model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {

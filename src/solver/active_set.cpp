@@ -80,6 +80,8 @@ void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem
     RowStates::Row& state = pool.states.rows_[k * C::rows + r];
     state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side;
     state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, 0, stage);
+    if constexpr (BouncingConstraint<C>)
+      if (c.meets && !C::is_tangent(r)) state.side_before = 1;
   }
 }
 
@@ -257,6 +259,32 @@ bool ActiveSet::release_impulses(Problem& problem, std::span<const double> impul
     }
   });
   return released;
+}
+
+bool ActiveSet::switch_impacts(Problem& problem, double h, std::span<const double> impulses) {
+  constexpr double noise = 1e-9;  // of an impulse
+  bool any = false;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if constexpr (BouncingConstraint<C>)
+      for (std::size_t k = 0; k < pool.items.size(); ++k) {
+        const ConeState now = pool.states.cone(k * C::rows);
+        if (now.mode == ConeState::Mode::open) continue;
+        const double* const late = impulses.data() + pool.slots[k].unknown;
+        double impulse[C::rows];
+        for (int r = 0; r < C::rows; ++r) impulse[r] = h * pool.multiplier(k)[r] + late[r];
+        if (impulse[0] > noise * std::abs(late[0])) {
+          set_cone(pool, k, {ConeState::Mode::open}), any = true;
+          continue;
+        }
+        if (!now.slips() || !pool.states.has_been_met(k * C::rows)) continue;
+        const RowMotion<C> motion(problem, pool.items[k]);
+        double power = 0, size = 0;
+        for (int r = 1; r < C::rows; ++r)
+          power -= impulse[r] * motion.speed[r], size += std::abs(impulse[r]) * motion.size[r];
+        if (power > noise * size) set_cone(pool, k, {}), any = true;
+      }
+  });
+  return any;
 }
 
 }  // namespace iota::solver

@@ -30,6 +30,9 @@ class ActiveSet {
   static void begin_impulses_after_step(Problem&);
   /// Releases rows whose impulse, by unknown, has the wrong sign; returns whether there were any.
   static bool release_impulses(Problem&, std::span<const double> impulses);
+  /// After a step of h seconds and late impulses: opens contacts that would pull by both, and lets those stick whose friction
+  /// would have reversed their slip; returns whether there were any.
+  static bool switch_impacts(Problem&, double h, std::span<const double> impulses);
 
   /// @name Sides in an explicit sub-step, which do not change in it (active_set_motion.cpp)
   ///@{

@@ -49,6 +49,9 @@ bool Heap::find_bodies(const Problem& problem) {
       is_heap = is_heap && (pool.items.empty() || !pool.has_laws());
       for (const DistanceConstraint& c : pool.items)
         for (const std::uint32_t node : c.nodes) ++lengths[node];
+    } else if constexpr (std::is_same_v<C, BilinearConstraint>) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        is_heap = is_heap && pool.has_laws() && pool.law(i)->hold && pool.law(i)->rate == 0;
     } else if constexpr (!std::is_same_v<C, ContactConstraint>) {
       is_heap = is_heap && pool.items.empty();
     }
@@ -229,7 +232,7 @@ void Heap::load_points(Problem& problem, double h) {
     point.first = unit_or(tangent - dot(tangent, point.normal) * point.normal, any_perpendicular(point.normal));
     point.second = cross(point.normal, point.first);
     point.gap_at_begin = c.is_round ? norm(c.across(way, turned)) - c.radius : dot(point.normal, way) - c.radius;
-    point.friction = c.friction;
+    point.friction = c.friction, point.restitution = c.restitution;
     // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
     const Vec3 at = center + dot(touching - center, point.normal) * point.normal;
     point.height = dot(at, up);
@@ -259,10 +262,40 @@ void Heap::load_points(Problem& problem, double h) {
     const Vec3 old = -(l[1] * c.arm(3, x, 1) + l[2] * c.arm(4, x, 1));
     point.impulse = -h * l[0];
     point.impulse_first = h * dot(old, point.first), point.impulse_second = h * dot(old, point.second);
+    point.approach = -dot(point.normal, relative_velocity(point));
     points_.push_back(point);
   }
   // From above to below: a pyramid of 55 cubes creeps by 3e-6 m a second, in the other order by 4e-4 m.
   std::stable_sort(points_.begin(), points_.end(), [](const Point& p, const Point& q) { return p.height > q.height; });
+}
+
+void Heap::load_held(Problem& problem, double h) {
+  held_.clear();
+  if (!problem.has_used<BilinearConstraint>()) return;
+  const auto& pool = problem.pool_of<BilinearConstraint>();
+  for (std::size_t i = 0; i < pool.items.size(); ++i) {
+    const BilinearConstraint& c = pool.items[i];
+    Held row{.item = static_cast<std::uint32_t>(i), .most = h * pool.law(i)->upper};
+    std::array<Vec3, BilinearConstraint::max_nodes> by_node;
+    c.gradients(problem.position.data(), 1, by_node.data());
+    for (std::uint32_t k = 0; k < c.count; ++k) {
+      const std::uint32_t b = body_of_[c.nodes[k]];
+      if (bodies_[b].by_mass == 0) continue;
+      const bool is_first = row.a == none || row.a == b;
+      (is_first ? row.a : row.b) = b;
+      (is_first ? row.way_a : row.way_b) += by_node[k];
+      (is_first ? row.turn_a : row.turn_b) += cross(problem.position[c.nodes[k]] - bodies_[b].center, by_node[k]);
+    }
+    double inverse = 0;
+    const auto add = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
+      if (b != none) inverse += bodies_[b].by_mass * dot(way, way) + dot(turn, bodies_[b].by_inertia * turn);
+    };
+    add(row.a, row.way_a, row.turn_a), add(row.b, row.way_b, row.turn_b);
+    if (!(inverse > 0)) continue;
+    row.mass = 1 / inverse;
+    row.impulse = std::clamp(-h * *pool.multiplier(i), -row.most, row.most);
+    held_.push_back(row);
+  }
 }
 
 void Heap::load_grips(const Problem& problem) {
@@ -327,9 +360,40 @@ Vec3 Heap::relative_velocity(const Point& point) const {
   return v;
 }
 
+void Heap::apply(const Held& row, double impulse) {
+  const auto give = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
+    if (b == none) return;
+    bodies_[b].velocity += (impulse * bodies_[b].by_mass) * way;
+    bodies_[b].spin += bodies_[b].by_inertia * (impulse * turn);
+  };
+  give(row.a, row.way_a, row.turn_a), give(row.b, row.way_b, row.turn_b);
+}
+
+void Heap::solve_held(Held& row) {
+  double rate = 0;
+  if (row.a != none) rate += dot(row.way_a, bodies_[row.a].velocity) + dot(row.turn_a, bodies_[row.a].spin);
+  if (row.b != none) rate += dot(row.way_b, bodies_[row.b].velocity) + dot(row.turn_b, bodies_[row.b].spin);
+  const double before = row.impulse;
+  row.impulse = std::clamp(before - row.mass * rate, -row.most, row.most);
+  apply(row, row.impulse - before);
+}
+
 void Heap::sweep(double h, const Softness& soft) {
-  for (int k = 0; k < sweeps; ++k)
+  for (int k = 0; k < sweeps; ++k) {
     for (Point& point : points_) solve_point(point, h, soft);
+    for (Held& row : held_) solve_held(row);
+  }
+}
+
+// What met leaves with a part of the speed, unless that is what gravity gives in a step.
+void Heap::rebound(double least) {
+  for (Point& point : points_) {
+    if (point.restitution == 0 || point.approach <= least || point.sum == 0) continue;
+    const double missing = point.restitution * point.approach - dot(point.normal, relative_velocity(point));
+    const double impulse = std::max(0.0, point.mass * missing);
+    point.sum += impulse;
+    apply(point, impulse * point.normal);
+  }
 }
 
 void Heap::solve_point(Point& point, double h, const Softness& soft) {
@@ -397,14 +461,20 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
       problem.velocity[body.nodes[k]] = body.velocity + cross(body.spin, arm);
     }
   }
+  if (!held_.empty()) {
+    auto& rows = problem.pool_of<BilinearConstraint>();
+    std::fill(rows.multipliers.begin(), rows.multipliers.end(), 0.0);
+    for (const Held& row : held_) *rows.multiplier(row.item) = -row.sum / h;
+  }
   auto& pool = problem.pool_of<ContactConstraint>();
   std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0);
   for (const Point& point : points_) {
-    const ContactConstraint& c = pool.items[point.row];
+    ContactConstraint& c = pool.items[point.row];
     double* const l = pool.multiplier(point.row);
     const Vec3 drag = (1 / h) * (point.sum_first * point.first + point.sum_second * point.second);
     l[0] = -point.sum / h;
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
+    for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
     report.depth = std::max(report.depth, -point.gap);
   }
 }
@@ -415,12 +485,14 @@ HeapReport Heap::advance(Problem& problem, double h, double fraction) {
   const Softness pushing(0.25 / part, part), plain;
   load_bodies(problem, part);
   load_points(problem, part);
+  load_held(problem, part);
   load_grips(problem);
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     for (const Point& point : points_)
       apply(point, point.impulse * point.normal + point.impulse_first * point.first +
                        point.impulse_second * point.second);
+    for (const Held& row : held_) apply(row, row.impulse);
     sweep(part, pushing);
     move(part);
     for (Point& point : points_) point.drifted += part * point.drift;
@@ -428,7 +500,9 @@ HeapReport Heap::advance(Problem& problem, double h, double fraction) {
     sweep(part, plain);
     for (Point& point : points_)
       point.sum += point.impulse, point.sum_first += point.impulse_first, point.sum_second += point.impulse_second;
+    for (Held& row : held_) row.sum += row.impulse;
   }
+  rebound(h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
   store(problem, h, report);

@@ -55,7 +55,8 @@ class Heap {
   /// Body `none`: the world.
   struct Point {
     std::uint32_t a = none, b = none, row = 0;
-    double friction = 0;
+    double friction = 0, restitution = 0;
+    double approach = 0;  ///< at the begin, m/s
     Vec3 normal, first, second;
     Vec3 arm_a, arm_b;    ///< from the centers to where the forces act, now
     Vec3 arm_a_at_begin, arm_b_at_begin;
@@ -68,6 +69,13 @@ class Heap {
     double height = 0;                                          ///< against gravity
     bool is_at_rest = false;                                    ///< one side does not move
   };
+  /// A held row of one value, such as resistance against rolling: the impulse by which it acts is bounded.
+  struct Held {
+    std::uint32_t a = none, b = none, item = 0;
+    Vec3 way_a, way_b, turn_a, turn_b;  ///< the rate of its value by the velocities and spins
+    double mass = 0, most = 0;          ///< N s in a sub-step
+    double impulse = 0, sum = 0;
+  };
   struct Grip {
     std::uint32_t body = none, item = 0;
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
@@ -76,12 +84,16 @@ class Heap {
 
   void load_bodies(const Problem&, double h);
   void load_points(Problem&, double h);
+  void load_held(Problem&, double h);
   void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
   struct Softness;
   void sweep(double h, const Softness&);
   void solve_point(Point&, double h, const Softness&);
+  void solve_held(Held&);
+  void apply(const Held&, double impulse);
+  void rebound(double least);
   void refresh_points();
   void apply(const Point&, const Vec3& impulse);
   Vec3 relative_velocity(const Point&) const;
@@ -90,6 +102,7 @@ class Heap {
   std::vector<std::uint32_t> body_of_;  // of each node
   std::vector<Body> bodies_;
   std::vector<Point> points_;
+  std::vector<Held> held_;
   std::vector<Grip> grips_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch
 };

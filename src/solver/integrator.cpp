@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A step as a walk through a table of attempts (settings.h), each judged by one balance of its energy (judge.h).
 // Other parts of the class: integrator_guess.cpp has the starts of solves; integrator_energy.cpp the corrections at the end
-// of a (sub-)step; integrator_gaps.cpp gaps that are open at the start; integrator_accurate.cpp steps to a tolerance.
+// of a (sub-)step; integrator_impacts.cpp its impacts; integrator_gaps.cpp gaps that are open at the start; integrator_accurate.cpp steps to a tolerance.
 #include "solver/integrator.h"
 
 #include "base/slack.h"
@@ -108,7 +108,8 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   energy_ = {};
   energy_.measure(problem, 0);
   // If moving nails have left a conflict, the mid-point rule would double the speed at which bodies catch up.
-  const bool by_end_point = settings.scheme == Scheme::end_point || (holds_offsets_ && !is_conservative_);
+  const bool by_end_point = (settings.scheme == Scheme::end_point && !find_bounces(problem, {.h = h})) ||
+                            (holds_offsets_ && !is_conservative_);
   const double taken = settings.max_error > 0 && !by_end_point ? advance_explicitly(problem, h, report) : 0;
   if (taken < 1) advance_part(problem, {.from = taken, .h = (1 - taken) * h}, by_end_point ? 1 : 0, report);
   if (holds_offsets_) restore_bounds(problem);
@@ -246,6 +247,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   stage.part = is_soft ? 1 : compliance_part(part, attempt.scheme);
   stage.is_held = holds_.count > 1;
   problem.copy_multipliers_to(multipliers_saved_);
+  (void)find_bounces(problem, part);
   const Trial trial{.scheme = attempt.scheme,
                     .is_finest = !attempt.is_halved || !may_halve(part, report),
                     .is_conservative = is_conservative_,
@@ -253,6 +255,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   StepEnergy energy;
   if (!try_step(problem, stage, report) || !is_acceptable(problem, stage, trial, energy, report)) {
     problem.set_multipliers(multipliers_saved_);
+    forget_bounces(problem);
     return false;
   }
   if (problem.has_laws()) find_holds(problem);
@@ -269,16 +272,18 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     keep_momenta(problem, *free, part.h);
     energy_.measure_kinetic(problem);
   }
-  if (is_mid_point)
+  if (!is_mid_point) give_spin_back(problem, stage, energy.dissipated, report);
+  if (has_bounced(problem))
+    settle_impacts(problem, stage, energy, report);
+  else if (is_mid_point)
     project_velocities_after_step(problem, stage, report);
-  else
-    give_spin_back(problem, stage, energy.dissipated, report);
   const bool keeps_momenta = !holds_offsets_ || restore_momenta(problem);
   if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy.total_before);
   if (!keeps_momenta || (holds_offsets_ && has_taken_off(energy))) {
     report.external_work = before.external_work, report.dissipated = before.dissipated;
     move_rigidly_instead(problem, part, report);
   }
+  forget_bounces(problem);
   if (has_corrected_) keep_correction(problem);
   energy_.close(problem, reference_length(), part.h, report);
   report.converged = report.converged && !is_soft;

@@ -130,7 +130,13 @@ class Integrator {
   bool solve_softer_contacts(Problem&, const Stage&, AdvanceReport&);
   bool is_out_of_budget();
 
+  bool find_bounces(Problem&, const Part&) const;
+  static void forget_bounces(Problem&);
+  static bool has_bounced(const Problem&);
+  static bool has_driven_rows(const Problem&);
+  void settle_impacts(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
   void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);
+  double note_projection(Problem&, double kinetic, bool drives, AdvanceReport&);
   Spin& spin() {
     if (!spin_) spin_ = std::make_unique<Spin>();
     return *spin_;

@@ -10,10 +10,8 @@
 
 namespace iota::solver {
 
-namespace {
-
 /// Whether a target moved in the (sub-)step that was solved. A motor at its largest torque is a force and drives nothing.
-bool has_driven_rows(const Problem& problem) {
+bool Integrator::has_driven_rows(const Problem& problem) {
   bool drives = false;
   problem.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) drives = drives || c.is_moving();
@@ -22,8 +20,6 @@ bool has_driven_rows(const Problem& problem) {
   });
   return drives;
 }
-
-}  // namespace
 
 // The mid-point rule satisfies the rows by the mean velocity, not by the velocity at the end: the residual of a row
 // there would change its sign in each step, as a rate of stretch of rigid links (up to 30 % of the kinetic energy of a
@@ -34,22 +30,24 @@ void Integrator::project_velocities_after_step(Problem& problem, const Stage& st
   const std::optional<double> kinetic = newton_.project_velocities_after(
       problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0});
   has_corrected_ = kinetic.has_value();
-  double taken = 0;
-  if (kinetic) {
-    taken = energy_.kinetic - *kinetic;
-    energy_.kinetic -= taken, energy_.total -= taken;
-    if (drives) {  // rows that move do work in it
-      const auto earlier = newton_.velocities_before();
-      const double own = problem.kinetic_energy([&](std::size_t i) { return problem.velocity[i] - earlier[i]; });
-      report.external_work += own - taken;
-      taken = own;
-    }
-  }
+  const double taken = kinetic ? note_projection(problem, *kinetic, drives, report) : 0;
   if (met)
     report.dissipated += taken;
   else
     energy_.missing += taken;
   if (!met && !drives && give_energy_back(problem, stage, taken, report)) has_corrected_ = true;
+}
+
+// Returns the kinetic energy that a projection of velocities has taken.
+double Integrator::note_projection(Problem& problem, double kinetic, bool drives, AdvanceReport& report) {
+  const double taken = energy_.kinetic - kinetic;
+  energy_.kinetic -= taken, energy_.total -= taken;
+  if (!drives) return taken;
+  // Rows that move do work in it.
+  const auto earlier = newton_.velocities_before();
+  const double own = problem.kinetic_energy([&](std::size_t i) { return problem.velocity[i] - earlier[i]; });
+  report.external_work += own - taken;
+  return own;
 }
 
 // Newton's velocities before the correction become the correction.

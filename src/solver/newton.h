@@ -77,6 +77,9 @@ class Newton {
   /// on a / h would brake a fast wheel at every step. Returns the kinetic energy afterwards; nothing if velocities have
   /// not changed, as they satisfied the rows already or cannot.
   std::optional<double> project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known);
+  /// The same after a (sub-)step with impacts that have a restitution, by at most some kinetic energy: each contact that met
+  /// gets the normal speed e times that of its approach, with friction; none pulls. See integrator_impacts.cpp.
+  std::optional<double> settle_impacts(Problem& problem, const Stage& stage, const AfterStep& known, double most);
   /// Before the latest projection.
   std::span<Vec3> velocities_before() { return u_saved_; }
   std::span<const Vec3> velocities_before() const { return u_saved_; }
@@ -118,11 +121,16 @@ class Newton {
   struct Wanted {
     double h = 0;                    ///< targets move during the next h seconds
     std::span<const Vec3> impulses;  ///< of each node, if any
-    bool is_after_step = false;
+    bool is_after_step = false, has_impacts = false;
     double tolerance() const { return is_after_step ? 1e-12 : 2e-15; }  ///< of the largest velocity
     double fraction() const { return is_after_step ? 1 : 0; }           ///< of the step, for targets that move
   };
+  Wanted begin_after_step(Problem&, const Stage&, const AfterStep&);
   std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
+  std::optional<double> project_impacts(Problem&, const Wanted&, double h, double energy);
+  double find_rebounds(Problem&, const Stage&);
+  double rate_in_the_middle(const ContactConstraint&, std::span<const Vec3> velocity) const;
+  void give_back_momenta(Problem&) const;
   double find_rates(const Problem&, const Wanted&);
   double find_gaps(const Problem&, double time);
   template <class C>

@@ -45,26 +45,35 @@ void Newton::project_velocities(Problem& problem, double h, std::span<const Vec3
   if (found && problem.is_isolated()) give_back_momentum(problem, impulses);
 }
 
-std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
-  if (!problem.has_used_constraints()) return {};
+Newton::Wanted Newton::begin_after_step(Problem& problem, const Stage& stage, const AfterStep& known) {
   const double whole_step = stage.h / (stage.fraction - stage.fraction_start);
-  const Wanted wanted{.h = known.drives_rows ? whole_step : 0, .is_after_step = true};
   if (has_laws_ || !problem.items_of<CouplingConstraint>().empty()) {
     mean_place_.resize(problem.size()), mean_velocity_.resize(problem.size());
     for (std::size_t i = 0; i < problem.size(); ++i) {
-      mean_velocity_[i] = problem.velocity[i] - (1 / stage.h) * u_[i];
+      mean_velocity_[i] = problem.velocity[i];
+      if (stage.is_mid_point()) mean_velocity_[i] -= (1 / stage.h) * u_[i];
       mean_place_[i] = problem.position[i] - (0.5 * stage.h) * mean_velocity_[i];
     }
   }
   if (has_laws_) ActiveSet::begin_impulses_after_step(problem);
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
+  return {.h = known.drives_rows ? whole_step : 0, .is_after_step = true};
+}
+
+std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
+  if (!problem.has_used_constraints()) return {};
+  const Wanted wanted = begin_after_step(problem, stage, known);
   const std::optional<double> kinetic = project_onto_sides(problem, wanted, known.kinetic);
   if (kinetic) add_impulses(problem);
   if (!kinetic || !known.is_isolated) return kinetic;
+  give_back_momenta(problem);
+  return problem.kinetic_energy();
+}
+
+void Newton::give_back_momenta(Problem& problem) const {
   give_back_momentum(problem, {});
   if (has_laws_ || problem.has_used<CouplingConstraint>()) give_back_angular_momentum(problem, u_saved_);
-  return problem.kinetic_energy();
 }
 
 // Contacts tell their impulses: an impact of the mid-point rule is complete only with the velocities at its end.
@@ -136,7 +145,7 @@ std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted&
     stage.fraction = wanted.fraction();
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     double drive = find_rates(problem, wanted);
-    if (wanted.is_after_step && drive == 0) return {};
+    if (wanted.is_after_step && !wanted.has_impacts && drive == 0) return {};
     for (std::size_t i = 0; i < wanted.impulses.size(); ++i) {
       const Vec3& impulse = wanted.impulses[i];
       double* const r = assembly_.residuals().data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
@@ -149,7 +158,9 @@ std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted&
     }
     (void)assembly_.factor_and_solve(problem, stage, problem.position.data(), Hessian::none);
     add_step_to_velocities(problem);
-    for (int pass = 0; pass < 2 && find_rates(problem, wanted) > 0; ++pass) {  // compliance and round-off
+    const int most_passes =
+        wanted.has_impacts ? 8 : 2;  // compliance and round-off; the turn since the middle of the step
+    for (int pass = 0; pass < most_passes && find_rates(problem, wanted) > 0; ++pass) {
       assembly_.solve();
       add_step_to_velocities(problem);
     }
@@ -207,6 +218,8 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
         gradients.of_node(i, rows);
         for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], problem.velocity[c.nodes[i]]);
       }
+      if constexpr (BouncingConstraint<C>)
+        if (wanted.has_impacts && c.rebound > 0) row[0] = rate_in_the_middle(c, problem.velocity) - c.rebound;
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) {
           if (pool.law(k)[r].hold && !keeps_rate) row[r] -= pool.law(k)[r].rate;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Callable
 
 import numpy as np
@@ -325,5 +326,14 @@ def test_a_material_says_what_is_wrong_with_it() -> None:
         iota.Material(friction=-0.1)
     with pytest.raises(TypeError):
         iota.System().body().material = 0.5  # type: ignore[assignment]
+    with pytest.raises(ValueError, match=r"restitution must be at most 1, not 1\.5"):
+        iota.Material(restitution=1.5)
+    with pytest.raises(ValueError, match=r"restitution must be finite and at least 0"):
+        iota.Material(restitution=float("nan"))
+    with pytest.raises(ValueError, match=r"rolling must be finite and at least 0, not -1"):
+        iota.Material(rolling=-1)
     assert repr(iota.Material(friction=0.25)) == "Material(friction=0.25)"
+    rubber = iota.Material(friction=0.9, restitution=0.8, rolling=0.01)
+    assert repr(rubber) == "Material(friction=0.9, restitution=0.8, rolling=0.01)"
+    assert pickle.loads(pickle.dumps(rubber)) == rubber != iota.Material(friction=0.9)
     assert iota.Material() == iota.Material(friction=0.5)

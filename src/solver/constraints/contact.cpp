@@ -60,7 +60,10 @@ ConeEquations ContactConstraint::equations(ConeState state, const double* multip
   const double part = trial.size > 0 ? std::min(1.0, bound / trial.size) : 0;
   for (std::size_t i = 0; i < 2; ++i) {
     e.value[1 + i] = k * (bound * d[i] - multipliers[1 + i]);
-    e.by_multiplier[1 + i][0] = state.direction != 0 && multipliers[0] < 0 ? -k * friction * d[i] : 0;
+    if (state.direction == 0)
+      e.by_multiplier[1 + i][0] = k * drags[i];
+    else
+      e.by_multiplier[1 + i][0] = multipliers[0] < 0 ? -k * friction * d[i] : 0;
     for (std::size_t j = 0; j < 2; ++j) {
       const double across = part * ((i == j ? 1 : 0) - d[i] * d[j]);
       e.by_value[1 + i][1 + j] = across;

@@ -23,16 +23,22 @@ namespace iota::solver {
 /// that turns, where axis . d is small. Arms that turn with a body keep angular momentum.
 /// Newton's matrix has the column of mu N, and the curvature of the circle |z|: Alart and Curnier, A mixed formulation for
 /// frictional contact problems, 1991. c_n makes the forces of a box on four corners unique, c_t keeps Newton's method from
-/// cycling between them. The solver measures the slip from the start of the (sub-)step less the strain c_t lambda with which
+/// cycling between them. Impacts: src/solver/integrator_impacts.cpp. The solver measures the slip from the start of the (sub-)step less the strain c_t lambda with which
 /// that began, so that a contact that sticks does not creep.
 struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double radius = 0;                             ///< m
+  double floor = 0;                              ///< g_0 that an impact leaves at the end of the step, m
+  double restitution = 0;                        ///< e: the normal speed after an impact, of that before
   double friction = 0;                           ///< mu
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
-  bool is_round = false;            ///< the radius is that of both together, above zero
+  double rebound = 0;     ///< the normal speed at which an impact ends, while velocities are settled, m/s
+  double drags[2] = {};   ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
+  bool is_round = false;  ///< the radius is that of both together, above zero
+  bool meets = false;     ///< in this (sub-)step, by the velocities with which it begins
+  bool leaves = false;    ///< at its end after an impact, so that its rows store nothing
 
   /// Arms 2 to 4, which do not turn with a body.
   void set_directions(const std::array<Vec3, 3>& of) {
@@ -42,7 +48,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double reference_length() const { return reference; }
   static Vec3 across(const Vec3& d, const Vec3& axis) { return d - dot(axis, d) * axis; }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
-    g[0] = is_round ? (dot(across(e[0], e[2]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius;
+    g[0] = (is_round ? (dot(across(e[0], e[2]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius) - floor;
     g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
   /// The functions of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
@@ -94,7 +100,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   /// compliance of each row at the points, m/N; gaps up to `tolerance` change nothing.
   ConeState switch_state(ConeState now, const double* multipliers, const double* g, const double* natural,
                          double tolerance) const;
-  /// A state with direction 0 slips without friction.
+  /// A state with direction 0 slips without friction, but for the drags of an impulse.
   ConeEquations equations(ConeState, const double* multipliers, const double* g, const double* natural) const;
 
  private:

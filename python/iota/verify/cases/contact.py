@@ -35,7 +35,8 @@ def contact(run: Run) -> None:
     Boxes, balls and cylinders on a plane and on each other with Coulomb friction, by rows of the same solve as joints.
     Expected values are closed forms: the way of a sliding box, the speed at which a sliding ball begins to roll, the angles
     at which a box slides and a tower tips, the weight on four corners, the overhang of a stack of blocks, the speeds of a
-    ball and of the plank on which it begins to roll.
+    ball and of the plank on which it begins to roll, the heights and the time of a bouncing ball, the speeds of balls after
+    an impact, the way of a ball against rolling resistance.
     """
     dt = run.size(1 / 240, 1 / 120)
     _sliding(run, dt)
@@ -45,6 +46,9 @@ def contact(run: Run) -> None:
     _towers(run, dt)
     _overhang(run, dt)
     _plank(run, dt)
+    _bounces(run, dt)
+    _impacts(run, dt)
+    _rolling_resistance(run, dt)
 
 
 def _sliding(run: Run, dt: float) -> None:
@@ -166,3 +170,56 @@ def _plank(run: Run, dt: float) -> None:
         "speed of a ball that begins to roll on a plank on ice, m/s", ball.velocity.x, 1 - impulse / ball.mass, 2e-3
     )
     run.near("speed of the plank, m/s", plank.velocity.x, impulse / plank.mass, 2e-3)
+
+
+def _bounces(run: Run, dt: float) -> None:
+    height = 0.9
+    for restitution in (0.5, 0.9, 1.0):
+        system = _on_a_slope(0, 0.5)
+        ball = system.body(shape=iota.Sphere(0.1), position=(0, 0.1 + height, 0))
+        ball.material = iota.Material(restitution=restitution)
+        start = system.energy.kinetic + system.energy.potential
+        whole = math.sqrt(2 * height / G) * (1 + restitution) / (1 - restitution) if restitution < 1 else math.inf
+        falls, worst, last, gain = 0, 0.0, 0.0, -math.inf
+        for k in range(round(min(whole + 0.5, run.size(20, 8)) / dt)):
+            before = ball.velocity.y
+            system.step(dt)
+            gain = max(gain, system.energy.kinetic + system.energy.potential - start)
+            if before < 0 < ball.velocity.y and falls < 4:
+                falls += 1
+                apex = ball.center_of_mass.y - 0.1 + ball.velocity.y**2 / (2 * G)
+                worst = max(worst, abs(apex / (height * restitution ** (2 * falls)) - 1))
+            if abs(ball.velocity) > 1e-6:
+                last = (k + 1) * dt
+        run.at_most(f"heights of four bounces, restitution {restitution}, relative", worst, 1e-6)
+        run.at_most(f"energy gained, restitution {restitution}, of m g h", gain / (ball.mass * G * height), 1e-12)
+        if whole < run.size(20, 8):
+            name = f"time until the ball rests, restitution {restitution}, s"
+            run.near(name, last, whole, 4 * dt / (1 - restitution))
+
+
+def _impacts(run: Run, dt: float) -> None:
+    """Newton's law: J = (1 + e) m M/(m + M) of the relative speed."""
+    for ratio in (1e-3, 1.0, 1e3):
+        for restitution in (0.0, 0.5, 1.0):
+            system = iota.System(gravity=(0, 0, 0))
+            system.usual_material = iota.Material(restitution=restitution)
+            ball = system.body(shape=iota.Sphere(0.1), position=(-0.5, 0, 0), velocity=(2, 0, 0))
+            other = system.body(shape=iota.Sphere(0.1), position=(0.5, 0, 0), velocity=(-1, 0, 0), density=1000 * ratio)
+            _step(system, 0.5, dt)
+            impulse = 3 * (1 + restitution) / (1 / ball.mass + 1 / other.mass)
+            name = f"of a ball after one of {ratio:g} times its mass, restitution {restitution}, m/s"
+            run.at_most("error of the speed " + name, abs(ball.velocity - (2 - impulse / ball.mass, 0, 0)), 1e-6)
+
+
+def _rolling_resistance(run: Run, dt: float) -> None:
+    """a = C g/(1 + I/(m R^2))."""
+    for coefficient in (0.02, 0.1):
+        system = _on_a_slope(0, 0.6)
+        ball = system.body(shape=iota.Sphere(0.1), position=(0, 0.1, 0), velocity=(1, 0, 0), spin=(0, 0, -10))
+        ball.material = iota.Material(friction=0.6, rolling=coefficient)
+        slowing = coefficient * G / (1 + 2 / 5)
+        _step(system, 1 / slowing + 0.2, dt)
+        name = f"way of a ball at 1 m/s, rolling resistance {coefficient}, m"
+        run.near(name, ball.center_of_mass.x, 1 / (2 * slowing), 1e-4)
+        run.at_most(f"its speed afterwards, rolling resistance {coefficient}, m/s", abs(ball.velocity), 1e-9)

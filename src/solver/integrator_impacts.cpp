@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Impacts with restitution e, of contacts (docs/contact.md).
+//
+// The rows of a step stop what meets. They leave it at the place, and the projection after the step gives it the velocity, from
+// which it rises as far as the law says:
+//   places      g = e^2 g_0 at the end, g_0 at the start. With the normal speed e v, v that of the approach at the start, it
+//               rises to e^2 of the height from which it fell, under any force: (e v)^2/(2 a) + e^2 g_0 = e^2 (v^2/(2 a) + g_0).
+//               A gap never grows while it pushes, so that a contact does no work on what it stops.
+//   velocities  v+ = -e v- along the normal in the middle of the step, of all at once: Newton's law of impacts, simultaneous.
+//               Below the speed that gravity gives in a step e is 0.
+//   energy      the step with both is no higher in energy than before: else less of the rebound is given.
+// With places at g = 0, heights were wrong by up to 2 % a bounce (fall of 0.9 m, 120 Hz). Steps of the end-point scheme have
+// no mean velocity that reverses; so they are taken by the mid-point scheme, if anything bounces in them.
+#include "solver/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iota::solver {
+
+// By straight paths. Contacts that meet against this prediction get the law of velocities only.
+bool Integrator::find_bounces(Problem& problem, const Part& part) const {
+  bool any = false;
+  if (!problem.has_used<ContactConstraint>()) return false;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  const double least = part.h * norm(problem.gravity);
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    ContactConstraint& c = pool.items[k];
+    c.floor = 0, c.meets = c.leaves = false;
+    if (!(c.restitution > 0)) continue;
+    const Gradients<ContactConstraint> gradients(c, problem.position.data(), part.from);
+    double speed = 0, fall = 0, at_start[ContactConstraint::rows], at_end[ContactConstraint::rows];
+    ContactConstraint ahead = c;  // with its points at the places to which they move
+    std::array<Vec3, ContactConstraint::max_nodes> places;
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      Vec3 rows[ContactConstraint::rows];
+      gradients.of_node(static_cast<int>(i), rows);
+      const Vec3& v = problem.velocity[c.nodes[i]];
+      speed += dot(rows[0], v), fall += 0.5 * part.h * part.h * dot(rows[0], problem.gravity);
+      ahead.nodes[i] = i, places[i] = problem.position[c.nodes[i]] + part.h * v;
+    }
+    if (!(speed < -least)) continue;
+    pool.value(k, problem.position.data(), part.from, at_start);
+    ahead.value(places.data(), part.to, at_end);
+    if (!(at_end[0] + std::min(0.0, fall) < 0)) continue;
+    c.floor = c.restitution * c.restitution * std::max(0.0, at_start[0]), c.meets = any = true;
+  }
+  return any;
+}
+
+void Integrator::forget_bounces(Problem& problem) {
+  for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.floor = 0, c.meets = false;
+}
+
+bool Integrator::has_bounced(const Problem& problem) {
+  if (!problem.has_used<ContactConstraint>()) return false;
+  const auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k)
+    if (pool.items[k].restitution > 0 && pool.states.has_been_met(k * ContactConstraint::rows)) return true;
+  return false;
+}
+
+// `step`: the balance of what was solved.
+void Integrator::settle_impacts(Problem& problem, const Stage& stage, const StepEnergy& step, AdvanceReport& report) {
+  const bool drives = drives_rows_ && has_driven_rows(problem);
+  const double spare =
+      step.total_before + step.external_work - energy_.total - std::max(0.0, step.dissipated);  // by friction
+  const double most = drives ? std::numeric_limits<double>::infinity() : energy_.kinetic + std::max(0.0, spare);
+  const std::optional<double> kinetic = newton_.settle_impacts(
+      problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0}, most);
+  has_corrected_ = has_corrected_ || kinetic.has_value();
+  if (!kinetic) return;
+  double taken = note_projection(problem, *kinetic, drives, report);
+  const auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k)
+    if (pool.items[k].leaves) {
+      const double stored = strain_energy(pool.items[k], pool.multiplier(k));
+      energy_.total -= stored, taken += stored;
+    }
+  report.dissipated += taken;  // if negative: of what the rows have taken
+}
+
+}  // namespace iota::solver

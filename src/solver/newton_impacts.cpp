@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Impacts with restitution: a projection of velocities, with a speed along the normals and friction.
+#include "solver/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+std::optional<double> Newton::settle_impacts(Problem& problem, const Stage& stage, const AfterStep& known,
+                                             double most) {
+  constexpr double round_off = 1e-14;
+  Wanted wanted = begin_after_step(problem, stage, known);
+  wanted.has_impacts = true;
+  most += find_rebounds(problem, stage);
+  const double limit = std::isfinite(most) ? 4 * std::max(known.kinetic, most) : most;
+  const auto project = [&](double energy) {
+    std::optional<double> kinetic = project_impacts(problem, wanted, stage.h, energy);
+    if (kinetic && known.is_isolated) give_back_momenta(problem), kinetic = problem.kinetic_energy();
+    return kinetic;
+  };
+  std::optional<double> kinetic = project(limit);
+  if (kinetic && *kinetic > most * (1 + round_off)) {
+    // The law alone may gain: with friction, and where restitutions differ (Kane's pendulum). From the velocities without any
+    // rebound or late friction, a projection, go as far towards those with it as the energy allows: T = a + b s + c s^2.
+    x_.assign(problem.velocity.begin(), problem.velocity.end());
+    const std::vector<double> impulses = impulses_;
+    std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
+    for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.rebound = c.drags[0] = c.drags[1] = 0;
+    const double a = project(known.kinetic).value_or(known.kinetic);
+    const double c = problem.kinetic_energy([&](std::size_t i) { return x_[i] - problem.velocity[i]; });
+    const double b = *kinetic - a - c, room = std::max(0.0, most - a);
+    const double root = std::sqrt(std::max(0.0, b * b + 4 * c * room));
+    // The stable form of the positive root.
+    const double part = std::clamp(b > 0 ? 2 * room / (b + root) : c > 0 ? (root - b) / (2 * c) : 0.0, 0.0, 1.0);
+    for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] += part * (x_[i] - problem.velocity[i]);
+    for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += part * (impulses[i] - impulses_[i]);
+    kinetic = problem.kinetic_energy();
+  }
+  for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.rebound = c.drags[0] = c.drags[1] = 0;
+  if (kinetic) add_impulses(problem);
+  return kinetic;
+}
+
+// Principal pivoting: few rounds, as contacts only open, or begin to stick.
+std::optional<double> Newton::project_impacts(Problem& problem, const Wanted& wanted, double h, double energy) {
+  constexpr int most_rounds = 12;
+  std::optional<double> kinetic;
+  for (int round = 0; round < most_rounds; ++round) {
+    std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
+    kinetic = project_onto_sides(problem, wanted, energy);
+    if (!kinetic || !ActiveSet::switch_impacts(problem, h, impulses_)) break;
+  }
+  return kinetic;
+}
+
+// By the mean of its gradients over the step, of which the middle has that: an impact of restitution 1 keeps the energy.
+double Newton::rate_in_the_middle(const ContactConstraint& c, std::span<const Vec3> velocity) const {
+  const Gradients<ContactConstraint> gradients(c, mean_place_.data(), 1);
+  double rate = 0;
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[ContactConstraint::rows];
+    gradients.of_node(i, rows);
+    rate += dot(rows[0], velocity[c.nodes[i]]);
+  }
+  return rate;
+}
+
+// An approach below what gravity gives in a step ends without a rebound. Contacts that slip get friction by their late
+// impulse, too. Returns the energy that the rows of those that leave have stored, J: the motion gets it back.
+double Newton::find_rebounds(Problem& problem, const Stage& stage) {
+  double stored = 0;
+  const double least = stage.h * norm(problem.gravity), per_time = (stage.is_mid_point() ? 2 : 1) / stage.h;
+  for (std::size_t i = 0; i < problem.size(); ++i) x_[i] = problem.velocity[i] - per_time * u_[i];  // before the step
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    ContactConstraint& c = pool.items[k];
+    c.rebound = c.drags[0] = c.drags[1] = 0;
+    const ConeState state = pool.states.cone(k * ContactConstraint::rows);
+    if (state.mode == ConeState::Mode::open) continue;
+    if (c.restitution > 0 && pool.states.has_been_met(k * ContactConstraint::rows)) {
+      const double approach = -rate_in_the_middle(c, x_);
+      c.leaves = approach > least;
+      if (c.leaves) c.rebound = c.restitution * approach, stored += strain_energy(c, pool.multiplier(k));
+    }
+    const double* const l = pool.multiplier(k);
+    if (state.slips() && l[0] < 0)
+      for (int i = 0; i < 2; ++i) c.drags[i] = l[1 + i] / l[0];
+  }
+  return stored;
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// Impacts with restitution and rolling resistance, judged from places and velocities.
+#include "gravity.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace iota {
+namespace {
+
+constexpr IntegrationMode both_modes[] = {IntegrationMode::energy_keeping, IntegrationMode::robust};
+
+System make_hall(Material material, IntegrationMode mode = IntegrationMode::energy_keeping) {
+  System system;
+  system.set_mode(mode), system.set_usual_material(material);
+  system.bodies().set_material(system.bodies().create_obstacle(HalfSpace{{0, 1, 0}}, {}, {}), material);
+  return system;
+}
+BodyId drop_ball(System& system, double height, double radius) {
+  return system.bodies().create(Sphere{radius}, {.position = {0, radius + height, 0}});
+}
+/// The height to which the ball has risen or will rise, by its place and speed.
+double apex(const System& system, BodyId ball, double radius) {
+  const double v = system.bodies().velocity(ball).y;
+  return system.bodies().center_of_mass(ball).y - radius + v * v / (2 * g);
+}
+double energy_of(const System& system) { return system.energy().kinetic + system.energy().potential; }
+
+TEST(Impacts, lift_a_ball_to_the_square_of_the_restitution_of_its_height) {
+  for (const double radius : {0.01, 1.0})
+    for (const double per_second : {60.0, 240.0})
+      for (const double e : {0.5, 0.9, 1.0}) {
+        System system = make_hall(Material{.restitution = e});
+        const double height = 10 * radius;
+        const BodyId ball = drop_ball(system, height, radius);
+        double wanted = height;
+        int bounces = 0;
+        const double last = 4 * g / (per_second * per_second);  // below it impacts end
+        for (int i = 0; i < 20 * std::sqrt(height) * per_second && bounces < 5 && wanted > last; ++i) {
+          const double before = system.bodies().velocity(ball).y;
+          (void)system.step(1 / per_second);
+          ASSERT_LE(apex(system, ball, radius), wanted * (1 + 1e-12));
+          if (before >= 0 || system.bodies().velocity(ball).y <= 0) continue;
+          ++bounces, wanted *= e * e;
+          EXPECT_NEAR(apex(system, ball, radius), wanted, 1e-6 * wanted) << radius << " m, restitution " << e;
+        }
+        EXPECT_GE(bounces, 2);
+      }
+}
+
+TEST(Impacts, let_a_ball_bounce_as_long_as_the_sum_of_its_flights) {
+  for (const double e : {0.5, 0.8}) {
+    constexpr double h = 1.0 / 240, height = 0.9;
+    System system = make_hall(Material{.restitution = e});
+    const BodyId ball = drop_ball(system, height, 0.1);
+    const double whole = std::sqrt(2 * height / g) * (1 + e) / (1 - e);
+    double last = 0;
+    for (int i = 1; i * h < whole + 0.5; ++i) {
+      (void)system.step(h);
+      if (norm(system.bodies().velocity(ball)) > 1e-6) last = i * h;
+    }
+    EXPECT_NEAR(last, whole, 4 * h / (1 - e));
+  }
+}
+
+TEST(Impacts, of_two_balls_follow_newtons_law_at_any_ratio_of_masses) {
+  for (const IntegrationMode mode : both_modes)
+    for (const double ratio : {1e-3, 1.0, 1e3})
+      for (const double e : {0.0, 0.5, 1.0}) {
+        System system;
+        system.set_mode(mode), system.set_gravity({}), system.set_usual_material(Material{.restitution = e});
+        const BodyId a = system.bodies().create(Sphere{0.1}, {.position = {-0.5, 0, 0}, .velocity = {2, 0, 0}});
+        const BodyId b = system.bodies().create(
+            Sphere{0.1}, {.density = 1000 * ratio, .position = {0.5, 0, 0}, .velocity = {-1, 0, 0}});
+        for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+        const double m = system.bodies().mass(a), n = system.bodies().mass(b), impulse = (1 + e) * 3 * m * n / (m + n);
+        EXPECT_LT(norm(system.bodies().velocity(a) - Vec3{2 - impulse / m, 0, 0}), 1e-7) << ratio << " " << e;
+        EXPECT_LT(norm(system.bodies().velocity(b) - Vec3{-1 + impulse / n, 0, 0}), 1e-7) << ratio << " " << e;
+      }
+}
+
+TEST(Impacts, beside_the_line_of_centers_keep_both_momenta) {
+  for (const double e : {0.5, 1.0}) {
+    System system;
+    system.set_gravity({}), system.set_usual_material(Material{.friction = 0.4, .restitution = e});
+    std::vector<BodyId> bodies;
+    bodies.push_back(
+        system.bodies().create(Box{{0.2, 0.1, 0.3}}, {.position = {-0.5, 0.03, 0}, .velocity = {3, 0, 0}}));
+    bodies.push_back(system.bodies().create(Sphere{0.1}, {.position = {0.4, 0, 0.05}, .velocity = {-1, 0, 0}}));
+    const Vec3 linear = system.momentum(), angular = system.angular_momentum();
+    for (int i = 0; i < 120; ++i) (void)system.step(1.0 / 120);
+    EXPECT_LT(norm(system.momentum() - linear), 1e-10 * norm(linear));
+    EXPECT_LT(norm(system.angular_momentum() - angular), 1e-7 * norm(linear));
+    EXPECT_LT(system.bodies().velocity(bodies[0]).x, system.bodies().velocity(bodies[1]).x);
+  }
+}
+
+TEST(Impacts, of_balls_in_a_row_are_simultaneous) {
+  System system;
+  system.set_gravity({}), system.set_usual_material(Material{.friction = 0, .restitution = 1});
+  std::vector<BodyId> row;
+  for (const double x : {-0.5, 0.0, 0.2}) row.push_back(system.bodies().create(Sphere{0.1}, {.position = {x, 0, 0}}));
+  system.bodies().set_velocity(row[0], {1, 0, 0});
+  for (int i = 0; i < 90; ++i) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(system.bodies().velocity(row[0]).x, -1.0 / 3, 1e-7);
+  EXPECT_NEAR(system.bodies().velocity(row[1]).x, 2.0 / 3, 1e-7);
+  EXPECT_NEAR(system.bodies().velocity(row[2]).x, 2.0 / 3, 1e-7);
+}
+
+TEST(Impacts, never_raise_the_energy) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double from, double to) {
+    return from + (to - from) * std::uniform_real_distribution<>()(random);
+  };
+  const auto vector = [&](double size) {
+    return Vec3{uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  };
+  for (int scene = 0; scene < 120; ++scene) {
+    const double size = std::pow(10, uniform(-1.5, 0.5)), e = scene % 3 == 0 ? 1 : uniform(0, 1);
+    const Material material{.friction = uniform(0, 1), .restitution = e, .rolling = scene % 2 * uniform(0, 0.1)};
+    System system = make_hall(material, both_modes[scene % 5 == 0]);
+    const int count = 1 + scene % 3;
+    double weight = 0;
+    for (int i = 0; i < count; ++i) {
+      const double a = size * uniform(0.3, 1);
+      const SolidOptions options{
+          .density = std::pow(10, uniform(2, 4)),
+          .position = {uniform(-1, 1) * size, (1 + 1.8 * i) * size, 0},
+          .orientation = normalized(Quaternion{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), 1}),
+          .velocity = vector(5 * std::sqrt(size)),
+          .spin = vector(8)};
+      const Shape shapes[] = {Box{{a, a * uniform(0.2, 1), a * uniform(0.2, 1)}}, Sphere{a / 2}, Capsule{a / 4, a / 2},
+                              Cylinder{a / 3, a / 2}};
+      weight += system.bodies().mass(system.bodies().create(shapes[random() % 4], options));
+    }
+    const double before = energy_of(system), unit = system.energy().kinetic + weight * g * size;
+    for (int i = 0; i < 120; ++i) {
+      (void)system.step(1.0 / 90);
+      ASSERT_LT(energy_of(system) - before, 1e-10 * unit) << "scene " << scene << ", step " << i;
+    }
+  }
+}
+
+TEST(Impacts, end_where_a_body_rests) {
+  for (const IntegrationMode mode : both_modes) {
+    System system = make_hall(Material{.restitution = 0.9}, mode);
+    system.set_rest({.after = 0.2});
+    const BodyId box = system.bodies().create(Box{{0.2, 0.2, 0.2}}, {.position = {0, 0.1, 0}});
+    for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+    EXPECT_EQ(system.bodies().kind(box), BodyKind::resting);
+    EXPECT_NEAR(system.bodies().center_of_mass(box).y, 0.1, 1e-9);
+  }
+}
+
+TEST(Impacts, go_on_from_a_snapshot_bit_by_bit) {
+  for (const double share : {0.3, 0.37, 0.45}) {
+    System system = make_hall(Material{.restitution = 0.8, .rolling = 0.05});
+    const BodyId ball = system.bodies().create(Sphere{0.1}, {.position = {0, 0.4, 0}, .velocity = {1, 0, 0}});
+    for (int i = 0; i < share * 120; ++i) (void)system.step(1.0 / 120);
+    System copy;
+    copy.restore(system.snapshot());
+    for (int i = 0; i < 120; ++i) (void)system.step(1.0 / 120), (void)copy.step(1.0 / 120);
+    EXPECT_EQ(system.bodies().center_of_mass(ball), copy.bodies().center_of_mass(ball));
+    EXPECT_EQ(copy.bodies().material(ball), std::nullopt);
+    EXPECT_EQ(copy.usual_material(), (Material{.restitution = 0.8, .rolling = 0.05}));
+  }
+}
+
+TEST(Impacts, take_the_larger_restitution_of_two) {
+  System system = make_hall(Material{.restitution = 0.2});
+  const BodyId ball = drop_ball(system, 0.5, 0.1);
+  system.bodies().set_material(ball, Material{.restitution = 0.8});
+  while (system.bodies().velocity(ball).y <= 0) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(apex(system, ball, 0.1), 0.64 * 0.5, 1e-6);
+}
+
+TEST(RollingResistance, stops_a_ball_after_the_way_of_its_law) {
+  for (const double radius : {0.01, 1.0})
+    for (const double coefficient : {0.01, 0.1}) {
+      System system = make_hall(Material{.friction = 0.6, .rolling = coefficient});
+      const double v = std::sqrt(radius), slowing = coefficient * g / (1 + 0.4);
+      const BodyId ball = system.bodies().create(Sphere{radius}, {.position = {0, radius, 0},
+                                                                  .velocity = {0.6 * v, 0, 0.8 * v},
+                                                                  .spin = {0.8 * v / radius, 0, -0.6 * v / radius}});
+      const double h = v / slowing / 300;
+      for (int i = 0; i < 320; ++i) (void)system.step(h);
+      const Vec3 way = system.bodies().center_of_mass(ball) - Vec3{0, radius, 0};
+      EXPECT_NEAR(norm(way), v * v / (2 * slowing), 1e-3 * norm(way));
+      EXPECT_NEAR(way.x / way.z, 0.75, 1e-6);
+      EXPECT_LT(norm(system.bodies().velocity(ball)), 1e-12);
+    }
+}
+
+TEST(RollingResistance, holds_a_ball_on_a_slope_up_to_its_coefficient) {
+  for (const double share : {0.98, 1.02, 2.0}) {
+    constexpr double coefficient = 0.05, seconds = 2;
+    const double angle = std::atan(share * coefficient);
+    System system = make_hall(Material{.friction = 0.6, .rolling = coefficient});
+    system.set_gravity({g * std::sin(angle), -g * std::cos(angle), 0});
+    const BodyId ball = drop_ball(system, 0, 0.1);
+    for (int i = 0; i < seconds * 120; ++i) (void)system.step(1.0 / 120);
+    const double pull = g * (std::sin(angle) - coefficient * std::cos(angle));
+    const double way = std::max(0.0, pull / 1.4 * seconds * seconds / 2);
+    EXPECT_NEAR(system.bodies().center_of_mass(ball).x, way, 1e-5 + 0.01 * way);
+  }
+}
+
+TEST(RollingResistance, slows_a_cylinder_by_its_inertia) {
+  System system = make_hall(Material{.friction = 0.6, .rolling = 0.05});
+  const double half = std::sqrt(0.5);
+  const BodyId roll = system.bodies().create(
+      Cylinder{0.1, 0.2},
+      {.position = {0, 0.1, 0}, .orientation = {0, half, 0, half}, .velocity = {1, 0, 0}, .spin = {0, 0, -10}});
+  for (int i = 0; i < 480; ++i) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(system.bodies().center_of_mass(roll).x, 1 / (2 * 0.05 * g / 1.5), 1e-2);
+  EXPECT_LT(norm(system.bodies().velocity(roll)), 1e-12);
+}
+
+TEST(RollingResistance, between_two_that_move_keeps_both_momenta) {
+  System system;
+  system.set_gravity({}), system.set_usual_material(Material{.friction = 0.5, .rolling = 0.3});
+  (void)system.bodies().create(Sphere{0.1}, {.position = {-0.1, 0, 0}, .velocity = {1, 0, 0}, .spin = {0, 9, 4}});
+  const BodyId b = system.bodies().create(Sphere{0.2}, {.position = {0.22, 0.02, 0}, .velocity = {-1, 0, 0}});
+  const Vec3 linear = system.momentum(), angular = system.angular_momentum();
+  for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 240);
+  EXPECT_LT(norm(system.momentum() - linear), 1e-10 * norm(linear));
+  EXPECT_LT(norm(system.angular_momentum() - angular), 1e-7 * norm(linear));
+  EXPECT_GT(norm(system.bodies().angular_velocity(b)), 1e-3);
+}
+
+TEST(Materials, refuse_coefficients_without_a_meaning) {
+  System system;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const Material& material :
+       {Material{.friction = -1}, Material{.restitution = -0.1}, Material{.restitution = 1.1},
+        Material{.restitution = none}, Material{.rolling = -1}, Material{.rolling = none},
+        Material{.rolling = std::numeric_limits<double>::infinity()}}) {
+    EXPECT_THROW(system.set_usual_material(material), std::invalid_argument);
+    EXPECT_EQ(system.usual_material(), std::nullopt);
+  }
+}
+
+}  // namespace
+}  // namespace iota
