@@ -231,10 +231,6 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   places.set_others(c, p, q, sides);
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether it has a spin, or stands.
 bool has_orientation(const model::Body& body) { return !has_points(body) || body.rank == 4; }
 
@@ -626,6 +622,9 @@ void Contacts::validate(const Model& model, model::Audit& audit) {
     for (std::uint32_t i = 0; i < c.point_count; ++i)
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
+    audit.require(c.restitution >= 0 && c.restitution <= 1 && c.rolling >= 0 && c.carried >= 0 && is_finite(c.torque) &&
+                      c.roll_rows <= 2,
+                  "contact ", slot, " has no valid restitution or rolling resistance");
     audit.require(is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 &&
                       c.friction >= 0 && c.depth <= 0,
                   "contact ", slot, " has no valid plane, force or friction");

@@ -265,10 +265,13 @@ class RandomHeap {
  public:
   explicit RandomHeap(unsigned seed) : random_(seed) {
     size_ = std::pow(10, 1.3 * any() - 0.5);
-    system.set_usual_material(Material{0.5 + 0.4 * any()});
+    if (seed % 2 == 1) material_.restitution = 0.05 * seed, material_.rolling = 0.01 * seed;
+    Material usual = material_;
+    usual.friction += 0.4 * any();
+    system.set_usual_material(usual);
     if (pick(2) == 0) system.set_rest({.after = 0.3, .speed = 0.01 * size_});
     for (const Shape& shape : {Shape{HalfSpace{{0, 1, 0}}}, Shape{Box{{3 * size_, size_, 3 * size_}}}})
-      system.bodies().set_material(system.bodies().create_obstacle(shape, {}, {}), Material{0.5});
+      system.bodies().set_material(system.bodies().create_obstacle(shape, {}, {}), material_);
     for (int i = 0; i < 6; ++i) add({size_ * any() * 0.6, size_ * (1 + 0.9 * i), size_ * 0.6 * any()});
   }
   System system;
@@ -325,11 +328,12 @@ class RandomHeap {
       case 7: return bodies.set_kind(body, BodyKind::inactive);
       case 8: return system.restore(system.snapshot());
       case 9: return bodies.set_velocity(body, 3 * size_ * Vec3{any(), any(), any()});
-      default: return bodies.set_material(body, pick(2) == 0 ? std::optional<Material>() : Material{0.5});
+      default: return bodies.set_material(body, pick(2) == 0 ? std::optional<Material>() : material_);
     }
   }
 
   std::mt19937 random_;
+  Material material_{.friction = 0.5};  ///< every second heap bounces
   double size_ = 1;
 };
 
