@@ -117,24 +117,12 @@ void bind_step_report(nb::module_& module) {
                               "Result of one `System.step`. Non-convergence is a result, not an exception. It can be "
                               "pickled.");
   // The part that scripts see; of births and deaths only the number.
-  const std::tuple seen{&StepReport::step,
-                        &StepReport::time,
-                        &StepReport::dt,
-                        &StepReport::iterations_mean,
-                        &StepReport::iterations_max,
-                        &StepReport::substeps_max,
-                        &StepReport::fallbacks,
-                        &StepReport::unconverged,
-                        &StepReport::cut_short,
-                        &StepReport::approximate,
-                        &StepReport::error,
-                        &StepReport::worst_gap,
-                        &StepReport::energy,
-                        &StepReport::articulates,
-                        &StepReport::resting,
-                        &StepReport::structure_version,
-                        &StepReport::impact,
-                        &StepReport::warnings};
+  const std::tuple seen{
+      &StepReport::step,           &StepReport::time,         &StepReport::dt,        &StepReport::iterations_mean,
+      &StepReport::iterations_max, &StepReport::substeps_max, &StepReport::fallbacks, &StepReport::unconverged,
+      &StepReport::cut_short,      &StepReport::approximate,  &StepReport::error,     &StepReport::worst_gap,
+      &StepReport::energy,         &StepReport::articulates,  &StepReport::resting,   &StepReport::structure_version,
+      &StepReport::impact,         &StepReport::warnings};
   type.def(
           "__getstate__",
           [seen](const StepReport& r) { return nb::make_tuple(get_state(r, seen), r.born.size(), r.died.size()); },

@@ -111,11 +111,11 @@ struct IslandReport {
   bool resting = false;        ///< asleep: nothing was solved
   int iterations = 0;          ///< of Newton's method, each with one linear solve; in mode accurate linear solves
   int substeps = 0;
-  int fallbacks = 0;       ///< see StepReport
-  bool converged = true;   ///< false: left with a least violation instead of a solution
-  bool cut_short = false;  ///< the budget ended before the solution
+  int fallbacks = 0;         ///< see StepReport
+  bool converged = true;     ///< false: left with a least violation instead of a solution
+  bool cut_short = false;    ///< the budget ended before the solution
   bool approximate = false;  ///< contacts were solved one by one: see StepBudget::contacts
-  double gap = 0;          ///< largest violation of a constraint at the end, m
+  double gap = 0;            ///< largest violation of a constraint at the end, m
   /// Estimated local error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt,
   /// without what the motion makes of earlier ones. Only of mode accurate; without sub-steps that fell back to the robust scheme.
   double error = 0;

@@ -25,9 +25,6 @@ constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one, in sizes of the body, is
 /// left alone.
 constexpr double easing_time = 0.1, deepest = 0.1;
-/// The overlaps that sweeps leave (solver/heap.h), in sizes of the body: they are more than those of the equations, which take
-/// them over as they are if they are small.
-constexpr double least_of_sweeps = 1e-6, small_of_sweeps = 3e-3;
 
 enum Arm : std::size_t { center, place, turned, first_tangent, second_tangent };
 
@@ -300,12 +297,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const double kept = norm(across);
     c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
     c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
-    if (t.gap < c.depth - least_of_sweeps * motion.size && is_eased()) c.depth = t.gap, c.is_of_sweeps = 1;
-    if (c.depth < 0) {
-      const double kept = c.is_of_sweeps ? std::max(c.depth, -small_of_sweeps * motion.size) : 0;
-      const double eased = is_eased() ? kept + (c.depth - kept) * std::exp(-motion.h / easing_time) : c.depth;
-      c.depth = std::max(std::min(0.0, t.gap), eased);
-    }
+    if (c.depth < 0)
+      c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
     if (has_changed) touch(model, c);
     taken.push_back(slot);
   }
@@ -494,6 +487,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.set_directions({constant(c.turns, row.is_round ? c.axis : c.normal), constant(c.slips_turn, c.first),
                         constant(c.slips_turn, c.second)});
     row.radius = c.radius + c.depth;
+    row.is_of_sweeps = c.is_of_sweeps;
     row.friction = c.friction, row.restitution = c.restitution;
     const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;
@@ -518,6 +512,7 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
       c.axis = arm(Arm::turned), c.normal = unit_or(row.across(arm(Arm::center), c.axis), c.normal);
     else if (c.turns)
       c.normal = unit_or(arm(Arm::turned), c.normal);
+    c.is_of_sweeps = row.is_of_sweeps;
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
     c.impulse = -1.0 * (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);

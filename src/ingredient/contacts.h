@@ -16,8 +16,8 @@ namespace iota::ingredient {
 struct Contact : model::Ends {
   std::uint32_t part = 0, feature = 0, other_part = 0, other_feature = 0;
   contact::TouchForm form = contact::TouchForm::face;
-  std::uint8_t turns = 0, slips_turn = 0;  ///< arm 2 turns with a body; arms 3 and 4 do
-  std::uint8_t is_of_sweeps = 0;           ///< its overlap was left by sweeps
+  std::uint8_t turns = 0, slips_turn = 0;   ///< arm 2 turns with a body; arms 3 and 4 do
+  std::uint8_t is_of_sweeps = 0;            ///< its overlap was left by sweeps, see solver::Heap
   std::array<std::uint32_t, 8> points{};    ///< the basis of p, then that of q, of those that are not static
   std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
   std::uint32_t roll_rows = 0;              ///< of rolling resistance, at one of the places of two bodies

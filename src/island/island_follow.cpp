@@ -48,7 +48,7 @@ thread_local Lists lists_at_hand;
 
 bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Change& change,
                     std::vector<std::uint32_t>& node_of_ring, MovedRings& moved) {
-  constexpr std::size_t part = 3;      // share of the nodes: if more of them change, a new assembly is as fast
+  constexpr std::size_t part = 3;  // share of the nodes: if more of them change, a new assembly is as fast
   if (idle_ || solver_ || !integrator_->can_follow()) return false;  // another solver needs unknowns without gaps
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
   nodes_.articulates.assign(articulates.begin(), articulates.end());

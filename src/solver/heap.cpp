@@ -16,6 +16,7 @@ namespace {
 
 /// Measured with towers, pyramids and heaps of 50 to 1000 bodies (docs/contact.md): with less a tower of ten sways or falls.
 constexpr int sub_steps = 8, sweeps = 2;
+constexpr int first_sweeps = 8;     // where contacts begin
 constexpr double fastest_push = 1;  // m/s, with which an overlap ends
 
 Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
@@ -203,6 +204,7 @@ Vec3 unit_or(const Vec3& v, const Vec3& other) {
 
 void Heap::load_points(Problem& problem, double h) {
   points_.clear();
+  has_new_points_ = false;
   auto& pool = problem.pool_of<ContactConstraint>();
   points_.reserve(pool.items.size());
   const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
@@ -263,6 +265,7 @@ void Heap::load_points(Problem& problem, double h) {
     point.impulse = -h * l[0];
     point.impulse_first = h * dot(old, point.first), point.impulse_second = h * dot(old, point.second);
     point.approach = -dot(point.normal, relative_velocity(point));
+    has_new_points_ = has_new_points_ || l[0] == 0;
     points_.push_back(point);
   }
   // From above to below: a pyramid of 55 cubes creeps by 3e-6 m a second, in the other order by 4e-4 m.
@@ -331,8 +334,7 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
     Mat3 matrix;
     for (int k = 0; k < 3; ++k) {
       const Vec3 unit = unit_vector(k);
-      set_column(matrix, k,
-                 unit + resistance * (body.by_mass * unit + cross(body.by_inertia * cross(arm, unit), arm)));
+      set_column(matrix, k, unit + resistance * (body.by_mass * unit + cross(body.by_inertia * cross(arm, unit), arm)));
     }
     const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
     body.velocity += body.by_mass * impulse, body.spin += body.by_inertia * cross(arm, impulse);
@@ -378,8 +380,8 @@ void Heap::solve_held(Held& row) {
   apply(row, row.impulse - before);
 }
 
-void Heap::sweep(double h, const Softness& soft) {
-  for (int k = 0; k < sweeps; ++k) {
+void Heap::sweep(double h, const Softness& soft, int times) {
+  for (int k = 0; k < times; ++k) {
     for (Point& point : points_) solve_point(point, h, soft);
     for (Held& row : held_) solve_held(row);
   }
@@ -474,6 +476,7 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
     const Vec3 drag = (1 / h) * (point.sum_first * point.first + point.sum_second * point.second);
     l[0] = -point.sum / h;
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
+    c.is_of_sweeps = point.gap < 0;
     for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
     report.depth = std::max(report.depth, -point.gap);
   }
@@ -490,14 +493,14 @@ HeapReport Heap::advance(Problem& problem, double h, double fraction) {
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     for (const Point& point : points_)
-      apply(point, point.impulse * point.normal + point.impulse_first * point.first +
-                       point.impulse_second * point.second);
+      apply(point,
+            point.impulse * point.normal + point.impulse_first * point.first + point.impulse_second * point.second);
     for (const Held& row : held_) apply(row, row.impulse);
-    sweep(part, pushing);
+    sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
     move(part);
     for (Point& point : points_) point.drifted += part * point.drift;
     refresh_points();
-    sweep(part, plain);
+    sweep(part, plain, sweeps);
     for (Point& point : points_)
       point.sum += point.impulse, point.sum_first += point.impulse_first, point.sum_second += point.impulse_second;
     for (Held& row : held_) row.sum += row.impulse;

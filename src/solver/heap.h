@@ -42,14 +42,14 @@ class Heap {
     std::uint32_t count = 0;
     bool is_driven = false;  ///< its points follow targets
     // In a step.
-    double by_mass = 0;           ///< 1/kg; 0: driven
-    Vec3 velocity, spin;          ///< m/s, rad/s
-    Mat3 inertia, by_inertia;     ///< about the center, at the begin; the latter now; along the line of a rod zero
+    double by_mass = 0;        ///< 1/kg; 0: driven
+    Vec3 velocity, spin;       ///< m/s, rad/s
+    Mat3 inertia, by_inertia;  ///< about the center, at the begin; the latter now; along the line of a rod zero
     Mat3 by_inertia_at_begin;
-    Vec3 center, moved;           ///< at the begin; since then, m
-    Quaternion turn;              ///< since the begin
-    Mat3 turned;                  ///< the same as a matrix
-    Vec3 gain, turning;           ///< of held forces in a sub-step: m/s, N m s
+    Vec3 center, moved;                  ///< at the begin; since then, m
+    Quaternion turn;                     ///< since the begin
+    Mat3 turned;                         ///< the same as a matrix
+    Vec3 gain, turning;                  ///< of held forces in a sub-step: m/s, N m s
     std::array<Vec3, most_points> arms;  ///< of the points at the begin, m
   };
   /// Body `none`: the world.
@@ -58,12 +58,12 @@ class Heap {
     double friction = 0, restitution = 0;
     double approach = 0;  ///< at the begin, m/s
     Vec3 normal, first, second;
-    Vec3 arm_a, arm_b;    ///< from the centers to where the forces act, now
+    Vec3 arm_a, arm_b;  ///< from the centers to where the forces act, now
     Vec3 arm_a_at_begin, arm_b_at_begin;
-    Vec3 gap_a, gap_b;    ///< from the centers to the places that have the gap, at the begin
-    Vec3 drift, drifted;  ///< velocity of driven sides, m/s; way since the begin, m
+    Vec3 gap_a, gap_b;                 ///< from the centers to the places that have the gap, at the begin
+    Vec3 drift, drifted;               ///< velocity of driven sides, m/s; way since the begin, m
     double gap = 0, gap_at_begin = 0;  ///< m
-    double mass = 0, mass_first = 0, mass_second = 0;  ///< kg
+    double mass = 0, mass_first = 0, mass_second = 0;           ///< kg
     double impulse = 0, impulse_first = 0, impulse_second = 0;  ///< in a sub-step, N s
     double sum = 0, sum_first = 0, sum_second = 0;              ///< in the step
     double height = 0;                                          ///< against gravity
@@ -89,7 +89,7 @@ class Heap {
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
   struct Softness;
-  void sweep(double h, const Softness&);
+  void sweep(double h, const Softness&, int times);
   void solve_point(Point&, double h, const Softness&);
   void solve_held(Held&);
   void apply(const Held&, double impulse);
@@ -102,6 +102,7 @@ class Heap {
   std::vector<std::uint32_t> body_of_;  // of each node
   std::vector<Body> bodies_;
   std::vector<Point> points_;
+  bool has_new_points_ = false;  // that carried nothing in the step before
   std::vector<Held> held_;
   std::vector<Grip> grips_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch

@@ -188,6 +188,22 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
   coast(problem, part.h, report);
 }
 
+namespace {
+
+/// Overlaps that sweeps have left, if they are small: the equations would close them at once.
+void accept_overlaps(Problem& problem) {
+  constexpr double small = 3e-3;  // of the size
+  for (ContactConstraint& c : problem.items_of<ContactConstraint>()) {
+    if (!c.is_of_sweeps) continue;
+    double g[ContactConstraint::rows];
+    c.value(problem.position.data(), 0, g);
+    c.is_of_sweeps = g[0] < -closed_gap * c.reference_length();
+    if (c.is_of_sweeps && g[0] > -small * c.reference_length()) c.radius += g[0];
+  }
+}
+
+}  // namespace
+
 // Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
 // so that this one is not tried. What a factor costs depends on the structure alone, so that a restored problem takes the
 // same way.
@@ -208,6 +224,7 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   std::uint64_t& swept = problem.unsolved_steps;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = fewest * cost > budget;
+  if (!is_large) accept_overlaps(problem);
   const bool waits = swept % IntegratorSettings::retried_after != 0;
   const bool is_beyond = is_large || waits || ((swept > 0 || of_closing * cost > budget) && is_open());
   if (is_large) is_due_ = true;

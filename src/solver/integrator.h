@@ -68,8 +68,8 @@ class Integrator {
 
   /// The place of a node in the order of elimination of what is compiled.
   std::uint32_t node_rank(std::uint32_t node) const { return is_due_ ? node : newton_.node_rank(node); }
-  void forget_factors() { newton_.forget_factors(); }                     ///< see Newton
-  double reference_length() const { return reference_length_; }           ///< of what is compiled, m
+  void forget_factors() { newton_.forget_factors(); }            ///< see Newton
+  double reference_length() const { return reference_length_; }  ///< of what is compiled, m
 
   /// The solver of the equations of steps; null: the built-in Newton.
   void set_external(Solver* solver) { newton_.set_external(solver); }

@@ -34,11 +34,12 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
-  double rebound = 0;     ///< the normal speed at which an impact ends, while velocities are settled, m/s
-  double drags[2] = {};   ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
-  bool is_round = false;  ///< the radius is that of both together, above zero
-  bool meets = false;     ///< in this (sub-)step, by the velocities with which it begins
-  bool leaves = false;    ///< at its end after an impact, so that its rows store nothing
+  double rebound = 0;               ///< the normal speed at which an impact ends, while velocities are settled, m/s
+  double drags[2] = {};       ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
+  bool is_of_sweeps = false;  ///< its overlap was left by sweeps: see Heap
+  bool is_round = false;      ///< the radius is that of both together, above zero
+  bool meets = false;         ///< in this (sub-)step, by the velocities with which it begins
+  bool leaves = false;        ///< at its end after an impact, so that its rows store nothing
 
   /// Arms 2 to 4, which do not turn with a body.
   void set_directions(const std::array<Vec3, 3>& of) {
