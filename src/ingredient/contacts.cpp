@@ -24,7 +24,7 @@ namespace {
 constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one, in sizes of the body, is
 /// left alone.
-constexpr double easing_time = 0.1, deepest = 0.1;
+constexpr double easing_time = 0.1, deepest = 0.1, deepest_of_moving = 0.3;
 
 enum Arm : std::size_t { center, place, turned, first_tangent, second_tangent };
 
@@ -275,12 +275,14 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
   taken.clear();
   const auto is_eased = [&] { return is_on_its_own(model, first) && is_on_its_own(model, second); };
   Sides sides[2]{{model, first, second}, {model, second, first}};
+  const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
+  const double most = (both_move ? deepest_of_moving : deepest) * motion.size;
   for (const contact::Touch& t : touches) {
     const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (is_new && t.gap < -deepest * motion.size) continue;
+    if (is_new && t.gap < -most) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,

@@ -5,7 +5,6 @@
 #include "model/structure.h"
 
 #include <iota/kinds.h>
-#include <iota/options.h>
 
 #include <array>
 #include <cstdint>
@@ -39,7 +38,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
   double tolerance = 1e-4;    ///< of mode accurate, see System::tolerance
   int budget_iterations = 0;  ///< see StepBudget
-  double budget_seconds = 0, budget_contacts = StepBudget{}.contacts;
+  double budget_seconds = 0, budget_contacts = 0;
   double damping = 0;
   /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};

@@ -387,7 +387,7 @@ void Heap::sweep(double h, const Softness& soft, int times) {
   }
 }
 
-// What met leaves with a part of the speed, unless that is what gravity gives in a step.
+// Bodies that met leave each other with a part of their speed, unless that is what gravity gives in a step.
 void Heap::rebound(double least) {
   for (Point& point : points_) {
     if (point.restitution == 0 || point.approach <= least || point.sum == 0) continue;
@@ -476,7 +476,7 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
     const Vec3 drag = (1 / h) * (point.sum_first * point.first + point.sum_second * point.second);
     l[0] = -point.sum / h;
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
-    c.is_of_sweeps = point.gap < 0;
+    c.is_of_sweeps = true;
     for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
     report.depth = std::max(report.depth, -point.gap);
   }

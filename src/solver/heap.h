@@ -12,7 +12,7 @@
 
 namespace iota::solver {
 
-/// What a step by sweeps leaves.
+/// The result of a step by sweeps.
 struct HeapReport {
   double external_work = 0;  ///< of held forces, torques and grips, J
   double depth = 0;          ///< largest overlap at the end, m

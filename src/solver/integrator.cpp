@@ -96,7 +96,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   newton_.add_times_to(times_of_thread());
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
-  if (is_heap_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_budget, cost));
+  if (is_heap_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_burst(), cost));
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
@@ -223,10 +223,11 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   if (!is_heap_) return false;
   std::uint64_t& swept = problem.unsolved_steps;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
-  const bool is_large = fewest * cost > budget;
+  const bool is_large = fewest * cost > settings_.contact_share * budget;
   if (!is_large) accept_overlaps(problem);
-  const bool waits = swept % IntegratorSettings::retried_after != 0;
-  const bool is_beyond = is_large || waits || ((swept > 0 || of_closing * cost > budget) && is_open());
+  const bool waits = swept > 0 && !is_due(swept);
+  const bool is_beyond =
+      is_large || waits || ((swept > 0 || of_closing * cost > settings_.contact_burst()) && is_open());
   if (is_large) is_due_ = true;
   if (is_beyond) ++swept;
   return is_beyond;
@@ -238,7 +239,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const HeapReport swept = heap_->advance(problem, part.h, part.to);
   energy_.measure_change(problem, part.to, swept.external_work);
   report.external_work += swept.external_work;
-  // Of impacts and friction, which are not told apart from what the sub-steps lose.
+  // Impacts and friction are not told apart from what the sub-steps lose.
   report.dissipated += std::exchange(energy_.missing, std::min(0.0, energy_.missing)) - energy_.missing;
   energy_.close(problem, reference_length(), part.h, report);
   report.is_approximate = true;

@@ -56,7 +56,10 @@ struct IntegratorSettings {
   /// Multiplications of all factors of a step of bodies that only contacts connect. What would need more is solved
   /// approximately: see Heap.
   double contact_budget = std::numeric_limits<double>::infinity();
-  static constexpr std::uint64_t retried_after = 16;  ///< steps, if one has needed more
+  double contact_share = 1;  ///< of this problem
+  /// Multiplications for a single step, as blows need more than what follows: eight budgets. Few problems need them at
+  /// the same time, so that each gets more than its share.
+  double contact_burst() const { return 8 * std::sqrt(contact_share) * contact_budget; }
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
   /// When all solves of a step have to end, but the last resort's.

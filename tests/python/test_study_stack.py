@@ -95,5 +95,5 @@ def test_everything_is_built_anew() -> None:
     run_solved(world, 1.0)
     assert all(body.kind == "resting" for body in world.system.bodies)
     world._state.actions["push"].hook.function()
-    run_solved(world, 3.0)
+    run_solved(world, 3.0, gap=1e-3)  # a step may be taken by sweeps
     assert min(tilt(domino) for domino in made.dominoes) > math.radians(60)
