@@ -306,7 +306,7 @@ void Heap::load_grips(const Problem& problem) {
   const std::span forces = problem.items_of<GripForce>();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const GripForce& force = forces[i];
-    Grip grip{.body = body_of_[force.arm.nodes[0]], .item = static_cast<std::uint32_t>(i), .by_matrix = {}};
+    Grip grip{.body = body_of_[force.arm.nodes[0]], .item = static_cast<std::uint32_t>(i)};
     const Body& body = bodies_[grip.body];
     if (body.by_mass == 0) continue;
     grip.error = force.arm.value(problem.position.data());

@@ -79,7 +79,6 @@ class Heap {
   struct Grip {
     std::uint32_t body = none, item = 0;
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
-    Mat3 by_matrix;
   };
 
   void load_bodies(const Problem&, double h);

@@ -224,8 +224,8 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   std::uint64_t& swept = problem.unsolved_steps;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = fewest * cost > settings_.contact_share * budget;
-  if (!is_large) accept_overlaps(problem);
   const bool waits = swept > 0 && !is_due(swept);
+  if (!is_large && !waits) accept_overlaps(problem);  // sweeps push them apart
   const bool is_beyond =
       is_large || waits || ((swept > 0 || of_closing * cost > settings_.contact_burst()) && is_open());
   if (is_large) is_due_ = true;
