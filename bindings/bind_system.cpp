@@ -100,6 +100,15 @@ void bind_islands(nb::module_& module) {
       });
 }
 
+/// Changes one limit of the budget and keeps the others.
+template <class Value>
+void set_budget(SystemObject& self, const char* what, Value StepBudget::* limit, Value value) {
+  System& engine = self.use_between_steps(what);
+  StepBudget budget = engine.budget();
+  budget.*limit = value;
+  engine.set_budget(budget);
+}
+
 void bind_settings(nb::class_<SystemObject>& type) {
   type.def_prop_rw(
           "gravity", [](SystemObject& self) { return self.use().gravity(); },
@@ -122,10 +131,7 @@ void bind_settings(nb::class_<SystemObject>& type) {
       .def_prop_rw(
           "budget_iterations", [](SystemObject& self) { return self.use().budget().iterations; },
           [](SystemObject& self, int value) {
-            System& engine = self.use_between_steps("budget_iterations = ...");
-            StepBudget budget = engine.budget();
-            budget.iterations = value;
-            engine.set_budget(budget);
+            set_budget(self, "budget_iterations = ...", &StepBudget::iterations, value);
           },
           "Most iterations of Newton's method in a step for bodies that are solved together; 0: unlimited. Results are\n"
           "repeatable. If it ends before the solution, the points move on and stay together as well as possible:\n"
@@ -133,10 +139,8 @@ void bind_settings(nb::class_<SystemObject>& type) {
       .def_prop_rw(
           "budget_contacts", [](SystemObject& self) { return self.use().budget().contacts; },
           [](SystemObject& self, double value) {
-            System& engine = self.use_between_steps("budget_contacts = ...");
-            StepBudget budget = engine.budget();
-            budget.contacts = finite_not_negative(value, "budget_contacts", "multiplications");
-            engine.set_budget(budget);
+            set_budget(self, "budget_contacts = ...", &StepBudget::contacts,
+                       finite_not_negative(value, "budget_contacts", "multiplications"));
           },
           "Multiplications that a step may take to solve the contacts of bodies that nothing else connects, all together\n"
           "and exactly; 0: unlimited. A heap that would take more is solved approximately, contact by contact, in time\n"
@@ -144,10 +148,8 @@ void bind_settings(nb::class_<SystemObject>& type) {
       .def_prop_rw(
           "budget_seconds", [](SystemObject& self) { return self.use().budget().seconds; },
           [](SystemObject& self, double value) {
-            System& engine = self.use_between_steps("budget_seconds = ...");
-            StepBudget budget = engine.budget();
-            budget.seconds = finite_not_negative(value, "budget_seconds", "s");
-            engine.set_budget(budget);
+            set_budget(self, "budget_seconds = ...", &StepBudget::seconds,
+                       finite_not_negative(value, "budget_seconds", "s"));
           },
           "s of real time that a step may search for solutions, 0: unlimited; otherwise as `budget_iterations`. Results\n"
           "depend on the machine.")

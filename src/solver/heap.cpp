@@ -2,11 +2,10 @@
 #include "solver/heap.h"
 
 #include "solver/pieces.h"
-#include "solver/rigid_motion.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numbers>
 #include <type_traits>
 
@@ -121,8 +120,7 @@ double Heap::cost_of_factor() {
       list_of_other = merged;
       list(other);
     }
-    degree = degree > 0 ? degree - 1 : 0;
-    if (!around.empty()) degree = 0;
+    degree = 0;
   }
   return std::min(cost, most);
 }
