@@ -290,7 +290,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     fresh.depth = std::min(0.0, t.gap);
     const std::uint32_t slot = is_new ? model.contacts.create(fresh) : *known;
     Contact& c = model.contacts[slot];
-    const bool has_changed = is_new || !has_basis(c, model.bodies[p], model.bodies[q]);
+    const bool has_changed = is_new || std::exchange(c.is_off, 0) || !has_basis(c, model.bodies[p], model.bodies[q]);
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
     c.friction = std::sqrt(one.friction * other.friction);
     c.restitution = std::max(one.restitution, other.restitution);
@@ -298,7 +298,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
     const double kept = norm(across);
     c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
-    c.approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
+    const double approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
+    c.approach = c.continues ? std::max(c.approach, approach) : approach;
     if (c.depth < 0)
       c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
     if (has_changed) touch(model, c);
@@ -318,6 +319,41 @@ void end_if(Model& model, std::uint32_t body, Test test) {
 }
 
 }  // namespace
+
+void Contacts::tie(Model& model, std::uint32_t first, std::uint32_t second) {
+  thread_local std::vector<std::uint32_t> known;
+  find_between(model, first, second, known);
+  for (const std::uint32_t slot : known)
+    if (model.contacts[slot].found_in == model.step + 1) return;
+  Contact c;
+  c.p = first, c.q = second;
+  c.part = c.feature = c.other_part = c.other_feature = none;
+  c.normal = {0, 1, 0}, c.first = {1, 0, 0}, c.second = {0, 0, 1};
+  c.is_off = 1, c.found_in = model.step + 1;
+  take_basis(c, model.bodies[first], model.bodies[second]);
+  touch(model, model.contacts[model.contacts.create(c)]);
+}
+
+void Contacts::begin_part(Model& model, std::span<const std::uint32_t> bodies, bool is_first) {
+  for (const std::uint32_t body : bodies)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+      Contact& c = model.contacts[slot];
+      c.found_in = 0, c.continues = !is_first && c.impulse != Vec3{};
+    });
+}
+
+void Contacts::end_part(Model& model, std::span<const std::uint32_t> bodies) {
+  for (const std::uint32_t body : bodies)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+      Contact& c = model.contacts[slot];
+      if (c.found_in != 0) return;
+      c.found_in = model.step + 1, c.continues = 0;
+      if (std::exchange(c.is_off, 1)) return;
+      c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
+      if (c.roll_rows > 0) c.roll_rows = 0;
+      touch(model, c);
+    });
+}
 
 void Contacts::take_over(Model& restored, Model& before) { restored.restores = before.restores + 1; }
 
@@ -377,6 +413,7 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
     const Contact& c = model.contacts[slot];
+    if (c.is_off) continue;
     solver::ContactConstraint row;
     bool is_here = true, moves = false;
     for (std::uint32_t i = 0; i < c.point_count; ++i) {
@@ -517,7 +554,8 @@ void Contacts::store(Model& model, const IslandNodes&, double, const Problem& pr
     c.is_of_sweeps = row.is_of_sweeps;
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second);
     c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
-    c.impulse = -1.0 * (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
+    const Vec3 before = std::exchange(c.continues, 0) ? c.impulse : Vec3{};
+    c.impulse = before - (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
     c.torque = {};
   });
   if (!problem.has_used<solver::BilinearConstraint>()) return;
@@ -541,7 +579,7 @@ double Contacts::gap(const Model& model, const Contact& c) {
 Impact Contacts::hardest_impact(const Model& model) {
   Impact hardest;
   model.contacts.for_each([&](std::uint32_t, const Contact& c) {
-    if (c.approach > hardest.speed && c.carries()) hardest = {place(model, c), c.approach};
+    if (c.approach > hardest.speed && c.has_touched()) hardest = {place(model, c), c.approach};
   });
   return hardest;
 }
@@ -565,7 +603,9 @@ void for_each_contact(const Scope& scope, Visit visit) {
 
 double Contacts::worst_gap(const Scope& scope) {
   solver::Largest worst;
-  for_each_contact(scope, [&](const Contact& c) { worst.add(std::max(0.0, c.depth - gap(scope.model, c))); });
+  for_each_contact(scope, [&](const Contact& c) {
+    if (!c.is_off) worst.add(std::max(0.0, c.depth - gap(scope.model, c)));
+  });
   return worst.value;
 }
 

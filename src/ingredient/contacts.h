@@ -16,8 +16,10 @@ namespace iota::ingredient {
 struct Contact : model::Ends {
   std::uint32_t part = 0, feature = 0, other_part = 0, other_feature = 0;
   contact::TouchForm form = contact::TouchForm::face;
-  std::uint8_t turns = 0, slips_turn = 0;   ///< arm 2 turns with a body; arms 3 and 4 do
-  std::uint8_t is_of_sweeps = 0;            ///< its overlap was left by sweeps, see solver::Heap
+  std::uint8_t turns = 0, slips_turn = 0;  ///< arm 2 turns with a body; arms 3 and 4 do
+  std::uint8_t is_of_sweeps = 0;           ///< its overlap was left by sweeps, see solver::Heap
+  std::uint8_t is_off = 0;  ///< it has no rows in this part of a step: the bodies are solved together, but do not touch
+  std::uint8_t continues = 0;               ///< it adds its impulse to that of an earlier part of the step
   std::array<std::uint32_t, 8> points{};    ///< the basis of p, then that of q, of those that are not static
   std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
   std::uint32_t roll_rows = 0;              ///< of rolling resistance, at one of the places of two bodies
@@ -83,6 +85,12 @@ class Contacts : public NoAnswers {
   };
   /// The contacts of two bodies for a step. Those that they had before keep their forces.
   static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch>, const Motion&);
+  /// Two bodies that may meet on their way in this step are solved together from its begin.
+  static void tie(Model&, std::uint32_t first, std::uint32_t second);
+  /// Before and after the contacts of an island are taken for a part of a step. Those that are not taken have no rows in it, but
+  /// stay until the end of the step with their impulse.
+  static void begin_part(Model&, std::span<const std::uint32_t> bodies, bool is_first);
+  static void end_part(Model&, std::span<const std::uint32_t> bodies);
   /// Ends all contacts of a body that were not taken in this step.
   static void end_old(Model&, std::uint32_t body);
   /// Ends all contacts of a body.

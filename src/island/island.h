@@ -109,6 +109,8 @@ class Island {
 
   void forget_factors();  ///< of its last step, with which the next one would begin
 
+  bool is_driven(const model::Model&) const;  ///< by prescribed motion
+
   /// Wakes it in the next step.
   void wake() { to_wake_ = true, is_still_ = false, book_epoch_ = 0; }
   bool is_asleep(const model::Model&) const;
@@ -169,8 +171,7 @@ class Island {
   Tried try_prescribed(const model::Model&, double h);
   Tried try_motion(const model::Model&, double h, const Limits&);
   void commit_motion(model::Model&, double h);
-  bool is_driven(const model::Model&) const;  ///< by prescribed motion
-  double velocity_jump(double h) const;       ///< see ingredient::NoAnswers
+  double velocity_jump(double h) const;  ///< see ingredient::NoAnswers
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
   void store_step(model::Model&, double h, bool is_instant) const;

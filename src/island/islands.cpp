@@ -577,18 +577,36 @@ void Islands::put_to_rest(Model& model, std::uint32_t articulate) {
     borrow(model, articulate, [&](Island& loose) { loose.put_to_rest(model); }), free_bodies_.note_change();
 }
 
+double Islands::share_of(const Island& island) const {
+  return static_cast<double>(island.size()) / static_cast<double>(std::max(total_size_, island.size()));
+}
+
+double Islands::ahead(const Model& model, const Island& island) const {
+  if (ahead_.empty() || island.bodies().empty()) return 0;
+  const std::uint32_t articulate = model.bodies[island.bodies().front()].articulate;
+  return articulate < ahead_.size() ? ahead_[articulate] : 0;
+}
+
+const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island, double part,
+                                                   Island::Clock::time_point deadline) {
+  ahead_.resize(model.articulates.slot_count(), 0);
+  for (const std::uint32_t body : island.bodies()) {
+    double& ahead = ahead_[model.bodies[body].articulate];
+    if (model.articulates[model.bodies[body].articulate].first == body) ahead += part;
+  }
+  island.try_step(model, part, {deadline, share_of(island)});
+  return island.commit(model, part);
+}
+
 void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
-  const auto share = [&](const Island& island) {
-    return static_cast<double>(island.size()) / static_cast<double>(std::max(total_size_, island.size()));
+  const auto step = [&](Island& island, double left) -> const solver::AdvanceReport& {
+    island.try_step(model, left, {deadline, share_of(island)});
+    return island.commit(model, left);
   };
-  const auto step = [&](Island& island) -> const solver::AdvanceReport& {
-    island.try_step(model, h, {deadline, share(island)});
-    return island.commit(model, h);
-  };
-  if (index < awake_.size()) return (void)step(*awake_[index]);
+  if (index < awake_.size()) return (void)step(*awake_[index], h - ahead(model, *awake_[index]));
   FreeBodies::Loose& loose = free_bodies_.loose()[index - awake_.size()];
   borrow(model, loose.articulate,
-         [&](Island& island) { loose.report = step(island), loose.rests = island.is_still(); });
+         [&](Island& island) { loose.report = step(island, h), loose.rests = island.is_still(); });
 }
 
 std::vector<IslandReport> Islands::reports(const Model& model) {

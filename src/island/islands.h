@@ -63,6 +63,10 @@ class Islands {
   std::span<const FreeBodies::Loose> loose(const model::Model& model) { return free_bodies_.loose(model); }
   /// Number of awake islands and loose bodies of a task: all if threads would not be faster.
   std::size_t grain(const Parallel&) const;
+  /// A part of a step, before `advance` takes the rest of it. Its contacts are those of this part.
+  const solver::AdvanceReport& advance_part(model::Model&, Island&, double part, Island::Clock::time_point deadline);
+  /// What it has advanced in parts since the last step, s.
+  double ahead(const model::Model&, const Island&) const;
   /// A step of h seconds of one of them: of `awake`, then of `loose`. Those of others may run at the same time.
   void advance(model::Model&, std::size_t index, double h, Island::Clock::time_point deadline);
   /// visit(body, report): of all of them, in this order; the body is the island's first.
@@ -71,6 +75,8 @@ class Islands {
     for (const Island* const island : awake_) visit(island->bodies().front(), island->latest());
     for (const FreeBodies::Loose& loose : free_bodies_.loose()) visit(loose.body, loose.report);
   }
+  /// Ends a step that some took in parts.
+  void end_parts() { ahead_.clear(); }
   /// How the last step was for each island and loose body.
   std::vector<IslandReport> reports(const model::Model&);
   /// The islands of these articulates are awake in the next step.
@@ -176,6 +182,7 @@ class Islands {
   static bool is_due(const Home&, const model::Model&);
   static void make_ready(model::Model&, std::uint32_t body);
   void refresh_awake(const model::Model&);
+  double share_of(const Island&) const;
 
   void drop_touched(const model::Model&, bool all);
   void find_changed(const model::Model&);
@@ -217,6 +224,8 @@ class Islands {
   Island::Change change_;             // of the home that follows
   std::vector<std::uint8_t> is_own_;  // by body slot, in the home that follows; zeros before and after
   CutSearch cut_search_;
+
+  std::vector<double> ahead_;  // by articulate slot, s; empty if no island is advanced in parts
 
   std::vector<Island*> in_order_;
   std::vector<Island*> awake_;                       // of those in order

@@ -238,8 +238,6 @@ void Heap::load_points(Problem& problem, double h) {
     point.height = dot(at, up);
     const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
     const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
-    double inverse[3]{};
-    const Vec3 directions[3] = {point.normal, point.first, point.second};
     const auto load_side = [&](std::uint32_t b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
                                Vec3& gap_arm) {
       if (!is_free(b)) {
@@ -247,17 +245,12 @@ void Heap::load_points(Problem& problem, double h) {
         arm = at, gap_arm = gap_place, point.is_at_rest = true;
         return;
       }
-      const Body& body = bodies_[b];
-      arm = at - body.center, gap_arm = gap_place - body.center;
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 moment = cross(arm, directions[k]);
-        inverse[k] += body.by_mass + dot(moment, body.by_inertia * moment);
-      }
+      arm = at - bodies_[b].center, gap_arm = gap_place - bodies_[b].center;
     };
     load_side(point.a, center, drift_a, 1, point.arm_a, point.gap_a);
     load_side(point.b, origin, drift_b, -1, point.arm_b, point.gap_b);
     point.gap = point.gap_at_begin, point.arm_a_at_begin = point.arm_a, point.arm_b_at_begin = point.arm_b;
-    point.mass = 1 / inverse[0], point.mass_first = 1 / inverse[1], point.mass_second = 1 / inverse[2];
+    weigh(point);
     const double* const l = pool.multiplier(i);
     const Vec3 old = -(l[1] * c.arm(3, x, 1) + l[2] * c.arm(4, x, 1));
     point.impulse = -h * l[0];
@@ -417,6 +410,28 @@ void Heap::solve_point(Point& point, double h, const Softness& soft) {
   apply(point, (point.impulse_first - first) * point.first + (point.impulse_second - second) * point.second);
 }
 
+// The masses against which its impulses act, of both bodies as they are turned now.
+void Heap::weigh(Point& point) const {
+  const auto mass_along = [&](const Vec3& direction) {
+    double inverse = 0;
+    const auto add_side = [&](std::uint32_t b, const Vec3& arm) {
+      if (b == none || bodies_[b].by_mass == 0) return;
+      const Vec3 moment = cross(arm, direction);
+      inverse += bodies_[b].by_mass + dot(moment, bodies_[b].by_inertia * moment);
+    };
+    add_side(point.a, point.arm_a), add_side(point.b, point.arm_b);
+    return 1 / inverse;
+  };
+  point.mass = mass_along(point.normal);
+  point.mass_first = mass_along(point.first), point.mass_second = mass_along(point.second);
+}
+
+// A thin rod that turns has another mass at the same place: with that of the begin its impulses grew without bound.
+bool Heap::has_turned(std::uint32_t body) const {
+  constexpr double far = 0.1;  // rad
+  return body != none && std::abs(bodies_[body].turn.w) < 1 - far * far / 8;
+}
+
 // Gaps, and the arms of forces: both sides have theirs at one place, so that angular momentum is kept.
 void Heap::refresh_points() {
   for (Point& point : points_) {
@@ -427,9 +442,11 @@ void Heap::refresh_points() {
     };
     add_side(point.a, 1, point.gap_a), add_side(point.b, -1, point.gap_b);
     point.gap = point.gap_at_begin + dot(point.normal, closing);
-    if (point.is_at_rest) continue;
-    const Vec3 apart = 0.5 * (bodies_[point.a].moved - bodies_[point.b].moved);
-    point.arm_a = point.arm_a_at_begin - apart, point.arm_b = point.arm_b_at_begin + apart;
+    if (!point.is_at_rest) {
+      const Vec3 apart = 0.5 * (bodies_[point.a].moved - bodies_[point.b].moved);
+      point.arm_a = point.arm_a_at_begin - apart, point.arm_b = point.arm_b_at_begin + apart;
+    }
+    if (has_turned(point.a) || has_turned(point.b)) weigh(point);
   }
 }
 

@@ -94,6 +94,8 @@ class Heap {
   void apply(const Held&, double impulse);
   void rebound(double least);
   void refresh_points();
+  void weigh(Point&) const;
+  bool has_turned(std::uint32_t body) const;
   void apply(const Point&, const Vec3& impulse);
   Vec3 relative_velocity(const Point&) const;
   void store(Problem&, double h, HeapReport&) const;

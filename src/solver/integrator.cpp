@@ -43,8 +43,10 @@ int most_iterations(double budget, double cost) {
 
 void Integrator::compile(Problem& problem) {
   may_be_in_pieces_ = false, pieces_.clear();
+  acting_version_ = problem.acting_version();  // as for a new problem: this one may have had laws
   is_due_ = !problem.items_of<ContactConstraint>().empty();
   if (!is_due_) return analyze(problem);
+  if (!problem.has_slots()) problem.forget_slots();  // fit_pools resizes them
   problem.fit_pools();
   reference_length_ = mean_reference_length(problem);
   make_room(problem);

@@ -81,6 +81,7 @@ void ContactWatches::list_near(const model::Model& model, const contact::Outline
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
     if (!also_asleep && !is_awake(model.bodies[c.p]) && !is_awake(model.bodies[c.q])) return;
     const bool has_touched = c.has_touched();
+    if (c.is_off && !has_touched) return;
     if (has_touched || ingredient::Contacts::gap(model, c) <= end_gap(model, outlines, c.p, c.q))
       near_.push_back({in_order(model.bodies.id(c.p), model.bodies.id(c.q)), slot, nullptr, has_touched});
   });

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contact/approach.h"
 #include "contact/outlines.h"
 #include "contact/touches.h"
 #include "ingredient/model.h"
 
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,6 +27,16 @@ class ContactFinder {
  public:
   /// For a step of h seconds. Costs nothing while nothing has a material.
   void find(model::Model&, contact::Outlines&, double h);
+  /// Articulates of bodies that meet others so fast on their way that their islands take the step in parts.
+  const std::vector<std::uint32_t>& hasty() const { return hasty_; }
+  struct Part {
+    bool is_first, may_cut;
+  };
+  /// The contacts of an island for the next part of its step, of which `left` seconds are left: those of pairs that `find`
+  /// has listed. Returns the length of the part, s, if it is not the last one: the next body is met at its end, or it is so
+  /// short that what meets now moves by a part of its size.
+  std::optional<double> find_part(model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies, double left,
+                                  const Part&);
   /// The pairs with a sensor whose gap is small or negative, at the start of the step.
   const std::vector<Sensed>& sensed() const { return sensed_; }
 
@@ -53,8 +66,19 @@ class ContactFinder {
   void touch(model::Model&, contact::Outlines&, const Pair&);
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other) const;
+  void set_time(const model::Model&, double h);
+
+  /// A pair on its way.
+  struct Ahead {
+    double apart;  ///< the bodies do not touch before, s; 0: they may from now on
+    double part;   ///< the step should be cut there, s
+  };
+  Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&);
+  contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
+  void list_pairs_of(const model::Model&, std::span<const std::uint32_t> bodies);
 
   contact::TouchFinder touches_;
+  contact::ApproachFinder approaches_{touches_};
   bool is_any_extended_ = false;  ///< more than a particle
   double h_ = 0, fall_ = 0;       ///< s; speed that gravity gives in this time, m/s
   // Scratch, kept for its capacity.
@@ -63,6 +87,9 @@ class ContactFinder {
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
+  std::vector<std::uint32_t> hasty_;
+  std::vector<std::pair<Pair, double>> listed_;  ///< of an island, with the time before which they do not touch
+  std::vector<std::uint8_t> is_here_;            ///< by body slot, in the island; zeros before and after
 };
 
 }  // namespace iota::step

@@ -30,6 +30,8 @@ StepReport Stepper::step(double dt) {
   take_held_forces(report);
   find_contacts(dt);
   update_islands(dt);
+  made_ = spin_lost_ = 0, solves_ = iterations_ = handed_back_ = 0;
+  advance_in_parts(report);
   advance_islands(report);
   door_.end_step();
   watches_.end_step(editor_.model, outlines_, contacts_.sensed(), report);
@@ -106,6 +108,34 @@ void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t gra
 
 }  // namespace
 
+// 3a. An island of which a body would pass or hit another one far along its way takes the step in parts, each with contacts
+// of its own: up to the place where they meet, then a short one, and so on. The last part is taken with all other islands. At
+// first a part was a share of the same step, in which a contact began: a second law for each row, which made energy.
+void Stepper::advance_in_parts(StepReport& report) {
+  constexpr int most = 24;
+  constexpr std::size_t most_points = 2000;  // in all parts of an island
+  model::Model& model = editor_.model;
+  island::Islands& islands = editor_.islands;
+  hasty_ = contacts_.hasty();
+  for (int round = 0; !hasty_.empty(); ++round) {
+    parts_.clear();
+    islands.for_each_of(model, hasty_, [&](island::Island& island) {
+      const bool may_cut =
+          round < most && static_cast<std::size_t>(round) * island.size() <= most_points && !island.is_driven(model);
+      parts_.push_back(contacts_.find_part(model, outlines_, island.bodies(), report.dt - islands.ahead(model, island),
+                                           {.is_first = round == 0, .may_cut = may_cut}));
+    });
+    islands.update(model, editor_.parallel);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < hasty_.size(); ++i) {
+      if (!parts_[i]) continue;
+      add(islands.advance_part(model, *islands.of_articulate(hasty_[i]), *parts_[i], deadline_), report);
+      hasty_[kept++] = hasty_[i];
+    }
+    hasty_.resize(kept);
+  }
+}
+
 // 3. Every island separately, on several threads if that is faster; reports are added up in a fixed order. No island asks
 // another how its step ends, so each commits its try at once, while its problem is in the cache: two passes took 5 to 7 %
 // longer for 1000 ragdolls.
@@ -120,37 +150,37 @@ void Stepper::advance_islands(StepReport& report) {
     editor_.parallel.for_each(count, islands.grain(editor_.parallel), advance);
   if (model.corrections.lacks_room()) model.corrections.make_room(model.rings.slot_count());
   tell_cut_short(islands, report);
-  int solves = 0, iterations = 0, handed_back = 0;
-  double spin_lost = 0;
-  made_ = 0;
-  const auto add = [&](std::uint32_t, const solver::AdvanceReport& r) {
-    solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
-    report.iterations_max = std::max(report.iterations_max, r.iterations_max);
-    report.substeps_max = std::max(report.substeps_max, r.substeps);
-    report.fallbacks += r.fallbacks;
-    report.unconverged += !r.converged;
-    report.cut_short += r.cut_short, report.approximate += r.is_approximate;
-    report.error = std::max(report.error, r.error);
-    model.dissipated += r.dissipated;
-    model.lost += r.lost;
-    model.made += r.made, made_ += r.made;
-    model.external_work += r.external_work;
-    model.edit_energy += r.closing_energy;
-    spin_lost = std::max(spin_lost, r.spin_lost);
-  };
-  islands.for_each_advanced(add);
-  add(model::none, islands.free_bodies().advance(model, report.dt, editor_.parallel));
+  islands.for_each_advanced([&](std::uint32_t, const solver::AdvanceReport& r) { add(r, report); });
+  add(islands.free_bodies().advance(model, report.dt, editor_.parallel), report);
+  islands.end_parts();
   report.resting = islands.resting(model);
-  if (spin_lost > 0)
-    report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost,
+  if (spin_lost_ > 0)
+    report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost_,
                                    " kg m^2/s of their angular momentum"));
-  if (handed_back > 0)
-    report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back, " of ",
-                                   solves, " solves; the built-in one took over"));
-  report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
+  if (handed_back_ > 0)
+    report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back_, " of ",
+                                   solves_, " solves; the built-in one took over"));
+  report.iterations_mean = solves_ ? static_cast<double>(iterations_) / solves_ : 0;
   ingredient::end_step(model, report.dt);
   model.time += report.dt, model.last_dt = report.dt;
   ++model.step;
+}
+
+void Stepper::add(const solver::AdvanceReport& r, StepReport& report) {
+  model::Model& model = editor_.model;
+  solves_ += r.solves, iterations_ += r.iterations, handed_back_ += r.handed_back;
+  report.iterations_max = std::max(report.iterations_max, r.iterations_max);
+  report.substeps_max = std::max(report.substeps_max, r.substeps);
+  report.fallbacks += r.fallbacks;
+  report.unconverged += !r.converged;
+  report.cut_short += r.cut_short, report.approximate += r.is_approximate;
+  report.error = std::max(report.error, r.error);
+  model.dissipated += r.dissipated;
+  model.lost += r.lost;
+  model.made += r.made, made_ += r.made;
+  model.external_work += r.external_work;
+  model.edit_energy += r.closing_energy;
+  spin_lost_ = std::max(spin_lost_, r.spin_lost);
 }
 
 // 4. What the step has led to, and its edits: failures, deaths, births, breaks and particles that have met; then the

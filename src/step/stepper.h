@@ -6,6 +6,9 @@
 #include "step/contact_watches.h"
 #include "step/contacts.h"
 
+#include <optional>
+#include <vector>
+
 namespace iota::step {
 
 /// One step of the whole system.
@@ -22,7 +25,9 @@ class Stepper {
   void take_held_forces(StepReport&);
   void find_contacts(double h);
   void update_islands(double dt);
+  void advance_in_parts(StepReport&);
   void advance_islands(StepReport&);
+  void add(const solver::AdvanceReport&, StepReport&);
   void apply_edits(StepReport&);
   void fill(StepReport&);
 
@@ -33,9 +38,13 @@ class Stepper {
   ContactFinder contacts_;
   // Scratch of the present step, kept for its capacity.
   double made_ = 0;  // by the islands in this step, J
+  int solves_ = 0, iterations_ = 0, handed_back_ = 0;
+  double spin_lost_ = 0;
   island::Island::Clock::time_point deadline_;
   ingredient::Outcome outcome_;
   std::vector<std::uint32_t> flagged_, dirty_, woken_;  // articulates: both, velocities to project, sleepers to wake
+  std::vector<std::uint32_t> hasty_;                    // articulates whose islands take the step in parts
+  std::vector<std::optional<double>> parts_;            // of each of them: the next one, s, if it is not the last
 };
 
 }  // namespace iota::step

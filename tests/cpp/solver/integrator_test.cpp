@@ -182,5 +182,39 @@ TEST(Integrator, that_is_warm_allocates_nothing_even_where_it_falls_back) {
   EXPECT_GT(fallbacks, 0);
 }
 
+TEST(Integrator, steps_alike_after_structures_that_were_never_solved) {
+  // A point that lies on a floor, and one beside it on a link.
+  const auto build = [](Problem& problem, bool is_linked) {
+    problem.clear();
+    const std::uint32_t node = add_point(problem, {0, 0, 0}, 2), other = add_point(problem, {1, 0.5, 0});
+    problem.gravity = {0, -g, 0};
+    for (int i = 0; i < (is_linked ? 1 : 3); ++i) {
+      ContactConstraint floor;
+      floor.nodes = {is_linked ? other : node}, floor.count = 1, floor.first_side = 0;
+      floor.weights[0][0] = floor.weights[1][0] = 1;
+      floor.set_constant(0, {}), floor.set_constant(1, {});
+      floor.set_directions({Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}});
+      floor.friction = 0.5, floor.normal_compliance = 1e-8, floor.compliance = 1e-6;
+      add(problem, floor);
+    }
+    if (is_linked) add_rod(problem, node, other, norm(problem.position[node] - problem.position[other]));
+  };
+  const auto end_of = [&](std::initializer_list<bool> solved_first) {
+    Problem problem;
+    Integrator integrator;
+    for (const bool is_linked : solved_first) {
+      build(problem, is_linked), integrator.compile(problem);
+      if (is_linked == *solved_first.begin())
+        (void)integrator.advance(problem, h, IntegratorSettings::energy_keeping());
+    }
+    build(problem, false), integrator.compile(problem);
+    (void)integrator.advance(problem, h, IntegratorSettings::energy_keeping());
+    return problem.position;
+  };
+  const std::vector<Vec3> fresh = end_of({});
+  EXPECT_EQ(end_of({false, true}), fresh);
+  EXPECT_EQ(end_of({true, false}), fresh);
+}
+
 }  // namespace
 }  // namespace iota::solver
