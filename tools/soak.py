@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes their programs.
 
-    tools/soak.py [NAME ...]      scenes promises edits verify ladder studies messages page; all without a name
+    tools/soak.py [NAME ...]      scenes heaps promises edits verify ladder studies messages page; all without a name
 
 Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
@@ -17,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = {
     "scenes": [str(ROOT / "build" / "iota_soak"), "scenes", "10000"],
+    "heaps": [str(ROOT / "build" / "iota_soak"), "heaps", "10000"],
     "promises": [str(ROOT / "build" / "iota_soak"), "promises", "10000"],
     "edits": [str(ROOT / "build" / "iota_soak"), "edits", "10000000"],
     "verify": [str(ROOT / ".venv" / "bin" / "iota"), "verify", "--long"],

@@ -38,6 +38,7 @@ struct Contact : model::Ends {
   double push = 0;             ///< force along the normal on p in the last step, N
   Vec3 drag;                   ///< force of friction on it, N
   double energy = 0;           ///< of its elastic strain, J
+  double duration = 0;         ///< of the step, or the part of it, in which these forces were found, s
   Vec3 impulse;                ///< on p in the last step, with that of an impact, N s
   double approach = 0;         ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
   std::uint64_t found_in = 0;  ///< step

@@ -323,7 +323,7 @@ void Island::commit_motion(Model& model, double h) {
   update_sleep_timer(model, h, last_);
 }
 
-void Island::forget_factors() { integrator_->forget_factors(); }
+void Island::forget_past() { integrator_->forget_past(problem_); }
 
 IslandReport Island::report(const Model& model, const solver::AdvanceReport& last) const {
   IslandReport report{.points = static_cast<std::uint32_t>(nodes_.size()),

@@ -107,7 +107,7 @@ class Island {
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
 
-  void forget_factors();  ///< of its last step, with which the next one would begin
+  void forget_past();  ///< the next step depends on the model alone
 
   bool is_driven(const model::Model&) const;  ///< by prescribed motion
 

@@ -23,7 +23,7 @@ void Islands::forget() {
 void Islands::renew() {
   renew_ = true;
   for (const auto& home : home_of_leader_)
-    if (home) home->island.forget_factors();
+    if (home) home->island.forget_past();
 }
 
 void Islands::wait(std::uint32_t articulate) {

@@ -165,7 +165,7 @@ void Heap::load_bodies(const Problem& problem, double h) {
     constexpr double thin = 1e-9;
     const double largest = std::max({eigen.values[0], eigen.values[1], eigen.values[2]});
     for (int k = 0; k < 3; ++k)
-      if (eigen.values[k] > thin * largest)
+      if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
         body.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
     body.by_inertia_at_begin = body.by_inertia;
     body.spin = body.by_inertia * angular[i];
@@ -493,6 +493,7 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
     c.is_of_sweeps = true;
     for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
+    report.external_work -= dot(point.sum * point.normal + h * drag, point.drift);
     report.depth = std::max(report.depth, -point.gap);
   }
 }

@@ -14,7 +14,7 @@ namespace iota::solver {
 
 /// The result of a step by sweeps.
 struct HeapReport {
-  double external_work = 0;  ///< of held forces, torques and grips, J
+  double external_work = 0;  ///< of held forces, torques, grips and driven bodies, J
   double depth = 0;          ///< largest overlap at the end, m
 };
 

@@ -42,14 +42,22 @@ int most_iterations(double budget, double cost) {
 }  // namespace
 
 void Integrator::compile(Problem& problem) {
-  may_be_in_pieces_ = false, pieces_.clear();
-  acting_version_ = problem.acting_version();  // as for a new problem: this one may have had laws
+  forget_past(problem);
   is_due_ = !problem.items_of<ContactConstraint>().empty();
   if (!is_due_) return analyze(problem);
   if (!problem.has_slots()) problem.forget_slots();  // fit_pools resizes them
   problem.fit_pools();
   reference_length_ = mean_reference_length(problem);
   make_room(problem);
+}
+
+void Integrator::forget_past(Problem& problem) {
+  newton_.forget_factors();
+  may_be_in_pieces_ = false, pieces_.clear();
+  problem.forget_acting();
+  acting_version_ = problem.acting_version();
+  has_advanced_ = is_taken_back_ = false;
+  if (spin_) spin_->forget();
 }
 
 void Integrator::analyze(Problem& problem) {
@@ -238,8 +246,15 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
 // To the end of the step, in place of the equations of all contacts: these would close its overlaps at once.
 void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
   has_corrected_ = is_instant_ = false;
+  const EnergyBalance before = energy_;
   const HeapReport swept = heap_->advance(problem, part.h, part.to);
   energy_.measure_change(problem, part.to, swept.external_work);
+  // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
+  const double lifted = energy_.total - energy_.kinetic - (before.total - before.kinetic);
+  const double made = energy_.kinetic - before.kinetic + std::min(0.0, lifted) - std::max(0.0, swept.external_work);
+  if (made > 0)
+    (void)change_kinetic_energy(problem, made,
+                                problem.is_isolated() ? std::optional(rigid_motion_of(problem)) : std::nullopt);
   report.external_work += swept.external_work;
   // Impacts and friction are not told apart from what the sub-steps lose.
   report.dissipated += std::exchange(energy_.missing, std::min(0.0, energy_.missing)) - energy_.missing;

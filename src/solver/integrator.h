@@ -42,7 +42,7 @@ class Integrator {
 
   /// The next `advance` begins as the latest one did, if its caller has restored the state of the problem: what that one
   /// has left here is taken back, and factors are forgotten.
-  void take_back() { is_taken_back_ = has_advanced_, forget_factors(); }
+  void take_back() { is_taken_back_ = has_advanced_, newton_.forget_factors(); }
 
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
   /// Returns false if no solution was found: the violation is then distributed, and smaller after each call.
@@ -68,7 +68,8 @@ class Integrator {
 
   /// The place of a node in the order of elimination of what is compiled.
   std::uint32_t node_rank(std::uint32_t node) const { return is_due_ ? node : newton_.node_rank(node); }
-  void forget_factors() { newton_.forget_factors(); }            ///< see Newton
+  /// The next step depends on the problem alone, to the bit.
+  void forget_past(Problem&);
   double reference_length() const { return reference_length_; }  ///< of what is compiled, m
 
   /// The solver of the equations of steps; null: the built-in Newton.

@@ -162,6 +162,10 @@ void Problem::note_acting(const Vec3* x) {
   if (is_other) ++acting_version_;
 }
 
+void Problem::forget_acting() {
+  for_each_constraint_pool([](auto& pool) { pool.acting.clear(); });
+}
+
 void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
   if (removed.empty()) return;
   thread_local Renumbering number;

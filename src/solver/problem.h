@@ -315,6 +315,7 @@ struct Problem {
   /// violate does, too. Another set than that of the last call has another `acting_version`.
   void note_acting(const Vec3* x = nullptr);
   std::uint64_t acting_version() const { return acting_version_; }
+  void forget_acting();  ///< the next time another version is noted, as of a new problem
 
   bool has_laws() const {
     bool any = false;

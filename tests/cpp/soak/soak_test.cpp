@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `make soak` does for long, at the size of a test suite.
+#include "scenes/random_heap.h"
 #include "scenes/random_scene.h"
 #include "soak/edit_twin.h"
 #include "source_folder.h"
@@ -23,6 +24,16 @@ TEST(RandomEdits, agree_with_a_twin_that_only_knows_labels) {
   EXPECT_GT(counted.joined, count / 10);
   EXPECT_GT(counted.cut, count / 10);
   EXPECT_GT(counted.refused, count / 100);
+}
+
+TEST(RandomHeaps, stay_whole_and_finite_and_make_no_motion_from_nothing) {
+  const std::uint64_t count = sampled(200);
+  scenes::HeapTally tally;
+  for (std::uint64_t seed = 1; seed <= count; ++seed)
+    EXPECT_EQ(scenes::play_heap(seed, tally).value_or(""), "") << "seed " << seed;
+  EXPECT_GT(tally.edits, 30 * count);
+  EXPECT_GT(tally.approximate, count);
+  EXPECT_LT(tally.unsolved, tally.steps / 5) << "heaps that are mostly conflicts test little else";
 }
 
 TEST(RandomScenes, stay_finite_whole_and_honest) {
