@@ -38,7 +38,7 @@ CONTENTS = {
     "simulator": ("A simulator of your own", ["iota.simulator"]),
 }
 # Names of the engine's module that are not for scripts.
-INNER = ("ServerStatistics", "DrawnPart", "Room", "Server", "Equations")
+INNER = ("ServerStatistics", "DrawnPart", "Room", "Log", "Server", "Equations")
 HEADER = "<!-- Written by tools/make_api.py from the docstrings; change those. -->\n\n"
 SHORTER = (  # parts of signatures that readers do not need
     (r"Annotated\[NDArray\[numpy\.(\w+)\], dict\(shape=\(([^()]*)\)[^()]*\)\]", r"array (\2)"),

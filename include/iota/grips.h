@@ -6,6 +6,7 @@
 #include <iota/view.h>
 
 #include <cstdint>
+#include <vector>
 
 namespace iota {
 
@@ -25,6 +26,7 @@ class Grips : public View {
   void move(GripId, const Vec3& target);
   void destroy(GripId);
   bool contains(GripId) const;
+  std::vector<GripId> ids() const;  ///< in order of slots
   /// The body that it holds now: an edit may have made that another one than at the start.
   BodyId body(GripId) const;
 };

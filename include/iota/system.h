@@ -14,6 +14,7 @@
 #include <iota/ids.h>
 #include <iota/joints.h>
 #include <iota/laws.h>
+#include <iota/log.h>
 #include <iota/many.h>
 #include <iota/options.h>
 #include <iota/particles.h>
@@ -70,6 +71,7 @@ class System {
   Emitters emitters() { return Emitters(*core_); }
   Edits edits() { return Edits(*core_); }
   Record record() { return Record(*core_); }
+  Log log() { return Log(*core_); }
   Viewer viewer() { return Viewer(*core_); }
   Places places() { return Places(*core_); }
   Contacts contacts() { return Contacts(*core_); }

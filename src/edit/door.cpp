@@ -75,14 +75,17 @@ void Door::apply_queue(StepReport& report) {
   report.edits->energy_change = editor_.held.book().edits - before;
 }
 
-Snapshot Door::take_snapshot() {
+Snapshot Door::take_snapshot(For reader) {
   record(TakeSnapshot{});
-  return editor_.snapshot();
+  if (reader == For::others) return editor_.snapshot();
+  editor_.islands.renew();
+  return editor_.pack();
 }
 
 void Door::start_recording() {
   editor_.forget_history();  // a replay would not have this history
   recording_ = Recording{editor_.snapshot(), {}, {}};
+  break_log();
   editor_.keeps_functions = true;
 }
 
@@ -95,9 +98,8 @@ Recording Door::stop_recording() {
 }
 
 void Door::record_step(const Step& step) {
-  if (!recording_) return;
   record(step);
-  recording_->hashes.push_back(editor_.model.hash());
+  if (recording_) recording_->hashes.push_back(editor_.model.hash());
 }
 
 namespace {
@@ -107,6 +109,14 @@ struct KeepFunctions {
   ~KeepFunctions() { editor.keeps_functions = false; }
   Editor& editor;
 };
+
+void repeat_one(std::size_t number, const Command& command, const std::function<void(const Command&)>& execute) {
+  try {
+    execute(command);
+  } catch (const std::logic_error& error) {
+    throw std::invalid_argument(text("replay: command ", number, " cannot be applied: ", error.what()));
+  }
+}
 
 }  // namespace
 
@@ -120,16 +130,19 @@ std::optional<std::uint64_t> Door::replay(const Recording& recording,
   std::optional<std::uint64_t> differs;
   for_each_command(recording.commands, [&](std::size_t number, const Command& command) {
     if (differs) return;
-    try {
-      execute(command);
-    } catch (const std::logic_error& error) {
-      throw std::invalid_argument(text("replay: command ", number, " cannot be applied: ", error.what()));
-    }
+    repeat_one(number, command, execute);
     if (!std::holds_alternative<Step>(command)) return;
     if (steps >= recording.hashes.size() || editor_.model.hash() != recording.hashes[steps++])
       differs = editor_.model.step;
   });
+  break_log();
   return differs;
+}
+
+void Door::repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute) {
+  for_each_command(commands, [](std::size_t, const Command&) {});  // throws before anything changes
+  const KeepFunctions keep(editor_);
+  for_each_command(commands, [&](std::size_t number, const Command& command) { repeat_one(number, command, execute); });
 }
 
 }  // namespace iota::edit

@@ -3,6 +3,7 @@
 
 #include "edit/commands.h"
 
+#include <iota/log.h>
 #include <iota/reports.h>
 
 #include <functional>
@@ -36,7 +37,9 @@ class Door {
   /// @name Recordings
   ///@{
   bool is_recording() const { return recording_.has_value(); }
-  Snapshot take_snapshot();  ///< for others
+  /// A journal is read by another process, which has functions of its own.
+  enum class For : std::uint8_t { others, journal };
+  Snapshot take_snapshot(For = For::others);
   void start_recording();
   Recording stop_recording();
   /// Records a completed step.
@@ -45,6 +48,18 @@ class Door {
   /// with another hash, if any. Throws std::invalid_argument for a damaged recording: before any change if bytes are
   /// not a command, else after the last command that could be applied.
   std::optional<std::uint64_t> replay(const Recording&, const std::function<void(const Command&)>& execute);
+  ///@}
+
+  /// @name Logs: see `Log`
+  ///@{
+  void start_log() { log_.emplace(); }
+  void stop_log() { log_.reset(); }
+  LogPiece take_log() { return log_ ? std::exchange(*log_, {}) : LogPiece{}; }
+  /// The state was replaced, which no command repeats.
+  void break_log() {
+    if (log_) *log_ = {{}, true};
+  }
+  void repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute);
   ///@}
 
  private:
@@ -64,6 +79,7 @@ class Door {
   bool is_stepping_ = false;
   std::vector<std::byte> queue_;  // requested during the step, as in a recording
   std::optional<Recording> recording_;
+  std::optional<LogPiece> log_;
 };
 
 /// Appends a command as recordings have it. A `Command` is not made of it: each file that executes commands would compile
@@ -135,6 +151,9 @@ void Door::note_edit() {
 template <class C>
 void Door::record(const C& command) {
   if (recording_) write(recording_->commands, command);
+  if (!log_ || log_->is_broken) return;
+  write(log_->commands, command);
+  if (log_->commands.size() > Log::most_bytes) break_log();
 }
 
 }  // namespace iota::edit

@@ -20,16 +20,20 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
-Snapshot Editor::snapshot(Origin origin) {
+Snapshot Editor::pack() {
   std::vector<std::byte> content;
   Writer writer(content);
   model.archive(writer);
-  if (origin == Origin::anywhere) islands.renew();
-  keys_saved_below_ = held.functions.next_key;
   return {seal(snapshot_seal, content)};
 }
 
-void Editor::restore(const Snapshot& snapshot, Origin origin) {
+Snapshot Editor::snapshot(Origin origin) {
+  if (origin == Origin::anywhere) islands.renew();
+  keys_saved_below_ = held.functions.next_key;
+  return pack();
+}
+
+model::Model Editor::unpack(const Snapshot& snapshot, Origin origin) {
   Reader reader(unseal(snapshot_seal, snapshot.bytes));
   model::Model restored;
   restored.archive(reader);
@@ -39,6 +43,11 @@ void Editor::restore(const Snapshot& snapshot, Origin origin) {
     if (const std::vector<std::string> complaints = ingredient::validate(restored); !complaints.empty())
       throw std::invalid_argument(text("restore: the tables of this snapshot do not fit together: ", complaints.front(),
                                        complaints.size() > 1 ? text(", and ", complaints.size() - 1, " more") : ""));
+  return restored;
+}
+
+void Editor::restore(const Snapshot& snapshot, Origin origin) {
+  model::Model restored = unpack(snapshot, origin);
   restored.take_over(model);
   model = std::move(restored);
   model.list_flagged();

@@ -48,6 +48,7 @@ class History {
   std::optional<Snapshot> pop();
   void clear() { states_.clear(), bytes_ = 0; }
   std::size_t size() const { return states_.size(); }
+  const std::deque<Snapshot>& states() const { return states_; }
 
  private:
   std::deque<Snapshot> states_;

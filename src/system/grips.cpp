@@ -11,6 +11,8 @@ GripId Grips::create(BodyId body, const Vec3& local_point, const Vec3& target, c
 
 void Grips::move(GripId grip, const Vec3& target) { core_.execute(edit::MoveGrip{grip, target}); }
 
+std::vector<GripId> Grips::ids() const { return core_.model.grips.ids(); }
+
 bool Grips::contains(GripId id) const { return core_.model.grips.contains(id); }
 
 BodyId Grips::body(GripId id) const {

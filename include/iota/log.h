@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/forces.h>
+#include <iota/record.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace iota {
+
+/// The commands of some time, for a journal.
+struct LogPiece {
+  std::vector<std::byte> commands;  ///< as in a `Recording`
+  /// The state was replaced by a `restore`, or more was logged than `Log::most_bytes`: a snapshot has to come before what is
+  /// logged next. Then there are no commands.
+  bool is_broken = false;
+};
+
+/// A function of the script that something in the system uses. It is not saved: the tables refer to it by its key, which
+/// functions get in the order of their registration.
+struct FunctionUse {
+  enum class Kind : std::uint8_t { bond, law, field, surface };
+  Kind kind;
+  std::uint64_t key;
+  std::string name;  ///< empty for a surface, and for the bond of a missing function
+  bool is_there;
+};
+
+/// All commands of a running system, in pieces: a snapshot and the commands since then lead to the same bits. What a
+/// journal needs beside them: states for undo and redo. Independent of `Record`.
+class Log : public View {
+ public:
+  static constexpr std::size_t most_bytes = std::size_t{64} << 20;  ///< between two calls of `take`
+
+  explicit Log(Core& core) : View(core) {}
+
+  void start();
+  void stop();
+  /// The commands since the last call.
+  LogPiece take();
+  /// As `System::snapshot`, but later it does not keep functions of the script alive for a `restore`.
+  Snapshot snapshot();
+  /// As `snapshot`, without a change of what the steps after it do: a system restored from it may differ in the last bits.
+  Snapshot quick_snapshot();
+  /// Repeats commands, from the state in which they were made. Throws std::invalid_argument for damaged ones: before any
+  /// change if bytes are not a command, otherwise after the last command that could be applied.
+  void repeat(std::span<const std::byte> commands);
+
+  /// The states to which undo and redo return, the newest last. Valid until the next command.
+  std::vector<std::span<const std::byte>> undo_states() const;
+  std::vector<std::span<const std::byte>> redo_states() const;
+  /// Throws std::invalid_argument as `System::restore`, without a change.
+  void set_history(std::vector<Snapshot> undo, std::vector<Snapshot> redo);
+
+  /// By kind, then by slot of the user.
+  std::vector<FunctionUse> functions() const;
+  /// The function of bonds that refer to it by this key.
+  void give_function(std::uint64_t key, ScriptedLaw);
+};
+
+}  // namespace iota
