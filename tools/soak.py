@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes their programs.
 
-    tools/soak.py [NAME ...]      scenes heaps promises edits verify ladder studies messages page; all without a name
+    tools/soak.py [NAME ...]      scenes heaps promises edits verify ladder studies messages kills page; all without a name
 
 Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
@@ -40,6 +40,10 @@ RUNS = {
     "messages": [
         *("env", "IOTA_MESSAGE_SECONDS=60", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
         str(ROOT / "tests" / "python" / "test_random_messages.py"),
+    ],
+    "kills": [
+        *("env", "IOTA_KILLS=1000", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q", "-s"),
+        *(str(ROOT / "tests" / "python" / "test_journal.py"), "-k", "no_kill"),
     ],
     "page": [str(ROOT / ".venv" / "bin" / "node"), str(ROOT / "web" / "e2e" / "page_soak.ts")],
 }

@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, gallery, imports, play, profile, record, run, verify, watch
+from iota.cli import bench, bench_forces, gallery, imports, info, play, profile, record, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -86,7 +86,11 @@ def make_parser() -> Parser:
         "--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan, instead of a self-signed one"
     )
     running.add_argument("--key", type=Path, metavar="FILE.pem", help="the key of --cert")
-    running.add_argument("--keep", type=Path, help=argparse.SUPPRESS)  # from --watch
+    running.add_argument(
+        "--keep", type=Path, metavar="DIR", help="keep the world there: after a crash the next run goes on where it was"
+    )
+    running.add_argument("--fresh", action="store_true", help="with --keep: begin anew, and put the kept world aside")
+    running.add_argument("--handover", type=Path, help=argparse.SUPPRESS)  # from --watch
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 
     showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, which a click starts")
@@ -123,10 +127,17 @@ def make_parser() -> Parser:
     profiling.set_defaults(function=profile.profile)
 
     playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")
-    playing.add_argument("file", type=Path, metavar="FILE.iota", help="made by iota record -o or iota run --record")
+    playing.add_argument(
+        "file", type=Path, metavar="FILE.iota|DIR", help="made by iota record -o, iota run --record or --keep"
+    )
     playing.add_argument("-o", "--output", type=Path, metavar="FILE.html", help="name of the page")
     playing.add_argument("--no-open", action="store_true", help="do not open it in a browser")
     playing.set_defaults(function=play.play)
+
+    telling = commands.add_parser("info", help="tells about a journal of iota run --keep")
+    telling.add_argument("directory", type=Path, metavar="DIR")
+    telling.add_argument("--json", action="store_true", help="print one JSON object")
+    telling.set_defaults(function=info.info)
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota play`: shows a recording of `iota record -o FILE.iota` or `iota run --record FILE.iota` in a page that needs no server."""
+"""`iota play`: shows a recording of `iota record -o FILE.iota` or `iota run --record FILE.iota`, or the last seconds
+of a journal, in a page that needs no server."""
 
 from __future__ import annotations
 
@@ -9,9 +10,11 @@ import tempfile
 import webbrowser
 from pathlib import Path
 
+from iota.cli import info
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
 from iota.film import Failed, pack, player, unpack
+from iota.film.journal import messages_of
 from iota.film.stream import check_version, read_file
 from iota.saving import replacing
 
@@ -23,8 +26,12 @@ def play(arguments: argparse.Namespace) -> None:
     if target.suffix.lower() != ".html":
         raise Failure(f"{target} must end in .html")
     try:
-        file = read_file(source)
-        messages, is_complete = unpack(file)
+        if source.is_dir():
+            messages, is_complete = messages_of(info.read(source))
+            file = pack(messages)
+        else:
+            file = read_file(source)
+            messages, is_complete = unpack(file)
         check_version(messages)
         with replacing(target) as fresh:
             fresh.write_text(player(file if is_complete else pack(messages), source.stem), encoding="utf-8")

@@ -23,6 +23,7 @@ from iota.cli import prompt
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
 from iota.film.files import Failed, check_name
+from iota.journal.folder import BusyError
 from iota.terminal import TerminalView
 from iota.world import World
 from iota.world.callbacks import is_terminal, print_error
@@ -49,7 +50,9 @@ def run(arguments: argparse.Namespace) -> None:
         headless=arguments.headless,
         lan=lan(arguments),
         record=arguments.record,
-        kept=arguments.keep,
+        kept=arguments.handover,
+        keep=arguments.keep,
+        fresh=arguments.fresh,
         drive=prompt.drive if arguments.prompt else None,
         view=TerminalView() if arguments.terminal else None,
     )
@@ -62,6 +65,8 @@ def run(arguments: argparse.Namespace) -> None:
             check_name(arguments.record, [".iota"])
         except Failed as failed:
             raise Failure(str(failed)) from None
+    if arguments.fresh and arguments.keep is None:
+        raise Failure("--fresh begins a kept world anew, so it needs --keep DIR")
     start = find(arguments.what)
     with use(options), plain_failures(arguments.port):
         start(arguments.links)
@@ -166,6 +171,8 @@ def plain_failures(port: int | None) -> Iterator[None]:
         yield
     except (Failure, KeyboardInterrupt):
         raise
+    except BusyError as error:
+        raise Failure(str(error)) from None
     except SystemExit as leave:
         if leave.code not in (None, 0):
             raise

@@ -37,7 +37,7 @@ def watch(arguments: argparse.Namespace) -> None:
     run.parse(path)
     arguments.port = free_port() if arguments.port == 0 else arguments.port
     with TemporaryDirectory(prefix="iota-watch-") as folder:
-        arguments.keep = Path(folder, "world")
+        arguments.handover = Path(folder, "world")
         watch_files(arguments, path)
 
 
@@ -62,10 +62,11 @@ def watch_files(arguments: argparse.Namespace, path: Path) -> None:
 
 def start(arguments: argparse.Namespace, is_first: bool) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "iota", "run", arguments.what]
-    for name in ("links", "port", "seconds", "cert", "key", "keep"):
+    for name in ("links", "port", "seconds", "cert", "key", "keep", "handover"):
         value = getattr(arguments, name)
         words += [] if value is None else [f"--{name}", str(value)]
     words += ["--lan"] if arguments.lan else []
+    words += ["--fresh"] if arguments.fresh and is_first else []
     words += ["--no-open"] if arguments.no_open or not is_first else []
     return subprocess.Popen(words)
 

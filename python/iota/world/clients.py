@@ -51,11 +51,12 @@ class Hold:
 
 @dataclass
 class Client:
-    """One open page. selected: its selection. is_profiling: it shows what the parts of a step cost. holds: by the page's
+    """One open page. role: host, guest or viewer, see `Pages.link`. selected: its selection. is_profiling: it shows what the parts of a step cost. holds: by the page's
     own number of the grab."""
 
     id: int
     name: str = ""
+    role: str = "host"
     selected: Body | None = None
     is_profiling: bool = False
     holds: dict[int, Hold] = field(default_factory=dict)
@@ -127,9 +128,9 @@ class Clients:
         self.send_away: Callable[[int], None] | None = None
         self.taken_away: list[tuple[Hold, str]] = []  # with the reason; their functions wait to be told
 
-    def join(self, id: int, name: str) -> None:
+    def join(self, id: int, name: str, role: str = "host") -> None:
         self.by_id[id] = Client(
-            id, name, take_picture=self.take_picture, send_pulse=self.send_pulse, send_camera=self.send_camera
+            id, name, role, take_picture=self.take_picture, send_pulse=self.send_pulse, send_camera=self.send_camera
         )
 
     def leave(self, client: Client) -> None:

@@ -28,6 +28,7 @@ BodiesOf = Callable[[Sequence[protocol.Id]], list[Any]]
 Handler = Callable[["Inputs", Client, Any], None]
 HANDLERS: dict[type, Handler] = {}
 SHARES: dict[type, float] = {}
+ROLES = {protocol.Role.HOST: "host", protocol.Role.ACTOR: "guest", protocol.Role.VIEWER: "viewer"}
 TOO_FAST = (
     "A page can run 30 actions a second, and all pages those that take half of the time. The others were left out."
 )
@@ -72,7 +73,7 @@ class Inputs:
         self._bodies_of = bodies_of
         for number, message in inputs:
             if isinstance(message, protocol.Join):
-                self._state.clients.join(number, message.name)
+                self._state.clients.join(number, message.name, ROLES[message.role])
             client = self._state.clients.by_id.get(number)
             if client is None:
                 continue

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class RunOptions:
     """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`.
     record: a file for what pages show, see `Pages.record`. kept: a file for the state in which a world ends and the next
-    one begins, see `iota.world.keeping`. names: of the module whose build() made the World. `ran`, `summary`: set by the
+    one begins, see `iota.world.keeping`. keep, fresh: of `World.keep`. names: of the module whose build() made the World. `ran`, `summary`: set by the
     World that ran."""
 
     port: int | None = None
@@ -31,6 +31,8 @@ class RunOptions:
     view: View | None = None
     record: Path | None = None
     kept: Path | None = None
+    keep: Path | None = None
+    fresh: bool = False
     names: dict[str, Any] | None = None
     ran: bool = False
     summary: RunSummary | None = None

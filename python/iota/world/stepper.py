@@ -14,6 +14,7 @@ from iota._core import Body, Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
 from iota.world.event import Event
+from iota.world.journal import Journal
 from iota.world.keeping import Keeper
 from iota.world.listeners import Listener
 from iota.world.scene import Camera
@@ -36,6 +37,7 @@ class Stepper:
         self._start: bytes | None = None
         self._camera: Camera | None = None  # at the start
         self._keeper: Keeper | None = None
+        self.journal: Journal | None = None
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
 
@@ -50,6 +52,9 @@ class Stepper:
         state.scene.keep_ground()
         self._start, self._camera = state.system.snapshot(), state.scene.camera
         state.schedule.begin()
+        if self.journal is not None:
+            # After a change of the script, the parts that start in another way are the script's.
+            self._go_on(self.journal, recovers=kept is None or not kept.exists())
         if kept is None or not isinstance(state.system, System):
             return
         self._keeper = Keeper(kept, state.system)
@@ -61,10 +66,27 @@ class Stepper:
             print_on_terminal(f"iota: {told} r on the page resets it\n")
             state.notices.send("The script was saved", told, "A reset begins the world anew.", keep=True)
 
+    def _go_on(self, journal: Journal, recovers: bool) -> None:
+        told = journal.begin(self._start or b"", recovers)
+        if told:
+            print_on_terminal(f"iota: {told}\n")
+            self._state.notices.send("The journal", f"The world {told}.", "A reset begins the world anew.", keep=True)
+
     def keep(self) -> None:
         """Writes the state for the run of a changed script."""
         if self._keeper is not None:
             self._keeper.keep()
+
+    def check_journal(self) -> None:
+        """Between steps: a paused world is edited, too."""
+        if self.journal is not None:
+            self.journal.check()
+
+    def end(self) -> None:
+        """The run has ended."""
+        if self.journal is not None:
+            self.journal.close()
+            self.journal = None
 
     def summary(self) -> RunSummary:
         """Whether there were steps since `begin`."""
@@ -85,12 +107,15 @@ class Stepper:
         dt, began = state.clock.dt, time.perf_counter()
         with self._guard.watching("A step of the world", SLOW_STEP, SMALLER):
             report = self._step_system(dt)
-        state.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - state.step_ms)
+        seconds = time.perf_counter() - began
+        state.step_ms += 0.05 * (seconds * 1e3 - state.step_ms)
         if self._tally is not None:
             self._tally.add(report, dt)
         for warning in report.warnings:
             state.notices.warn_once(warning)
         self._tell_what_happened()
+        if self.journal is not None:
+            self.journal.note_step(seconds, not (report.cut_short and state.system.budget_seconds))
         return report
 
     def _step_system(self, dt: float) -> StepReport:

@@ -11,6 +11,7 @@ import threading
 import time
 import webbrowser
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar, cast
 
 from iota._core import StepReport, System
@@ -24,6 +25,7 @@ from iota.world.drawings import Drawings
 from iota.world.events import Events
 from iota.world.ground import level_below
 from iota.world.inputs import Inputs
+from iota.world.journal import Journal
 from iota.world.lan import Lan
 from iota.world.pages import Pages
 from iota.world.parts import forward
@@ -135,6 +137,7 @@ class World:
         self._queries = Queries(state.system, state.scene)
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
+        self._unkept: dict[str, Any] = {}
         self.camera = camera
         self._runner: int | None = None
         self._background: threading.Thread | None = None
@@ -278,6 +281,55 @@ class World:
     def redo(self) -> bool:
         """Undoes the last `undo`."""
         return self._state.history.redo()
+
+    # --- what outlives the process ------------------------------------------------------------------------------------
+
+    def keep(self, directory: str | Path, fresh: bool = False) -> None:
+        """Keeps the world in a journal, from the begin of the run to its end. If the process is killed, the next one that
+        keeps the same world there goes on where it was, with all edits, undo, controls and what `keep_state` names; at
+        most 0.2 s are lost. The script has to start with the same bodies, joints, bonds and functions (not at the same
+        places): otherwise it begins anew, and the world before is put aside. fresh: so, too. `iota run --keep DIR` and
+        `--fresh` are the same.
+
+            world.keep("classroom")
+            world.run()
+
+        directory: made if there is none. A disk that is full or read-only is told, and the world goes on. Raises
+        RuntimeError if another process keeps a world there or this one has begun, OSError for a folder that cannot be
+        made, TypeError for another simulator than a System.
+        """
+        if self._stepper.has_begun:
+            raise RuntimeError("a world is kept from its begin: call keep before it runs")
+        if self._stepper.journal is not None:
+            raise RuntimeError("this world is kept already")
+        self._stepper.journal = Journal(Path(directory), self._state, self._inputs.call, fresh)
+
+    def keep_state(self, key: str, value: Any) -> None:
+        """Keeps a value of the script with the world, see `keep`: None, numbers, texts, lists and dicts (by text) of them,
+        bodies, particles, bonds, constraints. Call it again when the value has changed. Raises TypeError for others. In
+        a world that is not kept it lasts as long as the world."""
+        journal = self._find_journal()
+        if journal is None:
+            self._unkept[key] = value
+        else:
+            journal.set(key, value)
+
+    def kept_state(self, key: str, default: Any = None) -> Any:
+        """The value of `keep_state`, of the run before if this one has given none; `default` without one. If the script
+        starts another world than before, the values are gone when it begins.
+
+            score = world.kept_state("score", 0)
+        """
+        journal = self._find_journal()
+        return self._unkept.get(key, default) if journal is None else journal.get(key, default)
+
+    def _find_journal(self) -> Journal | None:
+        """That of the script, or of the command line."""
+        options = run_options.current()
+        if self._stepper.journal is None and options.keep is not None and not self._stepper.has_begun:
+            directory, options.keep = options.keep, None  # of the first world
+            self.keep(directory, options.fresh)
+        return self._stepper.journal
 
     # --- running --------------------------------------------------------------------------------------------------
 
@@ -442,6 +494,7 @@ class World:
         self._guard.close()
         self._runner = None
         self._stopping = False
+        self._stepper.end()
         if self._pages._publisher is not None:
             for client in self.users.clients:
                 self._state.clients.let_go(client)
@@ -482,6 +535,7 @@ class World:
         if self._finds_ground:
             self._finds_ground = False
             self.scene.keep_ground(level_below(self.system))
+        self._find_journal()
         self._stepper.begin(run_options.current().kept)
         self._real_time.restart()
 
@@ -581,6 +635,7 @@ class World:
                 thing.sample(self.system.time, self._guard)
         with self._state.costs.of("pages"):
             self._pages._frame()
+        self._stepper.check_journal()
         if self.clock.reached_speed < 0.8:
             text = "This machine is too slow for this world in real time: it runs in slow motion."
             self._state.notices.warn_once(text)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The records of a journal's file, each with checksums of its own, so that damage stays in one record.
+
+A file is the line "iota journal 1" and records. A record is a head of 24 bytes, little-endian, and its content:
+mark "ij", kind (a letter), 0, length of the content (u32), number (u64), CRC-32 of the content, CRC-32 of the head before
+it. Nothing is packed: numbers that move have nothing to gain, and the processor does. Numbers rise by one over the files of one process; after records that were not
+written a number is left out.
+
+    H  JSON: about the file              W  JSON: controls, people, clock, state of the script
+    U  mark (u64), a state of undo       Y  JSON: the marks of the states of undo and redo
+    S  the system: what follows starts there     Q  the same, but what follows may lead to other last bits
+    C  time of the world after it (f64, s), hash of its state then (u64), seconds (f32) in which they were given, commands
+    E  the world ended in an orderly way
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from typing import NamedTuple
+
+FORMAT = 1
+MAGIC = b"iota journal %d\n" % FORMAT
+ANY_MAGIC = b"iota journal "
+KINDS = b"HWUYSQCE"
+MARK = b"ij"
+HEAD = struct.Struct("<2sBBIQII")
+COMMANDS = struct.Struct("<dQf")
+
+
+class Record(NamedTuple):
+    """content: None if it is damaged."""
+
+    kind: str
+    number: int
+    content: bytes | None
+
+
+class Commands(NamedTuple):
+    """A piece of the log. time: of the world after it, s. hash: of the state then. seconds: in which they were given."""
+
+    time: float
+    hash: int
+    seconds: float
+    commands: bytes
+
+    def to_bytes(self) -> bytes:
+        return COMMANDS.pack(self.time, self.hash, self.seconds) + self.commands
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Commands:
+        time, hash, seconds = COMMANDS.unpack_from(content)
+        return cls(time, hash, seconds, content[COMMANDS.size :])
+
+
+def pack(kind: str, number: int, content: bytes) -> bytes:
+    """The bytes of a record."""
+    head = HEAD.pack(MARK, ord(kind), 0, len(content), number, zlib.crc32(content), 0)[:-4]
+    return head + struct.pack("<I", zlib.crc32(head)) + content
+
+
+def unpack(data: bytes) -> Iterator[Record]:
+    """The records of a file after its first line, up to an unfinished one. What has a damaged head is left out, which the
+    numbers of the others show."""
+    at = len(MAGIC)
+    while 0 <= at <= len(data) - HEAD.size:
+        mark, kind, _, length, number, checksum, of_head = HEAD.unpack_from(data, at)
+        if mark != MARK or kind not in KINDS or zlib.crc32(data[at : at + HEAD.size - 4]) != of_head:
+            at = data.find(MARK, at + 1)
+            continue
+        at += HEAD.size
+        if at + length > len(data):
+            return
+        content: bytes | None = data[at : at + length]
+        at += length
+        if zlib.crc32(content or b"") != checksum:
+            content = None
+        yield Record(chr(kind), number, content)

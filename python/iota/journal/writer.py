@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a journal on a thread of its own."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from iota.journal.folder import File, Folder
+from iota.journal.records import MAGIC, pack
+from iota.saving import sync
+
+SYNC_TIME = 0.1  # s, at most, until what was written is on the disk
+RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
+GAP = 1000  # in the numbers of records, after some that were not written
+
+Content = tuple[str, bytes]  # kind, content
+
+
+class Writer:
+    """Puts records into the files of a folder. It never raises: what cannot be written is told once, by `tell(text)` on
+    its thread, and tried again. wants_all: the next records must begin a generation. bytes: of the present generation."""
+
+    def __init__(self, folder: Folder, tell: Callable[[str], None], aside: Sequence[File] = ()) -> None:
+        self._folder, self._tell, self._aside = folder, tell, list(aside)
+        self._queue: queue.SimpleQueue[tuple[list[Content], bool] | threading.Event | None] = queue.SimpleQueue()
+        self._file: int | None = None
+        self._number = self._generation = self.bytes = 0
+        self._retry_at: float | None = 0.0  # s; None while all is well
+        self._is_told = self._is_fenced = self._is_dirty = False
+        self._sync_at = 0.0
+        self._thread = threading.Thread(target=self._run, name="iota-journal", daemon=True)
+        self._thread.start()
+
+    @property
+    def wants_all(self) -> bool:
+        """Whether a generation has to be begun: at first, and some seconds after an error."""
+        return not self._is_fenced and self._retry_at is not None and time.monotonic() >= self._retry_at
+
+    @property
+    def takes(self) -> bool:
+        """Whether records are written at present."""
+        return self._retry_at is None and not self._is_fenced
+
+    def put(self, records: Sequence[Content], begins: bool = False) -> None:
+        """From the thread of the world. begins: these are all that a new generation needs."""
+        if begins:
+            self._retry_at = None  # not again until this one has failed
+        self._queue.put((list(records), begins))
+
+    def flush(self) -> None:
+        """Waits until the thread has taken all records."""
+        done = threading.Event()
+        self._queue.put(done)
+        done.wait()
+
+    def close(self) -> None:
+        """Writes what waits, to the disk."""
+        self._queue.put(None)
+        self._thread.join()
+
+    # --- on its thread ------------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            try:
+                wait = max(0.0, self._sync_at - time.monotonic()) if self._is_dirty else None
+                item = self._queue.get(timeout=wait)
+            except queue.Empty:
+                self._attempt(self._sync)
+                continue
+            if item is None:
+                break
+            if isinstance(item, threading.Event):
+                item.set()
+                continue
+            records, begins = item
+            if self._is_fenced:
+                continue
+            if begins:
+                self._begin(records)
+            elif self._file is not None:
+                self._attempt(lambda records=records: self._append(records))  # type: ignore[misc]
+        if self._is_dirty:
+            self._attempt(self._sync)
+        self._forget_file()
+
+    def _attempt(self, work: Callable[[], None]) -> bool:
+        """False if it failed: the present file is then left as it is."""
+        try:
+            work()
+            return True
+        except OSError as error:
+            self._forget_file()
+            self._fail(error)
+            return False
+
+    def _fail(self, error: OSError) -> None:
+        self._retry_at = time.monotonic() + RETRY_TIME
+        if not self._is_told:
+            self._is_told = True
+            self._tell(
+                f"the journal in {self._folder.path} cannot be written: {error.strerror or error}. The world goes on; "
+                "what it had kept stays, and it is tried again"
+            )
+
+    def _begin(self, records: list[Content]) -> None:
+        """A new generation, under its name only when it is complete and on the disk."""
+        before, number = self._file, self._number
+        part: Path | None = None
+        fresh: int | None = None
+        try:
+            if self._folder.epoch == 0:
+                self._folder.claim()
+            if not self._check_epoch():
+                return
+            path = self._folder.file(self._generation + 1)
+            part = path.with_suffix(".part")
+            fresh = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o644)
+            data = MAGIC + b"".join(pack(kind, number + n, content) for n, (kind, content) in enumerate(records, 1))
+            write_all(fresh, data)
+            os.fsync(fresh)
+            part.rename(path)
+            sync(self._folder.path)
+        except OSError as error:
+            if fresh is not None:
+                os.close(fresh)
+            if part is not None:
+                with suppress(OSError):
+                    part.unlink()
+            if before is None:
+                self._number += GAP
+                self._fail(error)
+            else:  # the file before may still have room, and goes on without a gap
+                self._attempt(lambda: self._append([record for record in records if record[0] in "UYW"]))
+            return
+        if before is not None:
+            os.close(before)
+        self._file, self._generation, self.bytes = fresh, self._generation + 1, len(data)
+        self._number = number + len(records)
+        self._is_dirty = False
+        if self._is_told:
+            self._is_told = False
+            self._tell(f"the journal in {self._folder.path} is written again")
+        with suppress(OSError):
+            self._folder.put_aside(self._aside)
+        self._aside = []
+        self._folder.prune()
+
+    def _append(self, records: Sequence[Content]) -> None:
+        assert self._file is not None
+        if not self._check_epoch():
+            return
+        data = b"".join(pack(kind, self._number + n, content) for n, (kind, content) in enumerate(records, 1))
+        write_all(self._file, data)
+        self._number += len(records)
+        self.bytes += len(data)
+        now = time.monotonic()
+        if not self._is_dirty:
+            self._is_dirty, self._sync_at = True, now + SYNC_TIME
+        elif now >= self._sync_at:
+            self._sync()
+
+    def _sync(self) -> None:
+        self._is_dirty = False
+        if self._file is not None:
+            (os.fdatasync if hasattr(os, "fdatasync") else os.fsync)(self._file)
+
+    def _check_epoch(self) -> bool:
+        """A process that was believed dead must not write: another one goes on with the world."""
+        if self._folder.is_ours():
+            return True
+        self._is_fenced = True
+        self._forget_file()
+        self._tell(
+            f"another process has taken over {self._folder.path}: this world is no longer kept there. It goes on without"
+        )
+        return False
+
+    def _forget_file(self) -> None:
+        """Nothing is appended to what may end in a part of a record."""
+        if self._file is not None:
+            with suppress(OSError):
+                os.close(self._file)
+            self._file = None
+            self._number += GAP
+        self._is_dirty = False
+
+
+def write_all(file: int, data: bytes) -> None:
+    left = memoryview(data)
+    while left:
+        left = left[os.write(file, left) :]

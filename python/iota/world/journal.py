@@ -1,0 +1,404 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Keeps a world in a journal while it runs, and brings it back when it starts again: `World.keep`."""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import json
+import math
+import struct
+import sys
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from iota._core import Log, System, version
+from iota.arguments import SHORT
+from iota.errors import WrongThreadError
+from iota.journal.folder import Folder
+from iota.journal.reader import Found, JournalError, find, recover
+from iota.journal.records import FORMAT, Commands
+from iota.journal.writer import Content, Writer
+from iota.world import options as run_options
+from iota.world.callbacks import print_on_terminal
+from iota.world.state import State
+from iota.world.widgets import Button, Choice, Widget
+
+HAND_OVER = 0.1  # s, between two hand-overs to the thread that writes: what a killed process loses
+CHECKPOINT = 1.0  # s of steps, after which a new snapshot is cheaper than to repeat them
+GENERATION = (10.0, 60.0)  # s, between two files, at least and at most
+MOST_LOG = 64 << 20  # bytes of a file
+MOST_HISTORY = 16 << 20  # bytes of states of undo in a journal
+SHARE = 0.01  # of the time, that quick snapshots take
+QUICK_RATE = 0.5e6  # bytes/s of quick snapshots
+
+Call = Callable[[Callable[[], None]], None]  # calls a function on the thread that runs the world
+
+
+class Journal:
+    """The journal of one world. fresh: an older one is put aside, not read. Raises BusyError, OSError."""
+
+    def __init__(self, directory: Path, state: State, call: Call, fresh: bool = False) -> None:
+        if not isinstance(state.system, System):
+            raise TypeError(f"a journal keeps a System, not {SHORT.repr(state.system)}")
+        self._state, self._call, self._is_fresh = state, call, fresh
+        self._log = Log(state.system)
+        self._folder = Folder(directory)
+        self._folder.lock()
+        self._found: Found | None = None
+        self._why_anew = ""  # told when the world begins
+        self._values: dict[str, Any] = {}  # of the script
+        self._writer: Writer | None = None
+        self._version: tuple[Any, ...] = ()  # of what `_world_now` tells
+        self._values_version = self._functions_version = 0
+        self._start: dict[str, str] = {}
+        self._names: dict[int, str] = {}  # of functions of the run before
+        self._functions: list[tuple[str, int, str, bool]] = []
+        self._structure: int | None = None  # of which the functions are known
+        self._marks: set[int] = set()  # of the states of undo in the present file
+        self._marks_told: tuple[list[int], list[int]] = ([], [])
+        self._owed = 0.0  # s of steps since the last snapshot
+        self._checked_at = self._next = self._began_at = self._quick_at = 0.0
+        self._read()
+
+    # --- what the script keeps ----------------------------------------------------------------------------------------
+
+    def set(self, key: str, value: Any) -> None:
+        """Raises TypeError for what cannot be kept."""
+        self._values[key] = self._packed(key, value)
+        self._values_version += 1
+
+    def get(self, key: str, default: Any) -> Any:
+        return self._unpacked(self._values[key]) if key in self._values else default
+
+    def _packed(self, key: str, value: Any) -> Any:
+        if value is None or isinstance(value, bool | int | float | str):
+            return value
+        if isinstance(value, list | tuple):
+            return [self._packed(key, each) for each in value]
+        if isinstance(value, dict) and all(isinstance(name, str) for name in value):
+            return {"of": {name: self._packed(key, each) for name, each in value.items()}}
+        if (id := self._log.id_of(value)) is not None:
+            return {"id": list(id)}
+        raise TypeError(
+            f"the state {key!r} must be of numbers, texts, lists, dicts by text, bodies, particles, bonds and constraints, "
+            f"not {SHORT.repr(value)}"
+        )
+
+    def _unpacked(self, value: Any) -> Any:
+        if isinstance(value, list):
+            return [self._unpacked(each) for each in value]
+        if isinstance(value, dict):
+            if "id" in value:
+                return self._log.handle_of(*value["id"])
+            return {name: self._unpacked(each) for name, each in value["of"].items()}
+        return value
+
+    # --- the run before -----------------------------------------------------------------------------------------------
+
+    def _read(self) -> None:
+        """Looks for a state to go on from. A journal that cannot be read is put aside later, not overwritten."""
+        try:
+            if self._is_fresh:
+                aside = self._folder.put_aside(self._folder.files())
+                self._why_anew = f"begins anew; the world before is in {aside}" if aside is not None else ""
+                return
+            self._found = find(self._folder)
+        except JournalError as error:
+            self._why_anew = f"begins anew: {error}. It is put aside"
+            return
+        if self._found is not None:
+            values = self._found.world.get("state")
+            self._values = values if isinstance(values, dict) else {}
+
+    def begin(self, start: bytes, recovers: bool = True) -> str:
+        """Brings the world back if its script starts it in the same way, and begins to write. Returns a sentence for users,
+        empty for a first run. start: a snapshot. recovers: False if the present state is another one that goes on."""
+        system = self._state.system
+        self._start = {"structure": structure_of(system, self._log), "state": hashlib.sha256(start).hexdigest()[:32]}
+        if not recovers:
+            self._found, self._why_anew = None, ""
+        told, aside = self._take_back()
+        self._log.start()
+        files = self._folder.files() if aside else []
+        self._writer = Writer(self._folder, self._tell, files)
+        atexit.register(self._end)  # for loops of a script's own
+        self._checked_at = time.monotonic()
+        self.hand_over()
+        return told
+
+    def _take_back(self) -> tuple[str, bool]:
+        """A sentence for users; whether the files of the run before are to be put aside."""
+        found, self._found = self._found, None
+        if found is None:
+            return self._why_anew, bool(self._why_anew) and not self._is_fresh
+        start = found.header.get("start")
+        start = start if isinstance(start, dict) else {}
+        if start.get("structure") != self._start["structure"]:
+            self._values = {}
+            why = "begins anew: its script starts other bodies, joints or functions than before"
+            return f"{why}. The world before is put aside in {self._folder.path}", True
+        self._give_functions(found.world.get("functions"))
+        try:
+            recovered = recover(self._state.system, found)
+        except ValueError as error:
+            return f"begins anew: {error}. The world before is put aside in {self._folder.path}", True
+        self._set_world(found.world)
+        self._state.schedule.skip(recovered.time)
+        people = found.world.get("people")
+        count = len(people) if isinstance(people, list) else 0
+        lost = f"lost at most {math.ceil(recovered.lost * 10) / 10:g} s" if recovered.lost > 0 else "nothing was lost"
+        people_text = f"{count} {'person' if count == 1 else 'people'}"
+        told = f"goes on where it was: t = {recovered.time:.2f} s, {people_text}, {lost} (r on the page resets it)"
+        if start.get("state") != self._start["state"]:
+            told += "; its script starts in another way now, which a reset shows"
+        if not recovered.is_equal:
+            told += "; what came after it could not be repeated to the same state"
+        if found.damage:
+            told += f"; damaged: {found.damage[0]}" + (f" and {len(found.damage) - 1} more" if found.damage[1:] else "")
+        if missing := self._missing_functions():
+            told += f"; the script has no function {', '.join(missing)} any more, and what used it is switched off"
+        return told, bool(found.damage)
+
+    def _give_functions(self, known: Any) -> None:
+        """Bonds may use functions that the script gave after its start: those are found by their names."""
+        there = {key for _, key, _, _ in self._log.functions()}
+        for entry in known if isinstance(known, list) else ():
+            kind, key, name = entry
+            if kind == "bond" and key not in there and (function := function_called(name)) is not None:
+                self._log.give_function(key, function, name)
+        self._names = {key: name for _, key, name in known} if isinstance(known, list) else {}
+
+    def _missing_functions(self) -> list[str]:
+        names = [name or self._names.get(key, "") for _, key, name, is_there in self._log.functions() if not is_there]
+        return sorted({repr(name or "of a surface") for name in names})
+
+    def _set_world(self, world: dict[str, Any]) -> None:
+        """Controls and the clock. What no longer fits stays as the script has it."""
+        clock, told = self._state.clock, world.get("clock")
+        if isinstance(told, dict):
+            clock.paused = bool(told.get("paused", clock.paused))
+            clock.speed = float(told.get("speed", clock.speed))
+        values = world.get("controls")
+        for name, widget in named_widgets(self._state.things):
+            if not isinstance(values, dict) or name not in values:
+                continue
+            value = values[name]
+            if isinstance(widget, Choice):
+                if value in widget.options:
+                    widget.value = value
+            elif isinstance(value, str):
+                widget._set(0.0, value)
+            else:
+                widget._set(float(value), "")
+
+    # --- while it runs --------------------------------------------------------------------------------------------------
+
+    def note_step(self, seconds: float, is_exact: bool) -> None:
+        """seconds: that a step took. is_exact: it was not cut short by the clock, so that it can be repeated."""
+        self._owed += seconds if is_exact else CHECKPOINT
+        if time.monotonic() >= self._next:
+            self.hand_over()
+
+    def check(self) -> None:
+        """Between steps, at any time."""
+        if time.monotonic() >= self._next:
+            self.hand_over()
+
+    def hand_over(self) -> None:
+        """Gives what has happened since the last call to the thread that writes."""
+        writer = self._writer
+        if writer is None or self._log.is_editing:
+            return
+        now = time.monotonic()
+        self._next = now + HAND_OVER
+        seconds, self._checked_at = now - self._checked_at, now
+        commands, is_broken = self._log.take()
+        if writer.wants_all or (writer.takes and self._is_file_old(writer, now)):
+            self._begin_file(writer, now, commands, seconds)
+            return
+        if not writer.takes:
+            return
+        records: list[Content] = []
+        if is_broken or self._owed >= CHECKPOINT:
+            if commands:
+                records.append(self._piece(commands, seconds))
+            records += self._checkpoint()
+        elif commands:
+            records.append(self._piece(commands, seconds))
+            if now >= self._quick_at and self._uses_functions():
+                records += self._quick(now)
+        if (version := self._world_version()) != self._version:
+            self._version = version
+            records.append(("W", self._world_now()))
+        if records:
+            writer.put(records)
+
+    def close(self) -> None:
+        """The world has ended in an orderly way: nothing is lost."""
+        writer = self._writer
+        if writer is None:
+            self._folder.unlock()
+            return
+        self.hand_over()
+        commands, _ = self._log.take()
+        if writer.takes:
+            records = [self._piece(commands, 0.0)] if commands else []
+            writer.put([*records, ("E", b"")])
+        self._log.stop()
+        self._stop(writer)
+
+    def _stop(self, writer: Writer) -> None:
+        atexit.unregister(self._end)
+        self._writer = None
+        writer.close()
+        self._folder.unlock()
+
+    def _end(self) -> None:
+        """With the process."""
+        try:
+            self.close()
+        except WrongThreadError:  # a thread that hangs owns the system
+            if self._writer is not None:
+                self._stop(self._writer)
+
+    def _is_file_old(self, writer: Writer, now: float) -> bool:
+        age = now - self._began_at
+        least, most = GENERATION
+        return (
+            (age > most and self._owed > 0)
+            or (age > least and self._owed >= CHECKPOINT)
+            or (age > 1 and writer.bytes > MOST_LOG)
+        )
+
+    def _begin_file(self, writer: Writer, now: float, commands: bytes, seconds: float) -> None:
+        if writer.takes and commands:  # the file before leads up to this one
+            writer.put([self._piece(commands, seconds)])
+        self._began_at = now
+        self._marks.clear()
+        header = {
+            "format": FORMAT,
+            "iota": version,
+            "title": self._state.title,
+            "start": self._start,
+            "written": time.strftime("%Y-%m-%d %H:%M:%S"),
+        }
+        self._version = self._world_version()
+        records = [("H", json.dumps(header).encode()), ("W", self._world_now()), *self._checkpoint()]
+        writer.put(records, begins=True)
+
+    def _piece(self, commands: bytes, seconds: float) -> Content:
+        system = self._state.system
+        return "C", Commands(system.time, system.state_hash(), seconds, commands).to_bytes()
+
+    def _checkpoint(self) -> list[Content]:
+        """A snapshot from which the commands after it lead to the same bits."""
+        self._owed = 0.0
+        records = self._history()
+        records.append(("S", self._log.snapshot()))
+        self._log.take()  # the snapshot is a command itself, of those before it
+        return records
+
+    def _quick(self, now: float) -> list[Content]:
+        """For worlds with functions of the script, whose results may depend on what the script alone knows."""
+        began = time.perf_counter()
+        records = self._history()
+        snapshot = self._log.quick_snapshot()
+        records.append(("Q", snapshot))
+        took = time.perf_counter() - began
+        self._quick_at = now + max(HAND_OVER, took / SHARE, len(snapshot) / QUICK_RATE)
+        return records
+
+    def _history(self) -> list[Content]:
+        """The states of undo that the file does not have, and their order if it has changed."""
+        undo, redo = self._log.history(self._marks)
+        records: list[Content] = []
+        marks: tuple[list[int], list[int]] = ([], [])
+        room = MOST_HISTORY
+        for states, list_of_marks in zip((undo, redo), marks, strict=True):
+            for mark, state in reversed(states):
+                if state is not None:
+                    room -= len(state)
+                    if room < 0:
+                        break
+                    records.append(("U", struct.pack("<Q", mark) + state))
+                    self._marks.add(mark)
+                list_of_marks.insert(0, mark)
+        if records or marks != self._marks_told:
+            records.append(("Y", json.dumps({"undo": marks[0], "redo": marks[1]}).encode()))
+            self._marks_told = marks
+        return records
+
+    def _uses_functions(self) -> bool:
+        version = self._state.system.structure_version
+        if version != self._structure:
+            self._structure, functions = version, self._log.functions()
+            if functions != self._functions:
+                self._functions = functions
+                self._functions_version += 1
+        return bool(self._functions)
+
+    def _world_version(self) -> tuple[Any, ...]:
+        """Another one if `_world_now` may tell something else: that takes long with many things."""
+        state = self._state
+        self._uses_functions()
+        changes = sum(count for kind, count in state.things.changes.items() if issubclass(kind, Widget))
+        people = tuple(state.clients.by_id)
+        return state.clock.paused, state.clock.speed, changes, people, self._values_version, self._functions_version
+
+    def _world_now(self) -> bytes:
+        state = self._state
+        self._uses_functions()
+        clock = state.clock
+        now = {
+            "clock": {"paused": clock.paused, "speed": clock.speed},
+            "controls": {name: widget.value for name, widget in named_widgets(state.things)},  # type: ignore[attr-defined]
+            "people": [[client.name, client.role] for client in state.clients.by_id.values()],
+            "state": self._values,
+            "functions": [[kind, key, name] for kind, key, name, _ in self._functions],
+        }
+        return json.dumps(now).encode()
+
+    def _tell(self, text: str) -> None:
+        """On the thread that writes."""
+        print_on_terminal(f"iota: {text}\n")
+        self._call(lambda: self._state.notices.send("The journal", text, level="warning", keep=True))
+
+
+def named_widgets(things: Iterable[Any]) -> list[tuple[str, Widget]]:
+    """The controls that have a value, each with a name that it has in the next run, too."""
+    counts: dict[str, int] = {}
+    named = []
+    for thing in things:
+        if isinstance(thing, Widget) and not isinstance(thing, Button) and thing.client == 0:
+            name = f"{type(thing).__name__} {thing.label}"
+            counts[name] = counts.get(name, 0) + 1
+            named.append((f"{name} {counts[name]}", thing))
+    return named
+
+
+def structure_of(system: System, log: Log) -> str:
+    """A digest of what a script has handles of: which bodies, joints and bonds there are, and its functions; not of where
+    they are, since a script may start at random."""
+    made = hashlib.sha256()
+    for body in [*system.bodies, *system.obstacles]:
+        made.update(repr((log.id_of(body), body.kind, [log.id_of(p) for p in body.particles])).encode())
+    for thing in (*system.bonds, *system.constraints):
+        made.update(repr((log.id_of(thing), type(thing).__name__)).encode())
+    made.update(repr([use[:3] for use in log.functions()]).encode())
+    return made.hexdigest()[:32]
+
+
+def function_called(name: str) -> Any:
+    """A function of the running script, by its qualified name; None if it has none, as for one within another function."""
+    spaces = [run_options.current().names or {}, vars(sys.modules.get("__main__", sys))]
+    for space in spaces:
+        first, *rest = name.split(".")
+        found = space.get(first)
+        for part in rest:
+            found = getattr(found, part, None)
+        if callable(found):
+            return found
+    return None
