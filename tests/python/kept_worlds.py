@@ -12,6 +12,7 @@ import json
 import os
 import random
 import signal
+import statistics
 import struct
 import sys
 import time
@@ -121,9 +122,9 @@ def main(folder: str, count: int, seed: int) -> None:
             wrong += 1
         states.update({(at, hash): clock for at, hash, clock in seen})
         last = seen[-1][2]
-    print(
-        json.dumps({"kills": kills, "back": len(lost), "worlds_lost": worlds_lost, "wrong": wrong, "lost": max(lost)})
-    )
+    median, most = statistics.median(lost), max(lost)
+    counts = {"kills": kills, "back": len(lost), "worlds_lost": worlds_lost, "wrong": wrong}
+    print(json.dumps(counts | {"lost_median": median, "lost_most": most}))
 
 
 if __name__ == "__main__":

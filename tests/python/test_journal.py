@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -347,7 +348,8 @@ def test_no_kill_at_any_time_loses_a_world(tmp_path: Path) -> None:
     told = json.loads(done.stdout)
     print(told)
     assert told["back"] == KILLS and told["worlds_lost"] == told["wrong"] == 0
-    assert told["lost"] <= 0.2
+    # Hand-overs are 0.1 s apart; the rest is the time until the thread that writes has a processor, on a busy machine.
+    assert told["lost_median"] <= 0.1 and told["lost_most"] <= 0.4
 
 
 def run_and_copy(make: Make, steps: int = 12) -> tuple[dict[float, int], bytes]:
@@ -510,6 +512,38 @@ def test_a_disk_that_is_full_for_a_while_is_told_once_and_the_journal_goes_on(
     end = first.system.state_hash()
     first.end()
     assert make().system.state_hash() == end
+
+
+def test_a_disk_that_is_too_slow_takes_no_memory_and_the_journal_goes_on_when_it_has_caught_up(
+    make: Make, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = make()
+    waiting = threading.Event()
+    write_all = writer.write_all
+    monkeypatch.setattr(writer, "MOST_WAITING", 10)
+    monkeypatch.setattr(writer, "write_all", lambda file, data: (waiting.wait(10), write_all(file, data)))
+    first.steps(30)
+    assert first.world._stepper.journal._writer._queue.qsize() <= 10
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "is too slow" in line
+    waiting.set()
+    first.world._stepper.journal._writer.flush()
+    first.steps(3)
+    end = first.system.state_hash()
+    first.end()
+    assert make().system.state_hash() == end
+
+
+def test_an_error_in_the_journal_itself_does_not_end_the_world(
+    make: Make, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = make()
+    first.steps(2)
+    monkeypatch.setattr(journals.Journal, "_piece", lambda *_: 1 / 0)
+    first.steps(3)
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "this world is no longer kept in" in line and "ZeroDivisionError" in line
+    assert abs(first.system.time - 5 / 120) < 1e-9
 
 
 UNSHARE = ["unshare", "--map-root-user", "--mount", "sh", "-c"]

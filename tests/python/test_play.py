@@ -111,7 +111,7 @@ def test_a_file_that_cannot_be_played_is_reported_in_one_line(tmp_path: Path) ->
         (["none.iota"], "No such file"),
         ([tmp_path / "bad.iota", "-o", tmp_path / "page.html"], "not a recording"),
         ([tmp_path / "bad.iota", "-o", tmp_path / "page.txt"], "must end in .html"),
-        ([tmp_path, "-o", tmp_path / "page.html"], "Is a directory"),
+        ([tmp_path, "-o", tmp_path / "page.html"], "there is no journal"),
     ):
         done = iota("play", "--no-open", *arguments)
         assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done.stderr

@@ -102,7 +102,10 @@ class Folder:
         return self.path / f"{self.epoch:06d}-{generation:06d}.journal"
 
     def prune(self, count: int = 2) -> None:
-        """Removes all files but the newest."""
+        """Removes all files but the newest, and what killed processes have left unfinished."""
+        for part in self.path.glob("*.part"):
+            with suppress(OSError):
+                part.unlink()
         for file in self.files()[:-count]:
             with suppress(OSError):
                 file.path.unlink()

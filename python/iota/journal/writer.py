@@ -17,9 +17,11 @@ from iota.saving import sync
 
 SYNC_TIME = 0.1  # s, at most, until what was written is on the disk
 RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
+MOST_WAITING = 300  # records that wait for a slow disk; then a new generation begins when it is done with them
 GAP = 1000  # in the numbers of records, after some that were not written
 
 Content = tuple[str, bytes]  # kind, content
+Item = tuple[list[Content], bool, bool]  # whether it begins a generation, whether others before it were left out
 
 
 class Writer:
@@ -28,11 +30,11 @@ class Writer:
 
     def __init__(self, folder: Folder, tell: Callable[[str], None], aside: Sequence[File] = ()) -> None:
         self._folder, self._tell, self._aside = folder, tell, list(aside)
-        self._queue: queue.SimpleQueue[tuple[list[Content], bool] | threading.Event | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[Item | threading.Event | None] = queue.SimpleQueue()
         self._file: int | None = None
         self._number = self._generation = self.bytes = 0
         self._retry_at: float | None = 0.0  # s; None while all is well
-        self._is_told = self._is_fenced = self._is_dirty = False
+        self._is_told = self._is_fenced = self._is_dirty = self._is_behind = False
         self._sync_at = 0.0
         self._thread = threading.Thread(target=self._run, name="iota-journal", daemon=True)
         self._thread.start()
@@ -40,18 +42,30 @@ class Writer:
     @property
     def wants_all(self) -> bool:
         """Whether a generation has to be begun: at first, and some seconds after an error."""
-        return not self._is_fenced and self._retry_at is not None and time.monotonic() >= self._retry_at
+        if self._is_fenced:
+            return False
+        if self._is_behind:
+            return self._queue.empty()
+        return self._retry_at is not None and time.monotonic() >= self._retry_at
 
     @property
     def takes(self) -> bool:
         """Whether records are written at present."""
-        return self._retry_at is None and not self._is_fenced
+        return self._retry_at is None and not self._is_fenced and not self._is_behind
 
     def put(self, records: Sequence[Content], begins: bool = False) -> None:
         """From the thread of the world. begins: these are all that a new generation needs."""
         if begins:
             self._retry_at = None  # not again until this one has failed
-        self._queue.put((list(records), begins))
+        elif self._queue.qsize() >= MOST_WAITING:
+            if not self._is_behind:
+                self._tell(
+                    f"the disk of {self._folder.path} is too slow: what happens until it has caught up is not kept"
+                )
+            self._is_behind = True
+            return
+        has_gap, self._is_behind = self._is_behind, False
+        self._queue.put((list(records), begins, has_gap))
 
     def flush(self) -> None:
         """Waits until the thread has taken all records."""
@@ -79,7 +93,9 @@ class Writer:
             if isinstance(item, threading.Event):
                 item.set()
                 continue
-            records, begins = item
+            records, begins, has_gap = item
+            if has_gap:
+                self._forget_file()
             if self._is_fenced:
                 continue
             if begins:
@@ -126,7 +142,8 @@ class Writer:
             write_all(fresh, data)
             os.fsync(fresh)
             part.rename(path)
-            sync(self._folder.path)
+            with suppress(PermissionError):  # Windows
+                sync(self._folder.path)
         except OSError as error:
             if fresh is not None:
                 os.close(fresh)

@@ -22,7 +22,7 @@ from iota.journal.reader import Found, JournalError, find, recover
 from iota.journal.records import FORMAT, Commands
 from iota.journal.writer import Content, Writer
 from iota.world import options as run_options
-from iota.world.callbacks import print_on_terminal
+from iota.world.callbacks import one_line, print_on_terminal
 from iota.world.state import State
 from iota.world.widgets import Button, Choice, Widget
 
@@ -199,13 +199,18 @@ class Journal:
     def note_step(self, seconds: float, is_exact: bool) -> None:
         """seconds: that a step took. is_exact: it was not cut short by the clock, so that it can be repeated."""
         self._owed += seconds if is_exact else CHECKPOINT
-        if time.monotonic() >= self._next:
-            self.hand_over()
+        self.check()
 
     def check(self) -> None:
-        """Between steps, at any time."""
-        if time.monotonic() >= self._next:
+        """Between steps, at any time. The world goes on whatever happens here."""
+        if time.monotonic() < self._next:
+            return
+        try:
             self.hand_over()
+        except Exception as error:
+            if self._writer is not None:
+                self._stop(self._writer)
+            self._tell(f"this world is no longer kept in {self._folder.path}: {one_line(error)}. It goes on without")
 
     def hand_over(self) -> None:
         """Gives what has happened since the last call to the thread that writes."""

@@ -319,6 +319,8 @@ class World:
         starts another world than before, the values are gone when it begins.
 
             score = world.kept_state("score", 0)
+
+        Before the world begins, handles of what was made in the run before are stale.
         """
         journal = self._find_journal()
         return self._unkept.get(key, default) if journal is None else journal.get(key, default)
