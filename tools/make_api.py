@@ -33,6 +33,7 @@ CONTENTS = {
     "effects": ("Winds, sparks, soft matter", ["iota.effects"]),
     "film": ("Films", ["iota.film"]),
     "testing": ("Tests without a headset", ["iota.testing"]),
+    "sweeping": ("Sweeps", ["iota.sweeping"]),
     "types": ("What calls give back", ["iota.types"]),
     "errors": ("Errors", ["iota.errors"]),
     "simulator": ("A simulator of your own", ["iota.simulator"]),

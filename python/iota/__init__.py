@@ -67,6 +67,7 @@ from iota.errors import (
 )
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, solve, solver, solver_names
+from iota.sweeping import sweep
 from iota.world import Camera, Event, Server, View, World
 
 if TYPE_CHECKING:
@@ -136,6 +137,7 @@ __all__ = [
     "solve",
     "solver",
     "solver_names",
+    "sweep",
     "types",
 ]
 

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -512,6 +513,49 @@ def test_a_disk_that_is_full_for_a_while_is_told_once_and_the_journal_goes_on(
     end = first.system.state_hash()
     first.end()
     assert make().system.state_hash() == end
+
+
+def test_an_error_at_any_call_of_the_disk_leaves_a_journal_that_leads_to_a_true_state(
+    make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_all = writer.write_all
+    monkeypatch.setattr(writer, "RETRY_TIME", 0.0)
+    monkeypatch.setattr(writer, "SYNC_TIME", 0.0)
+    calls = 0
+    for failing in range(1, 40):
+        with monkeypatch.context() as disk:
+            count = 0
+
+            def fails(write: Callable[..., Any]) -> Callable[..., Any]:
+                def call(*given: Any) -> Any:
+                    nonlocal count
+                    count += 1
+                    if count == failing:  # noqa: B023
+                        if write is write_all:  # a torn record
+                            os.write(given[0], given[1][: len(given[1]) // 2])
+                        reason = (errno.ENOSPC, errno.EIO)[failing % 2]  # noqa: B023
+                        raise OSError(reason, os.strerror(reason))
+                    return write(*given)
+
+                return call
+
+            for owner, name in ((writer, "write_all"), (os, "fsync"), (os, "fdatasync"), (Path, "rename")):
+                disk.setattr(owner, name, fails(getattr(owner, name)))
+            kept = make(folder=str(failing))
+            states = {0.0: kept.system.state_hash()}
+            for number in range(6):
+                disk.setattr(journals, "GENERATION", (0.0, 0.0) if number in (2, 4) else (10.0, 60.0))
+                kept.steps(1)
+                states[kept.system.time] = kept.system.state_hash()
+                kept.world._stepper.journal._writer.flush()
+            kept.end(killed=False)
+            calls = max(calls, count)
+        found = find(Folder(tmp_path / str(failing)))
+        assert found is not None, failing
+        system = iota.System()
+        assert recover(system, found).is_equal and system.state_hash() == states[system.time], failing
+        assert system.time > 0.03, "it was written again after the error"
+    assert 20 < calls < 39, "each call has failed once"
 
 
 def test_a_disk_that_is_too_slow_takes_no_memory_and_the_journal_goes_on_when_it_has_caught_up(

@@ -41,6 +41,11 @@ def test_the_blocks_of_the_page_on_replaceable_parts_run(capsys: pytest.CaptureF
     assert "1.41421356" in capsys.readouterr().out
 
 
+def test_the_block_of_the_page_on_sweeps_runs() -> None:
+    for block in blocks(ROOT / "docs" / "sweeps.md"):
+        exec(compile(block, "docs/sweeps.md", "exec"), {"__name__": "__main__"})
+
+
 def test_the_blocks_of_the_page_on_files_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}

@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, gallery, imports, info, play, profile, record, run, verify, watch
+from iota.cli import bench, bench_forces, gallery, imports, info, play, profile, record, run, sweep, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -37,6 +37,13 @@ def count(text: str) -> int:
     value = int(text)
     if value < 1:
         raise argparse.ArgumentTypeError(f"must be 1 or more, not {text}")
+    return value
+
+
+def not_negative(text: str) -> int:
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be 0 or more, not {text}")
     return value
 
 
@@ -125,6 +132,19 @@ def make_parser() -> Parser:
     profiling.add_argument("--json", action="store_true", help="print the rows as a JSON list")
     profiling.add_argument("--plot", type=Path, metavar="FILE.png", help="draw them as a pie")
     profiling.set_defaults(function=profile.profile)
+
+    sweeping = commands.add_parser("sweep", help="runs a function of a script for many values, on all cores")
+    sweeping.add_argument("what", metavar="FILE.py[:FUNCTION]", help="the function is run, unless it is named")
+    sweeping.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="NAME=VALUES",
+        help="1,2,5 or 1..50 or 0..1:11 or 1e2..1e5:log:20; once for each argument",
+    )
+    sweeping.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="the table (default: FILE.csv here)")
+    sweeping.add_argument("--processes", type=not_negative, help="0: in this one (default: one for each core)")
+    sweeping.set_defaults(function=sweep.run)
 
     playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")
     playing.add_argument(
