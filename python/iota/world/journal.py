@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import atexit
+import gc
 import hashlib
 import json
 import math
 import struct
-import sys
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 from iota._core import Log, System, version
@@ -21,7 +22,6 @@ from iota.journal.folder import Folder
 from iota.journal.reader import Found, JournalError, find, recover
 from iota.journal.records import FORMAT, Commands
 from iota.journal.writer import Content, Writer
-from iota.world import options as run_options
 from iota.world.callbacks import one_line, print_on_terminal
 from iota.world.state import State
 from iota.world.widgets import Button, Choice, Widget
@@ -165,11 +165,13 @@ class Journal:
     def _give_functions(self, known: Any) -> None:
         """Bonds may use functions that the script gave after its start: those are found by their names."""
         there = {key for _, key, _, _ in self._log.functions()}
-        for entry in known if isinstance(known, list) else ():
-            kind, key, name = entry
-            if kind == "bond" and key not in there and (function := function_called(name)) is not None:
+        uses = known if isinstance(known, list) else []
+        self._names = {key: name for _, key, name in uses}
+        missing = {key: name for kind, key, name in uses if kind == "bond" and key not in there}
+        found = {name: function_called(name) for name in set(missing.values())}
+        for key, name in missing.items():
+            if (function := found[name]) is not None:
                 self._log.give_function(key, function, name)
-        self._names = {key: name for _, key, name in known} if isinstance(known, list) else {}
 
     def _missing_functions(self) -> list[str]:
         names = [name or self._names.get(key, "") for _, key, name, is_there in self._log.functions() if not is_there]
@@ -396,14 +398,17 @@ def structure_of(system: System, log: Log) -> str:
     return made.hexdigest()[:32]
 
 
-def function_called(name: str) -> Any:
-    """A function of the running script, by its qualified name; None if it has none, as for one within another function."""
-    spaces = [run_options.current().names or {}, vars(sys.modules.get("__main__", sys))]
-    for space in spaces:
-        first, *rest = name.split(".")
-        found = space.get(first)
-        for part in rest:
-            found = getattr(found, part, None)
-        if callable(found):
-            return found
-    return None
+def function_called(name: str) -> FunctionType | None:
+    """The function of the script with a qualified name, also within another function, as long as something refers to it. None
+    if there is none, or if there are several that may do different things."""
+    found = [
+        each
+        for each in gc.get_objects()
+        if isinstance(each, FunctionType)
+        and each.__qualname__ == name
+        and not (each.__module__ or "").startswith("iota.")
+    ]
+    is_one = len(found) == 1 or (
+        found and all(each.__code__ is found[0].__code__ for each in found) and not found[0].__closure__
+    )
+    return found[0] if is_one else None

@@ -301,7 +301,10 @@ class World:
         if self._stepper.has_begun:
             raise RuntimeError("a world is kept from its begin: call keep before it runs")
         if self._stepper.journal is not None:
-            raise RuntimeError("this world is kept already")
+            raise RuntimeError("this world is kept already: call keep once, and before keep_state and kept_state")
+        options = run_options.current()
+        if options.keep is not None:  # of the first world
+            directory, fresh, options.keep = options.keep, options.fresh, None
         self._stepper.journal = Journal(Path(directory), self._state, self._inputs.call, fresh)
 
     def keep_state(self, key: str, value: Any) -> None:
@@ -329,8 +332,7 @@ class World:
         """That of the script, or of the command line."""
         options = run_options.current()
         if self._stepper.journal is None and options.keep is not None and not self._stepper.has_begun:
-            directory, options.keep = options.keep, None  # of the first world
-            self.keep(directory, options.fresh)
+            self.keep(options.keep, options.fresh)
         return self._stepper.journal
 
     # --- running --------------------------------------------------------------------------------------------------
