@@ -435,9 +435,24 @@ def test_a_damaged_snapshot_is_bridged_by_the_generation_before(
     damage(newest, place_of(newest.read_bytes(), "S") + records.HEAD.size + 500)
     second = make()
     assert second.system.state_hash() == end
-    assert "damaged: 000001-000002.journal: record" in second.told and "(S) is damaged" in second.told
+    assert "damaged: 000001-000002.journal: record" in second.told and "(S)" in second.told
     second.end()
     assert files(tmp_path / "kept" / "aside-1") == ["000001-000001.journal", "000001-000002.journal"]
+
+
+def test_damage_without_a_way_round_is_told_with_what_it_costs(make: Make, tmp_path: Path) -> None:
+    first = make()
+    first.steps(5)
+    end = first.system.state_hash()
+    first.end()
+    second = make()
+    second.steps(5)
+    second.end()
+    newest = tmp_path / "kept" / "000002-000001.journal"
+    damage(newest, place_of(newest.read_bytes(), "S") + 9)  # its number, so that its head is not whole
+    third = make()
+    assert third.system.state_hash() == end
+    assert "damaged: 000002-000001.journal: bytes that are no record, and a later run is lost" in third.told
 
 
 def test_two_generations_are_kept(make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

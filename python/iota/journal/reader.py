@@ -33,7 +33,7 @@ class Quick:
 @dataclass
 class Found:
     """A state and what followed it. header: about the file. world: controls, people and so on, the latest. end: the latest time
-    of the world that a record names, s. is_orderly: the world ended by itself. damage: sentences. quick: the latest of its kind."""
+    of the world that a record names, s. is_orderly: the world ended by itself. is_older: a later process has left nothing that can be read. damage: sentences. quick: the latest of its kind."""
 
     files: list[File]
     header: dict[str, Any]
@@ -45,6 +45,7 @@ class Found:
     quick: Quick | None = None
     end: float = 0.0
     is_orderly: bool = False
+    is_older: bool = False
     damage: list[str] = field(default_factory=list)
 
     @property
@@ -69,7 +70,7 @@ def find(folder: Folder) -> Found | None:
     for epoch in sorted({file.epoch for file in files}, reverse=True):
         found = find_in([file for file in files if file.epoch == epoch], damage)
         if found is not None:
-            found.files = files
+            found.files, found.is_older = files, epoch < files[-1].epoch
             return found
     if files:
         raise JournalError(f"no state in {folder.path} can be read: {'; '.join(damage) or 'its files are empty'}")
@@ -153,7 +154,8 @@ def records_of(files: list[File], damage: list[str]) -> Iterator[Record]:
             continue
         for record in unpack(data):
             if record.content is None:
-                damage.append(f"{file.path.name}: record {record.number} ({record.kind}) is damaged")
+                what = "bytes that are no record" if record.kind == "?" else f"record {record.number} ({record.kind})"
+                damage.append(f"{file.path.name}: {what}")
             yield record
 
 

@@ -3,7 +3,7 @@
 
 A file is the line "iota journal 1" and records. A record is a head of 24 bytes, little-endian, and its content:
 mark "ij", kind (a letter), 0, length of the content (u32), number (u64), CRC-32 of the content, CRC-32 of the head before
-it. Nothing is packed: numbers that move have nothing to gain, and the processor does. Numbers rise by one over the files of one process; after records that were not
+it. Nothing is packed, since a snapshot is written faster than it is packed. Numbers rise by one over the files of one process; after records that were not
 written a number is left out.
 
     H  JSON: about the file              W  JSON: controls, people, clock, state of the script
@@ -30,7 +30,7 @@ COMMANDS = struct.Struct("<dQf")
 
 
 class Record(NamedTuple):
-    """content: None if it is damaged."""
+    """content: None if it is damaged. Of kind "?" are bytes that are no record."""
 
     kind: str
     number: int
@@ -61,14 +61,16 @@ def pack(kind: str, number: int, content: bytes) -> bytes:
 
 
 def unpack(data: bytes) -> Iterator[Record]:
-    """The records of a file after its first line, up to an unfinished one. What has a damaged head is left out, which the
-    numbers of the others show."""
-    at = len(MAGIC)
+    """The records of a file after its first line, up to an unfinished one."""
+    at, is_lost = len(MAGIC), False
     while 0 <= at <= len(data) - HEAD.size:
         mark, kind, _, length, number, checksum, of_head = HEAD.unpack_from(data, at)
         if mark != MARK or kind not in KINDS or zlib.crc32(data[at : at + HEAD.size - 4]) != of_head:
-            at = data.find(MARK, at + 1)
+            if not is_lost:
+                yield Record("?", 0, None)
+            at, is_lost = data.find(MARK, at + 1), True
             continue
+        is_lost = False
         at += HEAD.size
         if at + length > len(data):
             return

@@ -143,7 +143,7 @@ class Journal:
         self._give_functions(found.world.get("functions"))
         try:
             recovered = recover(self._state.system, found)
-        except ValueError as error:
+        except (ValueError, RuntimeError) as error:  # of another version; a recording of the script runs already
             return f"begins anew: {error}. The world before is put aside in {self._folder.path}", True
         self._set_world(found.world)
         self._state.schedule.skip(recovered.time)
@@ -158,6 +158,7 @@ class Journal:
             told += "; what came after it could not be repeated to the same state"
         if found.damage:
             told += f"; damaged: {found.damage[0]}" + (f" and {len(found.damage) - 1} more" if found.damage[1:] else "")
+            told += ", and a later run is lost" if found.is_older else ""
         if missing := self._missing_functions():
             told += f"; the script has no function {', '.join(missing)} any more, and what used it is switched off"
         return told, bool(found.damage)
