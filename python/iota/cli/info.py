@@ -11,12 +11,12 @@ from typing import Any
 from iota._core import System
 from iota.cli.failure import Failure
 from iota.journal.folder import Folder
-from iota.journal.reader import Found, JournalError, find
+from iota.journal.reader import Found, JournalError, find_all
 
 
 def info(arguments: argparse.Namespace) -> None:
     """Prints a few lines, or one JSON object."""
-    told = facts(arguments.directory, read(arguments.directory))
+    told = facts(arguments.directory, read(arguments.directory)[-1])
     if arguments.json:
         print(json.dumps(told))
         return
@@ -26,13 +26,13 @@ def info(arguments: argparse.Namespace) -> None:
             print(f"  {name + ':':10}{text_of(told[name])}")
 
 
-def read(directory: Path) -> Found:
-    """Raises Failure for a folder without a journal."""
+def read(directory: Path) -> list[Found]:
+    """The states of a journal, the latest at the end. Raises Failure for a folder without one."""
     try:
-        found = find(Folder(directory))
+        found = find_all(Folder(directory))
     except (JournalError, OSError) as error:
         raise Failure(str(error)) from None
-    if found is None:
+    if not found:
         raise Failure(f"there is no journal in {directory}. iota run --keep {directory} makes one")
     return found
 

@@ -18,6 +18,9 @@ from iota.film.journal import messages_of
 from iota.film.stream import check_version, read_file
 from iota.saving import replacing
 
+ENDS_EARLY = "ends early: its first {:.1f} s are played"
+NEEDS_SCRIPT = "stands still where forces of its script are needed, until the next snapshot"
+
 
 def play(arguments: argparse.Namespace) -> None:
     """Makes the page in the system's temporary folder, or at the path of -o, and opens it."""
@@ -42,7 +45,9 @@ def play(arguments: argparse.Namespace) -> None:
     except OSError as error:
         raise Failure(str(error) if error.filename is None else f"{source}: {error.strerror}") from None
     if not is_complete:
-        print(f"iota: {source} ends early: its first {messages[-1][0]:.1f} s are played", file=sys.stderr)
+        print(
+            f"iota: {source} {NEEDS_SCRIPT if source.is_dir() else ENDS_EARLY.format(messages[-1][0])}", file=sys.stderr
+        )
     print(target)
     if not arguments.no_open:
         webbrowser.open(target.resolve().as_uri())

@@ -8,41 +8,52 @@ import time
 from iota._core import Log, RoomRecording, System
 from iota.film.files import Failed
 from iota.journal.reader import Found
+from iota.journal.records import Commands
 from iota.world import World
 
 PATIENCE = 0.05  # s, for the messages of a frame
 FRAME = 1 / 120  # s, between the frames of states that no time is known of
 
 
-def messages_of(found: Found) -> tuple[list[tuple[float, bytes]], bool]:
-    """The messages with their times, s, from the latest snapshot on; and whether they go on to the end. Without the script they end
-    where one of its functions was needed. Raises Failed for a snapshot of another version."""
+def messages_of(all_found: list[Found]) -> tuple[list[tuple[float, bytes]], bool]:
+    """The messages with their times, s; and whether nothing is left out: without the script the world stands still from where
+    one of its functions was needed until the next snapshot. Raises Failed for a snapshot of another version."""
     system = System()
     log = Log(system)
     try:
-        system.restore(found.snapshot)
+        system.restore(all_found[0].snapshot)
     except ValueError as error:
         raise Failed(str(error)) from None
-    world = World(system, title=str(found.header.get("title", "")), ground=None)
+    world = World(system, title=str(all_found[0].header.get("title", "")), ground=None)
     world.serve(port=0)
     try:
         publisher = world.pages._publisher
         assert publisher is not None
         recording = publisher.room.record(1e-6)
-        messages = [(0.0, data) for data in frame_of(world, recording)]
-        now = 0.0
-        for piece in found.pieces:
-            try:
-                log.repeat(piece.commands)
-            except ValueError:
-                return messages, False
-            if piece.hash != system.state_hash():
-                return messages, False
-            now += max(piece.seconds, FRAME)
+        messages: list[tuple[float, bytes]] = []
+        now, is_whole = 0.0, True
+        for found in all_found:
+            system.restore(found.snapshot)
             messages += [(now, data) for data in frame_of(world, recording)]
-        return messages, True
+            is_same = True
+            for piece in found.pieces:
+                now += max(piece.seconds, FRAME)
+                is_same = is_same and is_repeated(system, log, piece)
+                is_whole = is_whole and is_same
+                if is_same:
+                    messages += [(now, data) for data in frame_of(world, recording)]
+        return messages, is_whole
     finally:
         world.close()
+
+
+def is_repeated(system: System, log: Log, piece: Commands) -> bool:
+    """Whether its commands led to the same state again."""
+    try:
+        log.repeat(piece.commands)
+    except ValueError:
+        return False
+    return piece.hash == system.state_hash()
 
 
 def frame_of(world: World, recording: RoomRecording) -> list[bytes]:

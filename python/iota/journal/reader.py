@@ -65,16 +65,22 @@ class Recovered:
 
 def find(folder: Folder) -> Found | None:
     """None for a folder without a journal. Raises JournalError if there is one that cannot be used, OSError."""
+    all_found = find_all(folder)
+    return all_found[-1] if all_found else None
+
+
+def find_all(folder: Folder) -> list[Found]:
+    """As `find`, with the snapshots before, each with the commands up to the next one, oldest first."""
     files = folder.files()
     damage: list[str] = []
     for epoch in sorted({file.epoch for file in files}, reverse=True):
-        found = find_in([file for file in files if file.epoch == epoch], damage)
-        if found is not None:
-            found.files, found.is_older = files, epoch < files[-1].epoch
-            return found
+        all_found = find_in([file for file in files if file.epoch == epoch], damage)
+        if all_found:
+            all_found[-1].files, all_found[-1].is_older = files, epoch < files[-1].epoch
+            return all_found
     if files:
         raise JournalError(f"no state in {folder.path} can be read: {'; '.join(damage) or 'its files are empty'}")
-    return None
+    return []
 
 
 @dataclass
@@ -111,8 +117,9 @@ class _Cursor:
         return kept[::-1]
 
 
-def find_in(files: list[File], damage: list[str]) -> Found | None:
-    """The state of the files of one process. damage: sentences are added."""
+def find_in(files: list[File], damage: list[str]) -> list[Found]:
+    """The states of the files of one process. damage: sentences are added."""
+    all_found: list[Found] = []
     found: Found | None = None
     cursor = _Cursor()
     number, is_whole, end, is_orderly = 0, False, 0.0, False
@@ -128,6 +135,7 @@ def find_in(files: list[File], damage: list[str]) -> Found | None:
             cursor.take(kind, content)
             if kind == "S":
                 found, is_whole, end = Found([], cursor.header, content, *cursor.history()), True, 0.0
+                all_found.append(found)
             elif kind == "C":
                 piece = Commands.from_bytes(content)
                 end = piece.time
@@ -142,7 +150,7 @@ def find_in(files: list[File], damage: list[str]) -> Found | None:
             found.world = cursor.world
     if found is not None:
         found.end, found.is_orderly, found.damage = end, is_orderly and is_whole, damage
-    return found
+    return all_found
 
 
 def records_of(files: list[File], damage: list[str]) -> Iterator[Record]:
