@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -167,24 +167,25 @@ def records_of(files: list[File], damage: list[str]) -> Iterator[Record]:
             yield record
 
 
-def recover(system: System, found: Found) -> Recovered:
+def recover(system: System, found: Found, passed: Callable[[Log], object] = lambda log: None) -> Recovered:
     """Brings the state into a system that has the functions of the script: the snapshot, then the commands up to the last
-    state whose hash is the logged one. Raises ValueError for a snapshot of another version; the system is then unchanged."""
+    state whose hash is the logged one. passed: called at each state on the way, which it must not change. Raises ValueError
+    for a snapshot of another version; the system is then unchanged."""
     log = Log(system)
-    done, is_equal = repeat(system, log, found, len(found.pieces))
+    done, is_equal = repeat(system, log, found, len(found.pieces), passed)
     if not is_equal:
         quick = found.quick
         if quick is not None and quick.place > done:
             system.restore(quick.snapshot)
             set_history(log, quick.undo, quick.redo)
         else:
-            repeat(system, log, found, done)
+            repeat(system, log, found, done, lambda log: None)
     log.let_go()
     lost = 0.0 if found.is_orderly else max(USUAL_LOSS, found.lag)
     return Recovered(system.time, lost + max(0.0, found.end - system.time), is_equal)
 
 
-def repeat(system: System, log: Log, found: Found, count: int) -> tuple[int, bool]:
+def repeat(system: System, log: Log, found: Found, count: int, passed: Callable[[Log], object]) -> tuple[int, bool]:
     """Restores the snapshot and repeats so many pieces. Returns how many led to a state with the logged hash, and whether all
     did."""
     system.restore(found.snapshot)
@@ -198,6 +199,7 @@ def repeat(system: System, log: Log, found: Found, count: int) -> tuple[int, boo
         if system.state_hash() != piece.hash:
             return good, False
         good = place
+        passed(log)
     return good, True
 
 

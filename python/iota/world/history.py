@@ -8,10 +8,11 @@ from iota.world.clients import Clients
 
 
 class History:
-    """Goes to another state of the system; the holds of users end."""
+    """Goes to another state of the system; the holds of users end. earlier: states of the run before, with their times, s."""
 
     def __init__(self, system: System, clients: Clients) -> None:
         self._system, self._clients = system, clients
+        self.earlier: list[tuple[float, bytes]] = []
 
     def undo(self) -> bool:
         """False if there is nothing to undo."""

@@ -30,6 +30,7 @@ HAND_OVER = 0.1  # s, between two hand-overs to the thread that writes: what a k
 CHECKPOINT = 1.0  # s of steps, after which a new snapshot is cheaper than to repeat them
 GENERATION = (10.0, 60.0)  # s, between two files, at least and at most
 MOST_LOG = 64 << 20  # bytes of a file
+EARLIER_EVERY, MOST_EARLIER = 1.0, 11  # s of the world, states before the end of the last run
 MOST_HISTORY = 16 << 20  # bytes of states of undo in a journal
 SHARE = 0.01  # of the time, that quick snapshots take
 QUICK_RATE = 0.5e6  # bytes/s of quick snapshots
@@ -142,7 +143,7 @@ class Journal:
             return f"{why}. The world before is put aside in {self._folder.path}", True
         self._give_functions(found.world.get("functions"))
         try:
-            recovered = recover(self._state.system, found)
+            recovered = recover(self._state.system, found, self._note_earlier)
         except (ValueError, RuntimeError) as error:  # of another version; a recording of the script runs already
             return f"begins anew: {error}. The world before is put aside in {self._folder.path}", True
         self._set_world(found.world)
@@ -162,6 +163,15 @@ class Journal:
         if missing := self._missing_functions():
             told += f"; the script has no function {', '.join(missing)} any more, and what used it is switched off"
         return told, bool(found.damage)
+
+    def _note_earlier(self, log: Log) -> None:
+        """For those who go back to states before the end of the last run."""
+        earlier, now = self._state.history.earlier, self._state.system.time
+        while earlier and earlier[-1][0] > now:  # after an undo
+            earlier.pop()
+        if not earlier or now - earlier[-1][0] >= EARLIER_EVERY:
+            earlier.append((now, log.quick_snapshot()))
+            del earlier[:-MOST_EARLIER]
 
     def _give_functions(self, known: Any) -> None:
         """Bonds may use functions that the script gave after its start: those are found by their names."""
@@ -251,6 +261,9 @@ class Journal:
             self._folder.unlock()
             return
         self.hand_over()
+        if not writer.takes:  # its disk is behind, and will have caught up
+            writer.flush()
+            self.hand_over()
         commands, _ = self._log.take()
         if writer.takes:
             records = [self._piece(commands, 0.0)] if commands else []

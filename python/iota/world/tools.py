@@ -233,7 +233,9 @@ def _rewind(tools: Tools) -> None:
     @tools._events.on_frame
     def keep() -> None:
         nonlocal every
-        now = tools._system.time
+        now, earlier = tools._system.time, tools._history.earlier
+        kept.extend((time, snapshot, len(snapshot)) for time, snapshot in earlier)
+        earlier.clear()
         while kept and kept[-1][0] > now:  # after an undo
             kept.pop()
         if kept and now - kept[-1][0] < every:
