@@ -418,7 +418,7 @@ def function_called(name: str) -> FunctionType | None:
     found = [
         each
         for each in gc.get_objects()
-        if isinstance(each, FunctionType)
+        if type(each) is FunctionType  # isinstance asks proxies, whose object may be gone
         and each.__qualname__ == name
         and not (each.__module__ or "").startswith("iota.")
     ]
