@@ -462,6 +462,25 @@ def test_a_damaged_snapshot_is_bridged_by_the_generation_before(
     assert files(tmp_path / "kept" / "aside-1") == ["000001-000001.journal", "000001-000002.journal"]
 
 
+def test_a_bridged_snapshot_leads_to_the_last_bit_also_where_it_made_islands_anew(make: Make, tmp_path: Path) -> None:
+    def long_chain(kept: Kept) -> None:
+        options = {"links": 60, "length": 6, "top": (0, 9, 0), "direction": (0.8, -0.6, 0)}
+        kept.chain = iota.builder.chain(**options).realize(kept.system).bodies
+
+    first = make(long_chain)
+    first.steps(4)
+    first.chain[40].particles[0].separate(first.chain[39].particles[1])  # the island follows, in an order of its own
+    first.steps(4)
+    first.world._stepper.journal._owed = journals.CHECKPOINT
+    first.steps(30)
+    end = first.system.state_hash()
+    first.end()
+    path = tmp_path / "kept" / "000001-000001.journal"
+    damage(path, place_of(path.read_bytes(), "S", last=True) + records.HEAD.size + 500)
+    second = make(long_chain)
+    assert second.system.state_hash() == end and "damaged" in second.told and "repeated" not in second.told
+
+
 def test_damage_without_a_way_round_is_told_with_what_it_costs(make: Make, tmp_path: Path) -> None:
     first = make()
     first.steps(5)

@@ -145,6 +145,7 @@ class Journal:
         try:
             recovered = recover(self._state.system, found, self._note_earlier)
         except (ValueError, RuntimeError) as error:  # of another version; a recording of the script runs already
+            self._values = {}
             return f"begins anew: {error}. The world before is put aside in {self._folder.path}", True
         self._set_world(found.world)
         self._state.schedule.skip(recovered.time)
@@ -233,21 +234,27 @@ class Journal:
         now = time.monotonic()
         self._next = now + HAND_OVER
         seconds, self._checked_at = now - self._checked_at, now
+        begins = writer.wants_all or (writer.takes and self._is_file_old(writer, now))
+        # Before the log is taken: a snapshot is a command, too, which a way round a damaged one repeats.
+        snapshot = self._log.snapshot() if begins or (writer.takes and self._owed >= CHECKPOINT) else None
         commands, is_broken = self._log.take()
-        if writer.wants_all or (writer.takes and self._is_file_old(writer, now)):
-            self._begin_file(writer, now, commands, seconds)
+        if not (begins or writer.takes):
             return
-        if not writer.takes:
-            return
+        if is_broken and snapshot is None:
+            snapshot = self._log.snapshot()
+            self._log.take()
         records: list[Content] = []
-        if is_broken or self._owed >= CHECKPOINT:
-            if commands:
-                records.append(self._piece(commands, seconds))
-            records += self._checkpoint()
-        elif commands:
+        if commands and writer.takes:  # the file before leads up to the snapshot
             records.append(self._piece(commands, seconds))
-            if now >= self._quick_at and self._uses_functions():
-                records += self._quick(now)
+        if begins:
+            if records:
+                writer.put(records)
+            self._begin_file(writer, now, snapshot or b"")
+            return
+        if snapshot is not None:
+            records += self._checkpoint(snapshot)
+        elif commands and now >= self._quick_at and self._uses_functions():
+            records += self._quick(now)
         if (version := self._world_version()) != self._version:
             self._version = version
             records.append(("W", self._world_now()))
@@ -294,9 +301,7 @@ class Journal:
             or (age > 1 and writer.bytes > MOST_LOG)
         )
 
-    def _begin_file(self, writer: Writer, now: float, commands: bytes, seconds: float) -> None:
-        if writer.takes and commands:  # the file before leads up to this one
-            writer.put([self._piece(commands, seconds)])
+    def _begin_file(self, writer: Writer, now: float, snapshot: bytes) -> None:
         self._began_at = now
         self._marks.clear()
         header = {
@@ -307,20 +312,17 @@ class Journal:
             "written": time.strftime("%Y-%m-%d %H:%M:%S"),
         }
         self._version = self._world_version()
-        records = [("H", json.dumps(header).encode()), ("W", self._world_now()), *self._checkpoint()]
+        records = [("H", json.dumps(header).encode()), ("W", self._world_now()), *self._checkpoint(snapshot)]
         writer.put(records, begins=True)
 
     def _piece(self, commands: bytes, seconds: float) -> Content:
         system = self._state.system
         return "C", Commands(system.time, system.state_hash(), seconds, commands).to_bytes()
 
-    def _checkpoint(self) -> list[Content]:
+    def _checkpoint(self, snapshot: bytes) -> list[Content]:
         """A snapshot from which the commands after it lead to the same bits."""
         self._owed = 0.0
-        records = self._history()
-        records.append(("S", self._log.snapshot()))
-        self._log.take()  # the snapshot is a command itself, of those before it
-        return records
+        return [*self._history(), ("S", snapshot)]
 
     def _quick(self, now: float) -> list[Content]:
         """For worlds with functions of the script, whose results may depend on what the script alone knows."""
