@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -227,7 +228,10 @@ def given_wrongly(function: Callable[..., Any], rest: dict[str, Any]) -> Iterato
 
 @pytest.mark.parametrize("of", ["world", *OF_A_WORLD, "looks", "builder", "iota"])
 @pytest.mark.filterwarnings("ignore::numpy.exceptions.VisibleDeprecationWarning", "ignore::RuntimeWarning")
-def test_no_call_of_the_script_layer_is_refused_with_a_raw_text(of: str) -> None:
+def test_no_call_of_the_script_layer_is_refused_with_a_raw_text(
+    of: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # some make files
     scene = sweep.Scene()
     rest = {
         "at": (0, 1, 0), "to": (0, 2, 0), "text": "word", "label": "word", "minimum": 0, "maximum": 1, "look": looks.sphere(0.1),

@@ -75,6 +75,10 @@ class Folder:
             os.close(self._lock)
             self._lock = None
 
+    def __del__(self) -> None:
+        """Of a world that never ran."""
+        self.unlock()
+
     def files(self) -> list[File]:
         """Oldest first. By the numbers in their names: clocks may be set back."""
         found = []
