@@ -20,10 +20,10 @@ class Heap {
   explicit Heap(std::uint64_t seed) : dice_{seed * 0x9e3779b97f4a7c15} {
     size_ = std::pow(10, dice_.uniform(-2, 1));
     dt_ = 1 / std::pow(10, dice_.uniform(1.5, 2.4));
-    const std::uint32_t mode = dice_.below(10);
-    system_.set_mode(mode == 0   ? IntegrationMode::accurate
-                     : mode <= 2 ? IntegrationMode::robust
-                     : mode == 3 ? IntegrationMode::plausible
+    const std::uint32_t mode = dice_.below(30);
+    system_.set_mode(mode == 0   ? IntegrationMode::accurate  // the slowest one
+                     : mode <= 6 ? IntegrationMode::robust
+                     : mode <= 9 ? IntegrationMode::plausible
                                  : IntegrationMode::energy_keeping);
     if (dice_.below(5) == 0) system_.set_gravity({});
     StepBudget budget = system_.budget();
