@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace iota::contact {
 
@@ -84,6 +85,14 @@ std::uint32_t name_of_place(const ConvexPart& part, const Vec3& down) {
   return lowest_of_rim + (dot(down, part.axes[0]) > 0 ? 1 : 0);
 }
 
+/// How much lower than every other of its corners a rim may be that nearly lies in a plane: its lowest point is left out.
+double drop_of_rim(const ConvexPart& part, const Vec3& normal) {
+  if (part.kind != ConvexPart::Kind::cylinder && part.kind != ConvexPart::Kind::cone) return 0;
+  const double across = norm(cross(normal, part.axes[0]));
+  if (across > standing_sine) return 0;
+  return across * part.half.y * (1 - std::cos(2 * std::numbers::pi / corners_of_rim));
+}
+
 double least_gap(const std::vector<Touch>& found, std::size_t begin) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = begin; k < found.size(); ++k) least = std::min(least, found[k].gap);
@@ -108,8 +117,9 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
   first_ = &first, second_ = &second;
   const std::size_t before = found.size();
   const auto try_faces = [&](const RoundAxis& axis) {
+    const double most = axis.apart - radius + same_separation * size + 2e-5 * std::abs(axis.apart) +
+                        drop_of_rim(first, axis.normal) + drop_of_rim(second, axis.normal);
     for (const bool is_of_first : {false, true}) {
-      const double most = axis.apart - radius + same_separation * size + 2e-5 * std::abs(axis.apart);
       if (add_on_face(axis, is_of_first, anchor, within, found) && least_gap(found, before) <= most) return true;
       found.resize(before);
     }

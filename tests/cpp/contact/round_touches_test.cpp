@@ -47,6 +47,18 @@ TEST(RoundTouches, of_parallel_and_crossed_cylinders_are_those_of_their_middle_l
   EXPECT_NEAR(found[0].gap, 0, 1e-12);
 }
 
+// A single touch let it tip by 5 degrees in a step, and kept heaps with cylinders awake.
+TEST(RoundTouches, of_a_cylinder_that_nearly_stands_are_around_its_rim) {
+  for (const double overlap : {1e-8, 1e-6, 1e-4})
+    for (const double lean : {1e-9, 1e-7, 1e-5, 5e-4})
+      for (double way = 0; way < 6; way += 0.1) {
+        const Quaternion turn = multiply(axis_angle({std::cos(way), 0, std::sin(way)}, lean), upright());
+        const auto found = touches_of(placed(Cylinder{0.2, 0.4}, {0.3, 0.2 - overlap, 0.1}, turn), round_table(), 1e-3);
+        ASSERT_GE(found.size(), 4u) << overlap << " " << lean << " " << way;
+        for (const Touch& touch : found) EXPECT_NEAR(std::abs(touch.normal.y), 1, 1e-12);
+      }
+}
+
 TEST(RoundTouches, of_a_box_on_a_standing_cylinder_are_its_corners) {
   const auto found =
       touches_of(placed(Box{{0.2, 0.2, 0.2}}, {0, 0.3, 0}), placed(Cylinder{0.2, 0.4}, {}, upright()), 0.01);
