@@ -85,6 +85,30 @@ TEST(Integrator, mid_point_is_of_second_order_and_end_point_of_first) {
   }
 }
 
+// Heaps that sweeps solve are compiled in each step and seldom analyzed. The places of other contacts were taken for theirs.
+TEST(Integrator, does_not_keep_the_places_of_contacts_from_before_a_structure_that_it_did_not_analyze) {
+  Problem problem;
+  Integrator integrator;
+  const auto build = [&](int contacts) {
+    problem.clear();
+    const std::uint32_t bead = add_point(problem, {}, 1);
+    for (int k = 0; k < contacts; ++k) {
+      ContactConstraint c;
+      for (int arm = 0; arm < 2; ++arm) c.add(arm, bead, 1);
+      c.set_directions({Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}});
+      c.normal_compliance = c.compliance = 1e-6;
+      add(problem, c);
+    }
+    integrator.compile(problem);
+  };
+  build(4);
+  EXPECT_TRUE(integrator.advance(problem, h, {}).converged);
+  build(2);
+  build(4);
+  EXPECT_FALSE(problem.has_slots());
+  EXPECT_TRUE(integrator.advance(problem, h, {}).converged);
+}
+
 TEST(Integrator, halves_a_step_in_which_a_link_turns_too_far) {
   for (const auto& [speed, substeps] : {std::pair{5.0, 1}, std::pair{100.0, 2}}) {
     Problem problem;
