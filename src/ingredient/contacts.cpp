@@ -109,15 +109,21 @@ bool is_on_its_own(const Model& model, std::uint32_t body) {
   return !is_held;
 }
 
-void touch(Model& model, const Contact& c) {
+/// by_motion: in a heap some contact begins or ends in nearly each step, which would keep it awake for ever. How fast it is
+/// tells whether it moves.
+void touch(Model& model, const Contact& c, bool by_motion) {
+  const auto sleeps = [&](std::uint32_t body) {
+    return model.bodies.is_alive(body) && model.bodies[body].kind == BodyKind::resting;
+  };
+  const bool wakes = !by_motion || sleeps(c.p) || sleeps(c.q);
   for (const std::uint32_t body : {c.p, c.q})
-    if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.touch_rows(body);
+    if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.touch_rows(body, wakes);
 }
 
-void destroy(Model& model, std::uint32_t slot) {
+void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
   const Contact c = model.contacts[slot];
   model.contacts.destroy(slot);
-  touch(model, c);
+  touch(model, c, by_motion);
 }
 
 bool is_same(const Contact& c, std::uint32_t p, const contact::Touch& t) {
@@ -243,7 +249,7 @@ void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double c
     const bool resists = slot == slots[0] && slots.size() <= 2 && coefficient > 0 && radius > 0 &&
                          has_orientation(model.bodies[c.p]) && has_orientation(model.bodies[c.q]);
     const std::uint32_t before = std::exchange(c.roll_rows, resists ? 3 - static_cast<std::uint32_t>(slots.size()) : 0);
-    if (c.roll_rows != before) touch(model, c);
+    if (c.roll_rows != before) touch(model, c, true);
     if (!resists) {
       c.rolling = c.carried = 0, c.torque = {};
       continue;
@@ -302,7 +308,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     c.approach = c.continues ? std::max(c.approach, approach) : approach;
     if (c.depth < 0)
       c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
-    if (has_changed) touch(model, c);
+    if (has_changed) touch(model, c, is_new);
     taken.push_back(slot);
   }
   resist_rolling(model, taken, std::max(one.rolling, other.rolling), motion, first);
@@ -311,10 +317,10 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
 namespace {
 
 template <class Test>
-void end_if(Model& model, std::uint32_t body, Test test) {
+void end_if(Model& model, std::uint32_t body, bool by_motion, Test test) {
   if (model.contacts.size() == 0) return;
   model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-    if (test(model.contacts[slot])) destroy(model, slot);
+    if (test(model.contacts[slot])) destroy(model, slot, by_motion);
   });
 }
 
@@ -358,11 +364,11 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> bodies) {
 void Contacts::take_over(Model& restored, Model& before) { restored.restores = before.restores + 1; }
 
 void Contacts::end_old(Model& model, std::uint32_t body) {
-  end_if(model, body, [&](const Contact& c) { return c.found_in != model.step + 1; });
+  end_if(model, body, true, [&](const Contact& c) { return c.found_in != model.step + 1; });
 }
 
 void Contacts::end(Model& model, std::uint32_t body) {
-  end_if(model, body, [](const Contact&) { return true; });
+  end_if(model, body, false, [](const Contact&) { return true; });
 }
 
 void Contacts::forget_body(Model& model, std::uint32_t body) { end(model, body); }

@@ -24,8 +24,8 @@ void Structure::list_flagged() {
   });
 }
 
-void Structure::touch(std::uint32_t articulate, Touch what) {
-  wake(articulate);
+void Structure::touch(std::uint32_t articulate, Touch what, bool wakes) {
+  if (wakes) wake(articulate);
   Articulate& a = articulates[articulate];
   ++a.version;
   a.try_again();
@@ -40,11 +40,11 @@ void Structure::touch_locally(std::uint32_t body) {
   touch_rows(body);
 }
 
-void Structure::touch_rows(std::uint32_t body) {
+void Structure::touch_rows(std::uint32_t body, bool wakes) {
   const bool is_listed = lists_local_changes();
   if (is_listed && (local_change_.bodies.empty() || local_change_.bodies.back() != body))
     local_change_.bodies.push_back(body);
-  touch(bodies[body].articulate, is_listed ? locally : anything);
+  touch(bodies[body].articulate, is_listed ? locally : anything, wakes);
 }
 
 void Structure::touch_pull(std::uint32_t body) {

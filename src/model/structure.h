@@ -255,8 +255,8 @@ class Structure {
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
   /// Marks a change of only one body and the bodies at its rings: their problem can follow.
   void touch_locally(std::uint32_t body);
-  /// The same for transient rows that viewers do not see.
-  void touch_rows(std::uint32_t body);
+  /// The same for transient rows that viewers do not see. wakes: false if they tell nothing of how fast it is.
+  void touch_rows(std::uint32_t body, bool wakes = true);
   /// Marks that a pull on a body was added or removed that couples only points that are coupled anyway: the body's
   /// problem keeps its structure.
   void touch_pull(std::uint32_t body);
@@ -450,7 +450,7 @@ class Structure {
   bool lists_local_changes() const {
     return local_change_.bodies.size() < std::max<std::size_t>(1024, bodies.size() / 4);
   }
-  void touch(std::uint32_t articulate, Touch);
+  void touch(std::uint32_t articulate, Touch, bool wakes = true);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
   std::vector<std::uint32_t> flagged_;  // articulates, since take_flagged
