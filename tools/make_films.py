@@ -44,6 +44,7 @@ MOMENT = {
     "marbles": 3.0,
     "physics-class": 3.5,
     "playground": 0.6,
+    "pour": 2.25,
     "undersea": 6.4,
     "wrecking-ball": 2.3,
 }

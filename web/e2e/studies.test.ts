@@ -486,6 +486,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.tab.page.evaluate((id) => iota.select(id), body);
     await study.does("x", "it is taken away", (now, before) => now.bodies < before.bodies);
   },
+  pour: async (study) => {
+    await study.does("c", "the hopper is full", ({ kinetic }) => kinetic < 5);
+    await study.does("k", "it pours", ({ kinetic }) => kinetic > 1);
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
   shoal: async (study) => {
     await study.does("c", "the current is off", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
     await study.does("x", "they scatter", (now, before) => now.kinetic > 1.5 * before.kinetic);

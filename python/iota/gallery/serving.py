@@ -24,8 +24,8 @@ from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
 FIRST = (  # on the page
-    "chain", "ladder", "stack", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground", "physics-class",
-    "fireworks",
+    "chain", "ladder", "stack", "pour", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground",
+    "physics-class", "fireworks",
 )  # fmt: skip
 LOOK = 0.1  # s, between two checks for visitors
 PATIENCE = 2.0  # s, within which a study has to end
