@@ -87,6 +87,43 @@ void TouchWriter::add_round(const Vec3& on_first, const Vec3& on_second, const V
   if (found_.size() > before) found_.back().form = TouchForm::round, found_.back().axis = axis;
 }
 
+// Moved aside by w, the square of the distance r of two curves p + u s + b u^2/2 and q + v t + c v^2/2 is that of their nearest
+// points: r^2 + min |w + u s - v t|^2 + r (b . n u^2 - c . n v^2), n from the second to the first. It is r^2 + w . M w with
+// M = 1 - J (J^T J + K)^-1 J^T, J = [s, -t]: zero of straight ones, negative of those that bend around each other.
+void TouchWriter::add_wires(const Vec3& on_first, const Vec3& on_second, const Vec3& along_first,
+                            const Vec3& bend_of_first, const Vec3& along_second, const Vec3& bend_of_second,
+                            const FeatureName& of_first, const FeatureName& of_second) {
+  const Vec3 between = on_first - on_second;
+  const double apart = norm(between);
+  if (!(apart > 0)) return;
+  const Vec3 normal = (1 / apart) * between, along = along_first - dot(along_first, normal) * normal;
+  const std::size_t before = found_.size();
+  add_edges(on_first, on_second, normal, of_first, of_second);
+  if (found_.size() == before || !(dot(along, along) > 0)) return;
+  Touch& touch = found_.back();
+  touch.form = TouchForm::wires, touch.axis = (1 / norm(along)) * along;
+  const Vec3 side = cross(normal, touch.axis);
+  constexpr double askew = 0.2, least = 0.1,
+                   most_bent = 3;  // of J^T J + K, whose determinant is 1 for straight wires at right angles; of M
+  const double x = dot(along_second, touch.axis), y = dot(along_second, side);
+  const double uu = 1 + touch.radius * dot(bend_of_first, normal), uv = -x,
+               vv = x * x + y * y - touch.radius * dot(bend_of_second, normal), determinant = uu * vv - uv * uv;
+  if (!(uu > 0) || !(determinant > least * y * y)) return;
+  const auto m = [&](double j_u, double j_v, double k_u, double k_v) {  // of two rows of J
+    return (j_u * (vv * k_u - uv * k_v) + j_v * (uu * k_v - uv * k_u)) / determinant;
+  };
+  const double aa = 1 - m(1, -x, 1, -x), ab = -m(1, -x, 0, -y), bb = 1 - m(0, -y, 0, -y);
+  double of_axis = aa, of_side = bb;
+  // Each axis turns with its wire, unless they are far from right angles.
+  if (std::abs(x) > askew) {
+    const double turn = 0.5 * std::atan2(2 * ab, aa - bb), c = std::cos(turn), s = std::sin(turn);
+    of_axis = c * c * aa + 2 * c * s * ab + s * s * bb, of_side = aa + bb - of_axis;
+    touch.axis = c * touch.axis + s * side;
+    if (std::abs(s) > c) touch.axis = cross(touch.axis, normal), std::swap(of_axis, of_side);
+  }
+  touch.bends[0] = 1 - std::clamp(of_axis, -most_bent, 1.0), touch.bends[1] = 1 - std::clamp(of_side, -most_bent, 1.0);
+}
+
 void Clipper::add_touches(const Axis& axis, TouchWriter& writer, std::size_t most) {
   if (axis.kind == Axis::Kind::edges)
     add_edge_touch(axis.edges, writer);

@@ -23,6 +23,10 @@ class TouchWriter {
   void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first,
                  const FeatureName& of_second);
   /// Two corners, or a corner and an edge; axis: along the edge, or zero.
+  /// Two wires that cross, each with its tangent and the vector to its center of curvature by the square of its radius.
+  void add_wires(const Vec3& on_first, const Vec3& on_second, const Vec3& along_first, const Vec3& bend_of_first,
+                 const Vec3& along_second, const Vec3& bend_of_second, const FeatureName& of_first,
+                 const FeatureName& of_second);
   void add_round(const Vec3& on_first, const Vec3& on_second, const Vec3& axis, const FeatureName& of_first,
                  const FeatureName& of_second);
 

@@ -15,9 +15,10 @@ namespace iota::contact {
 
 namespace {
 
-constexpr int ring_samples = 48, rod_samples = 32, side_by_side_samples = 6;
+constexpr int ring_samples = 128, rod_samples = 64, side_by_side_samples = 6;
 constexpr double side_by_side = 0.95;  ///< cosine
 constexpr double lying_share = 1e-3;
+constexpr double skew = 0.25, aside = 0.6;  ///< cosine; of the distance of touching wires
 constexpr int golden_steps = 44;
 constexpr std::uint32_t first_quarter = 0x100, first_sample = 0x200;  ///< numbers of features
 
@@ -28,6 +29,7 @@ struct Wire {
   double radius;
 
   Vec3 point(double share) const { return ring ? ring->point(share) : a + std::clamp(share, 0.0, 1.0) * along; }
+  Vec3 bend(const Vec3& point) const { return ring ? ring->bend(point) : Vec3{}; }
   Vec3 tangent(const Vec3& point) const {
     if (ring) return ring->tangent(point);
     const double length = norm(along);
@@ -137,6 +139,13 @@ Vec3 Ring::tangent(const Vec3& point) const {
   return rho > 0 ? (-y / rho) * axes[0] + (u / rho) * axes[1] : axes[0];
 }
 
+Vec3 Ring::bend(const Vec3& point) const {
+  const Vec3 off = point - middle;
+  const double x = dot(off, axes[0]), y = dot(off, axes[1]), u = x - std::clamp(x, -half_stretch, half_stretch);
+  if (half_stretch > 0 && u == 0) return {};
+  return (-1 / (radius * radius)) * (u * axes[0] + y * axes[1]);
+}
+
 Ring make_ring(const Solid& torus, const Vec3& anchor) {
   const auto& t = std::get<Torus>(torus.form->shape);
   return {torus.position - anchor,
@@ -175,7 +184,8 @@ void RingToucher::add_touches(const Solid* first, const ConvexPart* first_rod, c
     if (is_round)
       writer.add_round(on_first, on_second, axis, of_first, of_second);
     else
-      writer.add_edges(on_first, on_second, (1 / apart) * (on_first - on_second), of_first, of_second);
+      writer.add_wires(on_first, on_second, a.tangent(on_first), a.bend(on_first), b.tangent(on_second),
+                       b.bend(on_second), of_first, of_second);
   };
   Meeting meetings[2];
   const int count = find_meetings(curve, ring, limit, meetings);
@@ -187,7 +197,15 @@ void RingToucher::add_touches(const Solid* first, const ConvexPart* first_rod, c
     std::uint32_t feature = first_quarter + quarter_of(curve.ring ? *curve.ring : ring, curve.ring ? point : on_ring);
     if (feature == former) feature += 8;
     former = feature;
-    write(point, on_ring, ring.tangent(on_ring), is_end, feature);
+    const Vec3 tangent = ring.tangent(on_ring);
+    write(point, on_ring, tangent, is_end, feature);
+    // Skew wires that bend around each other are as near aside: one place would jump between both sides.
+    if (!curve.ring || std::abs(dot(curve.tangent(point), tangent)) < skew) continue;
+    const double way = aside * (a.radius + b.radius) / curve.ring->length();
+    for (const int side : {-1, 1}) {
+      const Vec3 next = curve.point(meetings[k].share + side * way), there = ring.nearest(next);
+      write(next, there, ring.tangent(there), true, feature + (side < 0 ? 16 : 32));
+    }
   }
   if (!curve.ring) return;
   for (std::uint32_t k = 0; k < side_by_side_samples; ++k) {

@@ -21,12 +21,14 @@ struct Ring {
   Vec3 nearest(const Vec3& place) const;
   /// Unit vector along it, at one of its points.
   Vec3 tangent(const Vec3& point) const;
+  /// Towards the center of curvature, by its radius, 1/m; zero where it is straight.
+  Vec3 bend(const Vec3& point) const;
 };
 Ring make_ring(const Solid& torus, const Vec3& anchor);
 
 /// The touches of two rings, or of a ring and a ball, a capsule or a rod: at most two where the wires cross, and six where
-/// they lie side by side. Wires that cross have a normal with a fixed direction: that is right to second order where they
-/// are straight; a link that slides along the bend of another one comes nearer to it by v^2 h^2/2R in a step.
+/// they lie side by side. Wires that cross have the distance of their middle lines to second order, with their bends: with a
+/// normal that turned with one of them, links that hang in each other shook until they were apart.
 class RingToucher {
  public:
   /// One of the solids is a torus.

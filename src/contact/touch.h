@@ -11,7 +11,8 @@ namespace iota::contact {
 enum class TouchForm : std::uint8_t {
   face,   ///< normal . (center - origin) - radius; the normal turns with the body of the plane
   edges,  ///< the same, with a normal that keeps its direction
-  round   ///< |d - (axis . d) axis| - radius, d = center - origin; the axis keeps its direction
+  round,  ///< |d - (axis . d) axis| - radius, d = center - origin; the axis keeps its direction
+  wires   ///< sqrt(d.d - bends_0 (axis . d)^2 - bends_1 (side . d)^2) - radius, side = normal x axis: wires that cross
 };
 
 /// A place of one outline near the surface of another one, with the plane that touches that surface there. What is
@@ -26,9 +27,10 @@ struct Touch {
   Vec3 place;   ///< of the surface with the point, nearest to the plane
   Vec3 origin,
       normal;  ///< of the plane: a point, and the unit vector away from its body; round: the center of what is round
-  Vec3 axis;   ///< round: a unit vector, or zero
-  double radius = 0;  ///< m; round: of both together
-  double gap = 0;     ///< m, negative: overlap
+  Vec3 axis;   ///< round: a unit vector, or zero; wires: along the first one
+  double bends[2] = {1, 1};  ///< wires: 1 where they are straight, more where they bend around each other
+  double radius = 0;         ///< m; round: of both together
+  double gap = 0;            ///< m, negative: overlap
 };
 
 }  // namespace iota::contact

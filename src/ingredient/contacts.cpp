@@ -178,7 +178,6 @@ struct Places {
     if (has_world_point(c)) c.center = center, c.place = point;
     // Directions turn with a body of three dimensions, and the axis of a rod with the rod: what depends only on places of
     // both keeps angular momentum.
-    const bool is_round = c.form == TouchForm::round;
     const auto set_direction = [&](Arm arm, const Vec3& direction, bool of_q) {
       const Vec3& from = of_q ? origin : center;
       const std::array<double, 4> start = sides.of(of_q, from), end = sides.of(of_q, from + direction);
@@ -189,9 +188,10 @@ struct Places {
     c.slips_turn = !has_world_plane(c) && (with_q || with_p);
     if (c.slips_turn)
       set_direction(Arm::first_tangent, c.first, with_q), set_direction(Arm::second_tangent, c.second, with_q);
-    const bool is_axis_of_q = is_round && !has_world_plane(c) && q.rank > 1;
-    c.turns = with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
-    if (c.turns) set_direction(Arm::turned, is_round ? c.axis : c.normal, with_q || is_axis_of_q);
+    const bool is_axis_of_q = c.form == TouchForm::round && !has_world_plane(c) && q.rank > 1;
+    const bool is_of_p = c.form == TouchForm::wires;
+    c.turns = is_of_p ? with_p : with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
+    if (c.turns) set_direction(Arm::turned, c.is_round() ? c.axis : c.normal, !is_of_p && (with_q || is_axis_of_q));
   }
 
  private:
@@ -212,10 +212,14 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
                   double h, Sides& sides) {
   const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
   take_basis(c, p, q);
-  c.form = t.form, c.axis = t.axis;
-  c.normal = t.normal, c.first = any_perpendicular(c.normal), c.second = cross(c.normal, c.first);
+  // The axes of wires turn with what has three dimensions.
+  const bool has_wires = (has_world_point(c) || p.rank == 4) && (has_world_plane(c) || q.rank == 4);
+  c.form = t.form == TouchForm::wires && !has_wires ? TouchForm::edges : t.form;
+  c.axis = t.axis, c.bends = {t.bends[0], t.bends[1]};
+  c.normal = t.normal, c.first = c.form == TouchForm::wires ? cross(c.normal, c.axis) : any_perpendicular(c.normal);
+  c.second = cross(c.normal, c.first);
   c.radius = t.radius, c.ball = std::clamp(dot(t.normal, t.center - t.place), 0.0, std::max(0.0, t.radius));
-  const bool is_round = t.form == TouchForm::round;
+  const bool is_round = c.is_round();
   Places places;
   places.center = t.center;
   places.origin = is_round ? t.origin : t.center - (t.gap + t.radius) * t.normal;
@@ -472,8 +476,8 @@ namespace {
 /// The gap at the end of the last step, m.
 double gap_of(const Model& model, const Contact& c) {
   const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
-  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
-  return dot(c.normal, d) - c.radius;
+  if (c.form == TouchForm::wires) return std::sqrt(std::max(0.0, dot(c.off(d), d))) - c.radius;
+  return (c.is_round() ? norm(c.off(d)) : dot(c.normal, d)) - c.radius;
 }
 
 /// The force that would stop the bodies at their contact if nothing else held them, N: for a step in which they begin to touch.
@@ -527,7 +531,9 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.impulse = {};
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
-    row.is_round = c.form == TouchForm::round && c.radius + c.depth > 0;
+    row.is_round = c.is_round() && c.radius + c.depth > 0;
+    row.has_wires = c.form == TouchForm::wires && row.is_round;
+    row.bends[0] = row.has_wires ? c.bends[0] : 1, row.bends[1] = row.has_wires ? c.bends[1] : 0;
     const auto constant = [](bool turns, const Vec3& v) { return turns ? Vec3{} : v; };
     row.set_directions({constant(c.turns, row.is_round ? c.axis : c.normal), constant(c.slips_turn, c.first),
                         constant(c.slips_turn, c.second)});
@@ -557,7 +563,8 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
     const auto arm = [&](Arm which) { return row.arm(which, problem.position.data(), 1); };
     if (c.slips_turn) c.first = arm(Arm::first_tangent), c.second = arm(Arm::second_tangent);
     if (row.is_round)
-      c.axis = arm(Arm::turned), c.normal = unit_or(row.across(arm(Arm::center), c.axis), c.normal);
+      c.axis = arm(Arm::turned),
+      c.normal = unit_or(row.off(arm(Arm::center), c.axis, arm(Arm::first_tangent)), c.normal);
     else if (c.turns)
       c.normal = unit_or(arm(Arm::turned), c.normal);
     c.is_of_sweeps = row.is_of_sweeps;
@@ -575,14 +582,19 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
   });
 }
 
+Vec3 Contact::off(const Vec3& d) const {
+  const Vec3 across = d - (form == TouchForm::wires ? bends[0] : 1) * dot(axis, d) * axis;
+  return form == TouchForm::wires ? across - bends[1] * dot(first, d) * first : across;
+}
+
 Vec3 Contacts::place(const Model& model, const Contact& c) {
   return place_of(model, c, Arm::center, false) - c.ball * c.normal;
 }
 
 double Contacts::gap(const Model& model, const Contact& c) {
   const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
-  if (c.form == TouchForm::round) return norm(d - dot(c.axis, d) * c.axis) - c.radius;
-  return dot(c.normal, d) - c.radius;
+  if (c.form == TouchForm::wires) return std::sqrt(std::max(0.0, dot(c.off(d), d))) - c.radius;
+  return (c.is_round() ? norm(c.off(d)) : dot(c.normal, d)) - c.radius;
 }
 
 Impact Contacts::hardest_impact(const Model& model) {
@@ -629,7 +641,7 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
     const Contact& c = step.model.contacts[slot];
     const std::uint32_t first = c.p == body ? 0 : c.of_p, last = c.p == body ? c.of_p : c.point_count;
     const Vec3 arm = c.radius * c.normal;
-    const double of_normal = c.form == TouchForm::round ? 0 : 1;
+    const double of_normal = c.is_round() ? 0 : 1;
     const BodyId part =
         step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
     for (std::uint32_t i = first; i < last; ++i)

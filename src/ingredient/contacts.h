@@ -25,9 +25,10 @@ struct Contact : model::Ends {
   std::uint32_t roll_rows = 0;              ///< of rolling resistance, at one of the places of two bodies
   /// The weights of the points in the arms of solver::ContactConstraint.
   std::array<std::array<double, 8>, 5> weights{};
-  Vec3 center, place;          ///< of a static body instead: the constants of the first two arms, in the world
-  Vec3 normal, first, second;  ///< now; they turn with a body, or keep their direction
-  Vec3 axis;                   ///< of round things, see contact::Touch
+  Vec3 center, place;             ///< of a static body instead: the constants of the first two arms, in the world
+  Vec3 normal, first, second;     ///< now; they turn with a body, or keep their direction
+  Vec3 axis;                      ///< of round things and wires, see contact::Touch
+  std::array<double, 2> bends{};  ///< of wires
   double radius = 0, friction = 0, restitution = 0;
   double ball = 0;                       ///< part of the radius that is p's
   double rolling = 0;                    ///< bound of the torque against rolling, of the force, m
@@ -44,6 +45,9 @@ struct Contact : model::Ends {
   std::uint64_t found_in = 0;  ///< step
 
   Vec3 force() const { return push * normal + drag; }
+  bool is_round() const { return form == contact::TouchForm::round || form == contact::TouchForm::wires; }
+  /// From the plane or what is round to the center, of d between the origin and the center.
+  Vec3 off(const Vec3& d) const;
   bool carries() const { return push != 0 || drag != Vec3{}; }
   /// Also in a part of the step only.
   bool has_touched() const { return carries() || impulse != Vec3{}; }

@@ -227,11 +227,12 @@ void Heap::load_points(Problem& problem, double h) {
     else if (point.b == none)
       origin = -1.0 * c.constant[0], other = -1.0 * c.constant[1];
     const Vec3 turned = c.arm(2, x, 1), way = center - origin;
-    point.normal = c.is_round ? unit_or(c.across(way, turned), up) : unit_or(turned, up);
+    const Vec3 off = c.off(way, turned, c.arm(3, x, 1));
+    point.normal = unit_or(c.is_round ? off : turned, up);
     const Vec3 tangent = c.arm(3, x, 1);
     point.first = unit_or(tangent - dot(tangent, point.normal) * point.normal, any_perpendicular(point.normal));
     point.second = cross(point.normal, point.first);
-    point.gap_at_begin = c.is_round ? norm(c.across(way, turned)) - c.radius : dot(point.normal, way) - c.radius;
+    point.gap_at_begin = c.is_round ? norm(off) - c.radius : dot(point.normal, way) - c.radius;
     point.friction = c.friction, point.restitution = c.restitution;
     // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
     const Vec3 at = center + dot(touching - center, point.normal) * point.normal;

@@ -12,7 +12,8 @@ namespace iota::solver {
 ///   arms        0: center of what touches - origin of the plane;  1: point that touches - the other body's point there;
 ///               2: normal, towards the first body; of round things the unit axis along which they may slide, or zero
 ///               3, 4: tangents
-///   constraint  g_0 = normal . arm 0 - radius,  of round things (|d|^2 - (axis . d)^2 - radius^2) / (2 radius),  d arm 0
+///   constraint  g_0 = normal . arm 0 - radius,  of round things (|d|^2 - (axis . d)^2 - radius^2) / (2 radius),  d arm 0;
+///               of wires that cross (|d|^2 - k_2 (axis . d)^2 - k_3 (arm 3 . d)^2 - radius^2) / (2 radius)
 ///               g_k = tangent_k . arm 1,  k = 1, 2   (m)
 ///   cone        N = -lambda_0 >= 0,  |(lambda_1, lambda_2)| <= mu N   (N)
 ///     open      all multipliers are zero, g_0 >= 0
@@ -38,6 +39,8 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double drags[2] = {};       ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
   bool is_of_sweeps = false;  ///< its overlap was left by sweeps: see Heap
   bool is_round = false;      ///< the radius is that of both together, above zero
+  bool has_wires = false;     ///< round: two wires that cross, one along arm 2, one along arm 3
+  double bends[2] = {1, 0};   ///< k_2, k_3
   bool meets = false;         ///< in this (sub-)step, by the velocities with which it begins
   bool leaves = false;        ///< at its end after an impact, so that its rows store nothing
 
@@ -47,37 +50,51 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   }
 
   double reference_length() const { return reference; }
-  static Vec3 across(const Vec3& d, const Vec3& axis) { return d - dot(axis, d) * axis; }
+  /// d without its parts along which the distance does not grow.
+  Vec3 off(const Vec3& d, const Vec3& axis, const Vec3& side) const {
+    if (!has_wires) return d - dot(axis, d) * axis;
+    return d - bends[0] * dot(axis, d) * axis - bends[1] * dot(side, d) * side;
+  }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
-    g[0] = (is_round ? (dot(across(e[0], e[2]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius) - floor;
+    g[0] = (is_round ? (dot(off(e[0], e[2], e[3]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius) - floor;
     g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
   /// The functions of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
   void gradients(const Vec3* x, double fraction, Vec3* out) const {
     const std::array<Vec3, 5> e = arms(x, fraction);
-    write_gradients(e, dot(e[2], e[0]), out);
+    write_gradients(e, dot(e[2], e[0]), dot(e[3], e[0]), out);
   }
   /// They are exact (J. C. Simo, N. Tarnow and K. K. Wong, 1992) and make no torque: by the arms in the middle, and for
   /// (axis . d)^2 by the mean of axis . d.
   void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
     std::array<Vec3, 5> e = arms(x0, start);
     const std::array<Vec3, 5> last = arms(x1, end);
-    const double along = (dot(e[2], e[0]) + dot(last[2], last[0])) / 2;
+    const double along = (dot(e[2], e[0]) + dot(last[2], last[0])) / 2,
+                 beside = (dot(e[3], e[0]) + dot(last[3], last[0])) / 2;
     for (std::size_t a = 0; a < 5; ++a) e[a] = 0.5 * (e[a] + last[a]);
-    write_gradients(e, along, out);
+    write_gradients(e, along, beside, out);
   }
   void curvature(const Vec3* x, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
     const double pull = is_round ? (clamp ? std::max(0.0, lambda[0]) : lambda[0]) / radius : 0;
     const double of_normal = is_round || clamp ? 0 : lambda[0], of_first = clamp ? 0 : lambda[1],
                  of_second = clamp ? 0 : lambda[2];
     Mat3 by_centers, by_both, by_turns;  // of g_0 by arms 0 and 2
+    Mat3 by_both_sides, by_sides;        // by arms 0 and 3
     if (pull != 0) {
       const Vec3 d = arm(0, x, 1), axis = arm(2, x, 1);
-      by_centers = Mat3::diagonal(pull) + -pull * Mat3::outer(axis, axis);
-      by_both = Mat3::diagonal(-pull * dot(axis, d)) + -pull * Mat3::outer(axis, d);
-      by_turns = -pull * Mat3::outer(d, d);
+      const double of_axis = bends[0] * pull;
+      by_centers = Mat3::diagonal(pull) + -of_axis * Mat3::outer(axis, axis);
+      by_both = Mat3::diagonal(-of_axis * dot(axis, d)) + -of_axis * Mat3::outer(axis, d);
+      by_turns = -of_axis * Mat3::outer(d, d);
+      if (has_wires) {
+        const Vec3 side = arm(3, x, 1);
+        const double of_side = bends[1] * pull;
+        by_centers += -of_side * Mat3::outer(side, side);
+        by_both_sides = Mat3::diagonal(-of_side * dot(side, d)) + -of_side * Mat3::outer(side, d);
+        by_sides = -of_side * Mat3::outer(d, d);
+      }
     }
-    const Mat3 by_both_back = by_both.transposed();
+    const Mat3 by_both_back = by_both.transposed(), by_both_sides_back = by_both_sides.transposed();
     for (std::uint32_t i = 0; i < count; ++i)
       for (std::uint32_t j = i; j < count; ++j, ++blocks) {
         const auto product = [&](std::size_t a, std::size_t b) { return weights[a][i] * weights[b][j]; };
@@ -86,6 +103,8 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
         if (pull == 0) continue;
         *blocks += product(0, 0) * by_centers + product(0, 2) * by_both + product(2, 0) * by_both_back +
                    product(2, 2) * by_turns;
+        if (has_wires)
+          *blocks += product(0, 3) * by_both_sides + product(3, 0) * by_both_sides_back + product(3, 3) * by_sides;
       }
   }
 
@@ -108,13 +127,16 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   std::array<Vec3, 5> arms(const Vec3* x, double fraction) const {
     return {arm(0, x, fraction), arm(1, x, fraction), arm(2, x, fraction), arm(3, x, fraction), arm(4, x, fraction)};
   }
-  /// along: axis . d
-  void write_gradients(const std::array<Vec3, 5>& e, double along, Vec3* out) const {
-    const Vec3 by_center = is_round ? (1 / radius) * (e[0] - along * e[2]) : e[2];
+  /// along, beside: of d with arms 2 and 3
+  void write_gradients(const std::array<Vec3, 5>& e, double along, double beside, Vec3* out) const {
+    along *= bends[0], beside *= bends[1];
+    Vec3 by_center = is_round ? (1 / radius) * (e[0] - along * e[2]) : e[2], by_side;
     const Vec3 by_turn = is_round ? (-along / radius) * e[0] : e[0];
+    if (has_wires) by_center -= (beside / radius) * e[3], by_side = (-beside / radius) * e[0];
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto w = [&](std::size_t arm) { return weights[arm][i]; };
       out[3 * i] = w(0) * by_center + w(2) * by_turn;
+      if (has_wires) out[3 * i] += w(3) * by_side;
       out[3 * i + 1] = w(1) * e[3] + w(3) * e[1];
       out[3 * i + 2] = w(1) * e[4] + w(4) * e[1];
     }

@@ -68,7 +68,29 @@ TEST(RingPairs, of_links_of_a_chain_touch_once_at_their_ends) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(norm(found[0].normal - Vec3{1, 0, 0}), 0, 1e-6);
   EXPECT_NEAR(found[0].gap, 0, 1e-12);
-  EXPECT_EQ(found[0].form, TouchForm::edges);
+  EXPECT_EQ(found[0].form, TouchForm::wires);
+}
+
+TEST(RingPairs, that_cross_have_the_gap_of_their_distance_when_they_move_aside) {
+  for (const double twist : {90.0, 75.0}) {  // degrees
+    const Torus link{0.2, 0.03, 0.3};
+    const Outline upper = placed(link, {}, {}, 1);
+    const auto lower = [&](const Vec3& way) {
+      return placed(link, Vec3{-0.64, 0, 0} + way, axis_angle({1, 0, 0}, twist * std::acos(0.0) / 90), 2);
+    };
+    const Touch touch = touches_of(lower({}), upper, 0.01).front();
+    ASSERT_EQ(touch.form, TouchForm::wires);
+    const Vec3 side = cross(touch.normal, touch.axis);
+    for (const Vec3& way : {2e-3 * touch.axis, 2e-3 * side}) {
+      const Vec3 d = touch.center - touch.origin + way;
+      const double along = dot(touch.axis, d), beside = dot(side, d);
+      const double gap =
+          std::sqrt(dot(d, d) - touch.bends[0] * along * along - touch.bends[1] * beside * beside) - touch.radius;
+      const double found = least_gap_of(touches_of(lower(way), upper, 0.01));
+      EXPECT_LT(found, -1e-6);
+      EXPECT_NEAR(gap, found, 0.02 * std::abs(found)) << twist;
+    }
+  }
 }
 
 TEST(RingPairs, that_lie_on_each_other_touch_all_around) {

@@ -216,8 +216,9 @@ ContactConstraint random_contact(std::mt19937& random, bool is_round) {
 TEST(ContactRows, have_the_gradients_and_the_curvature_of_their_values) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
-  for (const bool is_round : {false, true}) {
-    const ContactConstraint c = random_contact(random, is_round);
+  for (const int form : {0, 1, 2}) {  // of a plane, round, of wires
+    ContactConstraint c = random_contact(random, form > 0);
+    if (form == 2) c.has_wires = true, c.bends[0] = 1.4, c.bends[1] = 0.8;
     std::array<Vec3, 8> x, moved;
     for (Vec3& p : x) p = {any(random), any(random), any(random)};
     for (std::size_t i = 0; i < 8; ++i) moved[i] = x[i] + Vec3{any(random), any(random), any(random)};
