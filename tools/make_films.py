@@ -41,6 +41,7 @@ USUAL = 10.0
 MOMENT = {
     "chain": 2.5,
     "fireworks": 5.1,
+    "links": 4.0,
     "marbles": 3.0,
     "physics-class": 3.5,
     "playground": 0.6,

@@ -416,6 +416,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.knows("it hangs quietly", ({ time, kinetic }) => time > 4 && kinetic < 5e-4);
     await study.does("t", "a ripple runs", ({ kinetic }) => kinetic > 3e-3);
   },
+  links: async (study) => {
+    await study.drag([some, some]);
+    await study.letGo();
+    await study.does("c", "all hangs as at the start", ({ time }) => time < 1);
+    await study.does("k", "the short chain is lifted off its peg", ({ kinetic }) => kinetic > 1e-4);
+  },
   marbles: async (study) => {
     const flap = await study.tab.page.evaluate((body) => ({ body, was: iota.bodyRotation(body) }), await study.tab.page.evaluate(() => iota.bodies()[0]));
     await study.key("n");
