@@ -39,6 +39,7 @@ OPTIONS = {"physics-class": ["--plots"]}
 SECONDS = {"chain": 12.0, "molecule": 12.0, "undersea": 28.0}
 USUAL = 10.0
 MOMENT = {
+    "capstan": 1.9,
     "chain": 2.5,
     "fireworks": 5.1,
     "links": 4.0,

@@ -360,6 +360,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.key("v");
     await study.tab.until("the camera is outside again", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) > 1, undefined, patience);
   },
+  capstan: async (study) => {
+    await study.does("c", "all hangs as at the start", ({ time }) => time < 1);
+    await study.does("k", "a counterweight is lifted", ({ kinetic }) => kinetic > 1e-4);
+    await study.drag([0, -some]);
+    await study.letGo();
+  },
   chain: async (study) => {
     const welcome = study.tab.page.locator("#welcome");
     // On a slow machine its time is over.
