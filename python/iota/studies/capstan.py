@@ -31,7 +31,7 @@ def build() -> iota.World:
 
 
 def make_world() -> iota.World:
-    """What hangs still for half a second sleeps."""
+    """Weights that hang still for half a second sleep."""
     system = iota.System()
     system.rest_after = 0.5
     world = iota.World(system, title="capstan: the beam is 20 cm thick")

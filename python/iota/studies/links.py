@@ -37,7 +37,7 @@ def build() -> iota.World:
 
 
 def make_world() -> iota.World:
-    """Board and pegs. What hangs still for half a second sleeps."""
+    """Board and pegs. A chain that hangs still for half a second sleeps."""
     system = iota.System()
     system.rest_after = 0.5
     world = iota.World(system, title="links: each is 12 cm long")

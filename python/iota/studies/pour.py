@@ -33,7 +33,7 @@ def build() -> iota.World:
 
 
 def make_world() -> iota.World:
-    """What lies still for half a second sleeps."""
+    """Grains that lie still for half a second sleep."""
     system = iota.System()
     system.rest_after, system.rest_speed = 0.5, 0.04
     system.budget_contacts = 1e6  # sweeps: equations of so many places of contact take up to 0.1 s in a blow
@@ -157,7 +157,7 @@ class Pour:
         return parts[0]
 
     def _grains(self, count: int) -> list[iota.Body]:
-        """Of four kinds, in layers within the hopper, turned at random."""
+        """Four kinds, in layers within the hopper, turned at random."""
         random, pitch = np.random.default_rng(2), 3.0 * SIZE
         row = int((MOUTH - 0.01) / pitch)
         kinds = (
