@@ -300,7 +300,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     fresh.depth = std::min(0.0, t.gap);
     const std::uint32_t slot = is_new ? model.contacts.create(fresh) : *known;
     Contact& c = model.contacts[slot];
-    const bool has_changed = is_new || std::exchange(c.is_off, 0) || !has_basis(c, model.bodies[p], model.bodies[q]);
+    const bool by_motion = is_new || std::exchange(c.is_off, 0);
+    const bool has_changed = by_motion || !has_basis(c, model.bodies[p], model.bodies[q]);
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
     c.friction = std::sqrt(one.friction * other.friction);
     c.restitution = std::max(one.restitution, other.restitution);
@@ -312,7 +313,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     c.approach = c.continues ? std::max(c.approach, approach) : approach;
     if (c.depth < 0)
       c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
-    if (has_changed) touch(model, c, is_new);
+    if (has_changed) touch(model, c, by_motion);
     taken.push_back(slot);
   }
   resist_rolling(model, taken, std::max(one.rolling, other.rolling), motion, first);
@@ -341,7 +342,7 @@ void Contacts::tie(Model& model, std::uint32_t first, std::uint32_t second) {
   c.normal = {0, 1, 0}, c.first = {1, 0, 0}, c.second = {0, 0, 1};
   c.is_off = 1, c.found_in = model.step + 1;
   take_basis(c, model.bodies[first], model.bodies[second]);
-  touch(model, model.contacts[model.contacts.create(c)]);
+  touch(model, model.contacts[model.contacts.create(c)], true);
 }
 
 void Contacts::begin_part(Model& model, std::span<const std::uint32_t> bodies, bool is_first) {
@@ -361,7 +362,7 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> bodies) {
       if (std::exchange(c.is_off, 1)) return;
       c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
       if (c.roll_rows > 0) c.roll_rows = 0;
-      touch(model, c);
+      touch(model, c, true);
     });
 }
 
