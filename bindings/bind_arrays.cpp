@@ -217,6 +217,10 @@ void bind_body_array(nb::module_& module) {
   def_assigned(type, "masses", Quantity::mass, "(n,), kg; assigning scales the inertia too.");
   def_read(type, "forces", Quantity::force, "(n, 3): sum of all forces from outside in the last step, N.");
   def_read(type, "torques", Quantity::torque, "(n, 3): their moments about the centers of mass, N m.");
+  def_read(
+      type, "work", Quantity::work,
+      "(n, 2): a measure of the work of the latest solution of each body's articulate, points times iterations, and the\n"
+      "number of steps that it was for, see `Body.stride`; 0: it sleeps or is frozen.");
   def_applied(type, "apply_forces", Quantity::force, "forces",
               "Adds forces at the centers of mass, (n, 3), N, during the next step only.");
   def_applied(type, "apply_torques", Quantity::torque, "torques",

@@ -53,6 +53,12 @@ void bind_articulates(nb::module_& module) {
             self.body.use().bodies().set_articulate_active(self.body.id, active);
           },
           "False switches all its bodies off; see `Body.active`.")
+      .def_prop_rw(
+          "stride", [](const ArticulateView& self) { return self.body.use().bodies().stride(self.body.id); },
+          [](const ArticulateView& self, int steps) {
+            between_steps(self.body, "stride = ...").bodies().set_articulate_stride(self.body.id, steps);
+          },
+          "Of all its bodies; see `Body.stride`.")
       .def(
           "__eq__",
           [](const ArticulateView& self, nb::handle other) {

@@ -173,6 +173,15 @@ void bind_body(nb::module_& module) {
           },
           "1/s, adds to the system's.")
       .def_prop_rw(
+          "stride", [](const BodyHandle& self) { return self.use().bodies().stride(self.id); },
+          [](const BodyHandle& self, int steps) {
+            between_steps(self, "stride = ...").bodies().set_stride(self.id, steps);
+          },
+          "How many steps are taken at once: 1 (at first) to 16; 0: frozen, with its velocities kept. Places and velocities\n"
+          "are interpolated in between, so that all that reads them sees the present time. Of bodies that are solved together the\n"
+          "shortest one counts, and all get it. It is 1 again as soon as an edit, a hand or a force of the script touches the\n"
+          "articulate. Free particles take every step. Raises ValueError for other numbers.")
+      .def_prop_rw(
           "radius", [](const BodyHandle& self) { return self.use().bodies().radius(self.id); },
           [](const BodyHandle& self, double value) {
             self.use().bodies().set_radius(self.id, finite_positive(value, "radius", "m"));

@@ -57,6 +57,8 @@ enum class Quantity : std::uint8_t {
   effort,            ///< 1: N m or N
   pose,              ///< 7: position and orientation
   motion,            ///< 6: velocity and angular velocity
+  work,  ///< 2: a measure of the work of the latest solution, points times iterations, of the body's articulate as
+         ///< its share of its island; for how many steps that was, 0: it sleeps or is frozen
 };
 std::size_t width(Quantity);
 

@@ -76,6 +76,7 @@ void apply(Editor& e, const ApplyBodyTorque& c) {
   require_finite("torque", c.value);
   ingredient::Pushes::check_torque(e.model, body, c.value);
   ingredient::Pushes::add_torque(e.model, body, c.value);
+  ingredient::Strides::disturb(e.model, body);
 }
 
 }  // namespace iota::edit

@@ -113,6 +113,7 @@ void apply(Editor& e, const ApplyForce& c) {
   const std::uint32_t particle = e.require(c.particle);
   require_finite("force", c.value);
   model.pushes.make(model.particles[particle].ring).force += c.value;
+  ingredient::Strides::disturb(model, model.particles[particle].body);
 }
 
 void apply(Editor& e, const SetParticleActive& c) {

@@ -20,6 +20,7 @@
 #include "ingredient/pushes.h"
 #include "ingredient/rigid_rows.h"
 #include "ingredient/rod_spins.h"
+#include "ingredient/strides.h"
 #include "ingredient/ties.h"
 
 #include <tuple>
@@ -48,7 +49,8 @@ using Ingredients = std::tuple<  //
     CosmeticBonds,               //
     AngleSprings,                //
     Contacts,                    //
-    IgnoredContacts>;
+    IgnoredContacts,             //
+    Strides>;
 
 /// The ingredient with a command among its own; void if there is none.
 template <class C, class List = Ingredients>

@@ -78,6 +78,25 @@ std::size_t FreeBodies::size(const Model& model) {
   return awake_.size() + loose_.size() + still_.size();
 }
 
+bool FreeBodies::Loose::goes_on_by_itself(Model& model, double h) {
+  using ingredient::Strides;
+  if (!Strides::any(model)) return false;
+  const auto visit_rings = [&](auto visit) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) { visit(model.particles[p].ring); });
+  };
+  const Strides::Phase phase = Strides::phase(model, h, visit_rings);
+  const bool is_frozen = phase == Strides::Phase::none && Strides::of(model, body) == Strides::frozen;
+  if (phase != Strides::Phase::within && !is_frozen) return false;
+  const std::uint32_t first = model.particles[model.bodies[body].first].ring;
+  if (!is_frozen) {
+    const auto steps = static_cast<std::uint32_t>(model.step + 1 - Strides::find(model, first)->begin);
+    visit_rings([&](std::uint32_t ring) { Strides::show(model, ring, steps); });
+  }
+  Strides::drop_forces(model, body);
+  report = {}, rests = false;
+  return true;
+}
+
 solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel& parallel) {
   refresh(model);
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads

@@ -57,6 +57,11 @@ class FreeBodies {
     std::uint32_t articulate, body;
     bool rests = false;                 ///< it fell asleep in the last step
     solver::AdvanceReport report = {};  ///< of the last step
+    std::uint32_t solved_steps = 1;     ///< see Island::solved_steps
+    double work = 0;
+
+    /// Takes a step within a stride, or none if it is frozen, without an island.
+    bool goes_on_by_itself(model::Model&, double h);
   };
   /// The loose bodies that were awake when the last step began, in order ...
   std::span<Loose> loose() { return loose_; }

@@ -56,8 +56,8 @@ void Island::clear() {
   for_each_ingredient([](auto& i) { i.clear(); });
   problem_.clear();
   solver_name_ = {}, solver_.reset(), integrator_->set_external(nullptr);
-  idle_ = to_wake_ = is_still_ = has_stepped_ = false;
-  book_epoch_ = 0, last_ = {};
+  idle_ = to_wake_ = is_still_ = has_stepped_ = is_frozen_ = false;
+  book_epoch_ = 0, last_ = {}, stride_ = 0, solved_steps_ = 1, work_ = 0;
 }
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
@@ -306,6 +306,8 @@ const solver::AdvanceReport& Island::commit(Model& model, double h) {
   if (tried == Tried::overflown || tried == Tried::prescribed) store_step(model, h, false);
   has_stepped_ = true;
   if (idle_) look_whether_still(model);
+  constexpr double overhead = 3;  // iterations: loading, storing, finding contacts
+  if (tried != Tried::still) work_ = static_cast<double>(size()) * (last_.iterations + overhead);
   return last_;
 }
 

@@ -89,6 +89,17 @@ class Island {
     Clock::time_point deadline = Clock::time_point::max();  ///< when to stop looking for a solution
     double share = 1;                                       ///< of StepBudget::contacts
   };
+  /// A step of h seconds, or of several of them at once, or none: see Strides. The rings of an island with a stride have
+  /// rows in the table of tracks.
+  const solver::AdvanceReport& advance(model::Model&, double h, const Limits&);
+  /// The stride of all its bodies, or the shortest one, which those with a longer one get. Reads them again if that was
+  /// asked for, and gives rings tracks. Not while other islands step.
+  std::uint32_t agree_on_stride(model::Model&);
+  void read_stride() { stride_ = 0, is_still_ = is_still_ && !is_frozen_, is_frozen_ = false, book_epoch_ = 0; }
+  /// Number of steps of the latest step that it was solved for, and a measure of the work of that.
+  std::uint32_t solved_steps() const { return solved_steps_; }
+  double work() const { return work_; }
+
   /// Tries a step of h seconds by the model's settings, in the island's own problem: the model does not change.
   /// Limits: see StepBudget. Another try begins where this one did, and from
   /// the same state of the model it gives the same bits (with large factors only if they are forgotten before both:
@@ -182,6 +193,14 @@ class Island {
   void store_carried(model::Model&, MovedRings&) const;
   bool meets_pinned(const model::Model&) const;
 
+  const solver::AdvanceReport& solve(model::Model&, double h, const Limits&);
+  void begin_stride(model::Model&, double h, std::uint32_t steps, const Limits&);
+  void leave_stride(model::Model&);
+  template <class Visit>
+  void for_each_ring(const model::Model& model, Visit visit) const {
+    nodes_.for_each_ring(model, visit);
+  }
+
   bool stays_asleep(const model::Model& model) const { return !to_wake_ && is_asleep(model); }
   void wake_bodies(model::Model&);
   /// Falls asleep once it has been slow for long enough, if sleep is on.
@@ -204,6 +223,10 @@ class Island {
   ingredient::Book still_book_;
   std::uint64_t book_epoch_ = 0;  // of the book; 0: not known
   bool has_stepped_ = false;
+  std::uint32_t stride_ = 0;  // steps; 0: not known
+  bool is_frozen_ = false;    // and outside of a stride: still
+  std::uint32_t solved_steps_ = 1;
+  double work_ = 0;
   Tried tried_ = Tried::nothing;  // since the last commit
   solver::AdvanceReport last_;    // of the last step, or the latest try
 };

@@ -75,6 +75,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     nodes_.remove(around.empty_nodes);
     integrator_->follow(problem_);
     idle_ = has_no_free_body(model);
+    stride_ = 0, is_frozen_ = false;
     if (!change.local.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
     carry_along(model, moved);
     look_whether_still(model);

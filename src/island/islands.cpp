@@ -563,6 +563,9 @@ void Islands::wake_stirred(Model& model, double h) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
         // A free body that is awake hears its force itself.
         if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
+        // Other than held forces, which a stride takes as they are at its begin, this is a motion of its own.
+        if constexpr (!std::is_same_v<I, ingredient::Pushes>)
+          ingredient::Strides::disturb(model, model.particles[p].body);
       });
     });
   });
@@ -599,14 +602,50 @@ const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island,
 }
 
 void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
-  const auto step = [&](Island& island, double left) -> const solver::AdvanceReport& {
-    island.try_step(model, left, {deadline, share_of(island)});
-    return island.commit(model, left);
-  };
-  if (index < awake_.size()) return (void)step(*awake_[index], h - ahead(model, *awake_[index]));
+  if (index < awake_.size()) {
+    Island& island = *awake_[index];
+    return (void)island.advance(model, h - ahead(model, island), {deadline, share_of(island)});
+  }
   FreeBodies::Loose& loose = free_bodies_.loose()[index - awake_.size()];
-  borrow(model, loose.articulate,
-         [&](Island& island) { loose.report = step(island, h), loose.rests = island.is_still(); });
+  if (loose.goes_on_by_itself(model, h)) return;
+  borrow(model, loose.articulate, [&](Island& island) {
+    island.read_stride(), (void)island.agree_on_stride(model);
+    loose.report = island.advance(model, h, {deadline, share_of(island)});
+    loose.rests = island.is_asleep(model), loose.work = island.work(), loose.solved_steps = island.solved_steps();
+  });
+}
+
+Islands::Work Islands::work_of(const Model& model, std::uint32_t articulate) const {
+  if (articulate < places_.size() && places_[articulate].home) {
+    const Island& island = places_[articulate].home->island;
+    const double share = static_cast<double>(model.articulates[articulate].count) /
+                         static_cast<double>(std::max<std::size_t>(1, island.body_count()));
+    return {share * island.work(), island.is_still() ? 0 : island.solved_steps()};
+  }
+  const std::span<const FreeBodies::Loose> loose = free_bodies_.loose();
+  const auto at = std::lower_bound(loose.begin(), loose.end(), articulate,
+                                   [](const FreeBodies::Loose& l, std::uint32_t a) { return l.articulate < a; });
+  if (at == loose.end() || at->articulate != articulate) return {0, 0};
+  const bool is_frozen = ingredient::Strides::of(model, at->body) == ingredient::Strides::frozen;
+  return {at->work, at->rests || is_frozen ? 0 : at->solved_steps};
+}
+
+// Strides of loose bodies are read in each step.
+void Islands::plan_strides(Model& model) {
+  if (!ingredient::Strides::any(model) && model.changed_strides.empty()) return;
+  for (const std::uint32_t body : std::exchange(model.changed_strides, {})) {
+    if (!model.bodies.is_alive(body)) continue;
+    if (Island* const island = of_articulate(model.bodies[body].articulate))
+      awake_is_old_ = awake_is_old_ || island->is_still(), island->read_stride();
+  }
+  for (Island* const island : awake(model)) (void)island->agree_on_stride(model);
+  model.changed_strides.clear();  // by agreement
+  for (const FreeBodies::Loose& loose : free_bodies_.loose(model)) {
+    const std::uint32_t stride = ingredient::Strides::of(model, loose.body);
+    if (stride > 1 && stride != ingredient::Strides::frozen)
+      model.for_each_particle_of(loose.body,
+                                 [&](std::uint32_t p) { (void)model.tracks.make(model.particles[p].ring); });
+  }
 }
 
 std::vector<IslandReport> Islands::reports(const Model& model) {

@@ -83,6 +83,13 @@ class Islands {
   void wake(model::Model&, std::span<const std::uint32_t> articulates);
   /// So are those that ingredients stir in a step of h seconds: forces on their points, moving nails, laws of the time.
   void wake_stirred(model::Model&, double h);
+  /// Before islands step: they agree on strides that have changed, and their rings get tracks.
+  void plan_strides(model::Model&);
+  struct Work {
+    double work;          ///< of the latest solution of an island, see Island::work; the share of an articulate
+    std::uint32_t steps;  ///< that it was for; 0: the island is still
+  };
+  Work work_of(const model::Model&, std::uint32_t articulate) const;
   void put_to_rest(model::Model&, std::uint32_t articulate);
   /// Bodies that sleep, free particles included, in the latest step.
   std::uint32_t resting(const model::Model&) const;

@@ -82,6 +82,8 @@ ContactFinder::Mover ContactFinder::mover_at(const model::Model& model, const co
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
+  const std::uint32_t stride = ingredient::Strides::of(model, slot);
+  mover.steps = stride == ingredient::Strides::frozen ? 1 : stride;
   return mover;
 }
 
@@ -93,41 +95,50 @@ void ContactFinder::list_movers(model::Model& model, const contact::Outlines& ou
     if (body.kind == BodyKind::static_) return;
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
     is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot);
-    if (body.kind != BodyKind::resting) movers_.push_back(mover_at(model, outlines, slot));
+    if (body.kind != BodyKind::resting && !ingredient::Strides::skips(model, slot))
+      movers_.push_back(mover_at(model, outlines, slot));
   });
 }
 
-double ContactFinder::within(const Mover& mover, const Mover* other) const {
+double ContactFinder::within(const Mover& mover, const Mover* other, double steps) const {
   const Vec3 relative = other ? mover.velocity - other->velocity : mover.velocity;
-  const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + fall_;
-  return of_way * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
+  const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + steps * fall_;
+  return of_way * steps * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
 // Few obstacles are looked at one by one.
-void ContactFinder::find_obstacles(const model::Model& model) {
+void ContactFinder::find_obstacles(model::Model& model) {
   for (const Mover& mover : movers_) {
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
-    for (const Obstacle& obstacle : obstacles_)
-      if ((!is_scripted || obstacle.is_sensor) && obstacle.distance(mover.place) <= reach)
-        pairs_.push_back({mover.body, obstacle.body});
+    const double reach_of_stride = mover.steps > 1 ? mover.reach + within(mover, nullptr, mover.steps) : reach;
+    for (const Obstacle& obstacle : obstacles_) {
+      if (is_scripted && !obstacle.is_sensor) continue;
+      const double distance = obstacle.distance(mover.place);
+      if (distance <= reach) pairs_.push_back({mover.body, obstacle.body});
+      if (mover.steps > 1 && distance <= reach_of_stride) ingredient::Strides::note_near(model, mover.body);
+    }
   }
 }
 
 // Particles alone do not touch each other: see are_plain.
-void ContactFinder::find_pairs(const model::Model& model, contact::Outlines& outlines) {
+void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines) {
   if (movers_.empty() || !is_any_extended_) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
   for (const Mover& mover : movers_) {
     // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
-    const double own = within(mover, nullptr), more = own > far * mover.reach ? 2 * own : own;
+    const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
     geometry::Bounds box = contact::bounds(tree[mover.body]);
     box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
     tree.overlapping(box, [&](std::uint32_t body) {
       if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body))
         return;
       const Mover other = mover_at(model, outlines, body);
-      if (norm(other.place - mover.place) > mover.reach + other.reach + within(mover, &other)) return;
+      const double apart = norm(other.place - mover.place) - mover.reach - other.reach;
+      if (mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
+          apart <= within(mover, &other, mover.steps))
+        ingredient::Strides::note_near(model, mover.body);
+      if (apart > within(mover, &other)) return;
       pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});
     });
   }

@@ -55,17 +55,18 @@ class ContactFinder {
     double reach;          ///< m
     Vec3 place, velocity;  ///< of its first particle; mean
     double spread;         ///< of the velocities of its points, m/s
+    double steps = 1;      ///< that it may take at once
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
   void list_obstacles(model::Model&, contact::Outlines&);
   static Mover mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void list_movers(model::Model&, const contact::Outlines&);
-  void find_obstacles(const model::Model&);
-  void find_pairs(const model::Model&, contact::Outlines&);
+  void find_obstacles(model::Model&);
+  void find_pairs(model::Model&, contact::Outlines&);
   void touch(model::Model&, contact::Outlines&, const Pair&);
   void sense(const model::Model&, contact::Outlines&, const Pair&);
-  double within(const Mover&, const Mover* other) const;
+  double within(const Mover&, const Mover* other, double steps = 1) const;
   void set_time(const model::Model&, double h);
 
   /// A pair on its way.

@@ -27,6 +27,7 @@ StepReport Stepper::step(double dt) {
   watches_.begin_step(editor_.model, outlines_);
   door_.begin_step();
   model::choose_usual_radius(editor_.model);
+  ingredient::Strides::disturb_edited(editor_.model);
   take_held_forces(report);
   find_contacts(dt);
   update_islands(dt);
@@ -70,6 +71,7 @@ void Stepper::update_islands(double dt) {
   }
   islands.wake(model, woken_);
   islands.wake_stirred(model, dt);
+  islands.plan_strides(model);
   islands.for_each_of(model, dirty_, [&](island::Island& island) { (void)island.project(model, false); });
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
@@ -214,6 +216,8 @@ void Stepper::fill(StepReport& report) {
                    .made = model.made,
                    .external_work = model.external_work,
                    .edits = model.edit_energy};
+  // Accounts are those at the end of a stride: `lost` takes the rest meanwhile.
+  if (ingredient::Strides::any(model)) model.lost = report.energy.lost -= report.energy.balance();
   report.articulates = model.articulate_count();
   report.structure_version = model.structure_version;
 }

@@ -156,6 +156,19 @@ void Bodies::destroy(BodyId id) { core_.execute(edit::Destroy<BodyId>{id}); }
 
 void Bodies::set_kind(BodyId body, BodyKind kind) { core_.execute(edit::SetKind{body, kind}); }
 
+int Bodies::stride(BodyId id) const {
+  const std::uint32_t stride = ingredient::Strides::of(core_.model, core_.slot(id));
+  return stride == ingredient::Strides::frozen ? 0 : static_cast<int>(stride);
+}
+
+void Bodies::set_stride(BodyId body, int steps) {
+  core_.execute(ingredient::SetStride{body, static_cast<std::uint32_t>(steps), false});
+}
+
+void Bodies::set_articulate_stride(BodyId body, int steps) {
+  core_.execute(ingredient::SetStride{body, static_cast<std::uint32_t>(steps), true});
+}
+
 void Bodies::set_damping(BodyId body, double per_second) { core_.execute(edit::SetBodyDamping{body, per_second}); }
 
 std::uint32_t Bodies::articulate_count() const { return core_.model.articulate_count(); }

@@ -20,6 +20,7 @@ std::size_t width(Quantity quantity) {
     case effort: return 1;
     case pose: return 7;
     case motion: return 6;
+    case work: return 2;
     default: return 3;
   }
 }
@@ -97,6 +98,11 @@ void Many::read(Quantity quantity, std::span<const BodyId> ids, std::span<double
       case Quantity::orientation: return put(m.bodies[body].orientation, row);
       case Quantity::pose: return put(m.center_of_mass(body), row), put(m.bodies[body].orientation, row + 3);
       case Quantity::motion: return put(body_velocity(m, body), row), put(body_angular_velocity(m, body), row + 3);
+      case Quantity::work: {
+        const auto [work, steps] = core_.islands.work_of(m, m.bodies[body].articulate);
+        row[0] = work, row[1] = steps;
+        return;
+      }
       default: refuse("bodies");
     }
   });
