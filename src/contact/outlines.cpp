@@ -27,7 +27,7 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
   describe_changed();
   for (std::uint32_t body = 0; body < tree_.count(); ++body) {
     if (!tree_.has(body)) continue;
-    const BodyKind kind = structure_.bodies[body].kind;
+    const BodyKind kind = structure_.is_frozen(body) ? BodyKind::resting : structure_.bodies[body].kind;
     if (!is_edited_ && kind == kinds_[body] && is_still(kind)) continue;
     kinds_[body] = kind;
     place(body);

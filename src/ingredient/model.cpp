@@ -112,6 +112,7 @@ bool Model::call_off(std::uint32_t p, std::uint32_t q) {
 bool Model::is_used(std::uint32_t particle) const {
   return any_ingredient([&]<class I>() { return I::uses(*this, particle); });
 }
+bool Model::is_frozen(std::uint32_t body) const { return ingredient::Strides::is_frozen(*this, body); }
 Vec3 Model::inner_momentum(std::uint32_t body) const {
   Vec3 sum;
   for_each_ingredient([&]<class I>() { sum += I::inner_momentum(*this, body); });

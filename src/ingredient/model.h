@@ -82,6 +82,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   void acting_changed(std::uint32_t particle) override;
   bool call_off(std::uint32_t p, std::uint32_t q) override;
   bool is_used(std::uint32_t particle) const override;
+  bool is_frozen(std::uint32_t body) const override;
   Vec3 inner_momentum(std::uint32_t body) const override;
   void visit_joined(std::uint32_t particle, Visit visit) const override;
   void visit_companions(std::uint32_t particle, Visit visit) const override;

@@ -128,6 +128,13 @@ const Track* Strides::find(const Model& model, std::uint32_t ring) { return mode
 
 bool Strides::is_within(const Model& model, const Track& track) { return track.is_active(model.step); }
 
+bool Strides::is_frozen(const Model& model, std::uint32_t body) {
+  if (model.strides.is_empty() || of(model, body) != frozen) return false;
+  const std::uint32_t first = model.bodies[body].first;
+  const Track* const track = first == none ? nullptr : find(model, model.particles[first].ring);
+  return !(track && is_within(model, *track));
+}
+
 bool Strides::skips(const Model& model, std::uint32_t body) {
   if (!any(model)) return false;
   if (of(model, body) == frozen) return true;
@@ -170,13 +177,12 @@ void Strides::show(Model& model, std::uint32_t ring, std::uint32_t steps) {
     r.position = t.to, r.velocity = t.velocity_to;
     return;
   }
-  // The cubic of Hermite, and its derivative.
+  // The cubic of Hermite. Its derivative is the same as the mean of the velocities for the mid-point rule alone: the end-point
+  // rule goes the whole way with the last velocity, and the derivative would have more energy than both ends.
   const double whole = t.length * t.h, s = static_cast<double>(steps) / t.length;
-  const Vec3 way = t.to - t.from;
-  r.position = t.from + (s * s * (3 - 2 * s)) * way + (whole * s * (1 - s) * (1 - s)) * t.velocity_from -
+  r.position = t.from + (s * s * (3 - 2 * s)) * (t.to - t.from) + (whole * s * (1 - s) * (1 - s)) * t.velocity_from -
                (whole * s * s * (1 - s)) * t.velocity_to;
-  r.velocity =
-      (6 * s * (1 - s) / whole) * way + ((1 - s) * (1 - 3 * s)) * t.velocity_from + (s * (3 * s - 2)) * t.velocity_to;
+  r.velocity = (1 - s) * t.velocity_from + s * t.velocity_to;
 }
 
 void Strides::drop_forces(Model& model, std::uint32_t body) {

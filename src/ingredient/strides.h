@@ -71,6 +71,7 @@ class Strides : public NoAnswers {
   static void disturb(Model&, std::uint32_t body);
   /// The same for all bodies that were edited since the last step, and those that hands hold.
   static void disturb_edited(Model&);
+  static bool is_frozen(const Model&, std::uint32_t body);  ///< and not within a stride any more
   /// Whether a body is not solved in the next step, as it is within a stride or frozen.
   static bool skips(const Model&, std::uint32_t body);
 

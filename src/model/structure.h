@@ -418,7 +418,9 @@ class Structure {
   virtual void acting_changed(std::uint32_t particle) = 0;  ///< see `acts`
   /// Ends the closing of two particles. False if there is none.
   virtual bool call_off(std::uint32_t p, std::uint32_t q) = 0;
-  virtual bool is_used(std::uint32_t particle) const = 0;     ///< by anything except its body, ring and groups
+  virtual bool is_used(std::uint32_t particle) const = 0;  ///< by anything except its body, ring and groups
+  /// Whether steps do not move it although it could move: it is frozen.
+  virtual bool is_frozen(std::uint32_t body) const = 0;
   virtual Vec3 inner_momentum(std::uint32_t body) const = 0;  ///< angular, beside that of its points, kg m^2/s
   using Visit = FunctionRef<void(std::uint32_t)>;
   /// visit(body): of the bodies joined with the particle's body in one articulate other than by a hinge.
