@@ -244,7 +244,7 @@ class Structure {
   void mark_velocities(std::uint32_t articulate) { wake(articulate), articulates[articulate].velocity_dirty = 1; }
   /// Moves the articulates of the last two to `taken`, in the order of slots; their flags remain.
   void take_flagged(std::vector<std::uint32_t>& taken);
-  /// Those that were flagged since then, as they come; some may be destroyed, or listed twice.
+  /// Articulates that were flagged since then, as they come; some may be destroyed, or listed twice.
   std::span<const std::uint32_t> flagged() const { return flagged_; }
   /// Lists them anew by their flags, which are saved; the list is not.
   void list_flagged();

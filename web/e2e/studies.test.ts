@@ -393,6 +393,11 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([-some, 0]);
     await study.letGo();
   },
+  crowd: async (study) => {
+    await study.key("t");  // paint instead of tints
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
   fireworks: async (study) => {
     await study.does("b", "a rocket flies", ({ dynamic }) => dynamic >= 1);
     await study.tab.goOn(0.6);

@@ -9,6 +9,7 @@ from iota.world.custom import Custom, Sound
 from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
+from iota.world.levels import Level, LevelChange, Levels, Managed
 from iota.world.pages import Pages
 from iota.world.queries import Queries
 from iota.world.scene import Camera, Scene
@@ -29,6 +30,10 @@ __all__ = [
     "Drawings",
     "Event",
     "Events",
+    "Level",
+    "LevelChange",
+    "Levels",
+    "Managed",
     "Pages",
     "Queries",
     "RunSummary",
@@ -40,5 +45,5 @@ __all__ = [
     "World",
 ]
 
-explain(Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages)
+explain(Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages, Levels)
 explain(Client, Custom, Sound, Frame, Button, Checkbox, Choice, Plot, Slider, TextField)

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_termina
 from iota.world.event import Event
 from iota.world.journal import Journal
 from iota.world.keeping import Keeper
+from iota.world.levels import Levels
 from iota.world.listeners import Listener
 from iota.world.scene import Camera
 from iota.world.state import State
@@ -40,6 +42,7 @@ class Stepper:
         self.journal: Journal | None = None
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
+        self.levels: Levels | None = None
 
     @property
     def has_begun(self) -> bool:
@@ -135,11 +138,13 @@ class Stepper:
         is_shown = state.clients.is_profiled
         if not is_shown and state.step_costs.ms:
             state.step_costs.clear()
+        is_managed = self.levels is not None and self.levels.budget_ms is not None
+        take: Callable[[float], StepReport] = cast(Levels, self.levels)._step if is_managed else state.system.step
         is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
         if not is_due or not isinstance(state.system, System):
-            return state.system.step(dt)
+            return take(dt)
         with StepTimes() as times:
-            report = state.system.step(dt)
+            report = take(dt)
         if state.costs.is_detailed:
             state.costs.split("simulator", parts_of(times))
         if is_shown:

@@ -27,6 +27,7 @@ from iota.world.ground import level_below
 from iota.world.inputs import Inputs
 from iota.world.journal import Journal
 from iota.world.lan import Lan
+from iota.world.levels import Levels
 from iota.world.pages import Pages
 from iota.world.parts import forward
 from iota.world.queries import Queries
@@ -45,7 +46,7 @@ from iota.world.widgets import Plot
 Result = TypeVar("Result")
 
 HEADLESS_SECONDS = 10.0  # default
-PARTS = (Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages)
+PARTS = (Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages, Levels)
 SOLIDS = (
     "sphere",
     "box",
@@ -138,6 +139,7 @@ class World:
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
+        self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard)
         self.camera = camera
         self._runner: int | None = None
         self._background: threading.Thread | None = None
@@ -205,6 +207,11 @@ class World:
     def pages(self) -> Pages:
         """The pages that show the world."""
         return self._pages
+
+    @property
+    def levels(self) -> Levels:
+        """Complexity management: what is simulated in full, and what is not."""
+        return self._levels
 
     # --- what scripts use daily, of the parts -----------------------------------------------------------------------
 

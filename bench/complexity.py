@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What complexity management gains, and the error that is seen: the figures of docs/complexity.md.
+
+    python bench/complexity.py [gain | budget | control]
+
+Times are processor times. The error is the angle at which a viewer 10 m away sees a point beside its place in the full
+simulation from the same state, over 0.5 s.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import iota
+from iota.studies import crowd
+
+DT = 1 / 120
+DISTANCE = 10.0  # m
+PICTURE = Path(__file__).parent.parent / "docs" / "pictures" / "complexity.svg"
+WARM = 60  # steps, in full
+STRIDES = {"full": 1, "1/2": 2, "1/4": 4, "1/8": 8, "frozen": 0}
+LEVELS = ("full", "1/2", "1/4", "1/8", "stiff", "frozen")
+
+
+def kind(which: int, count: int) -> iota.World:
+    """Many things of one kind of the study."""
+    world = iota.World(iota.System(damping=0.02), ground=None)
+    made = crowd.Crowd(world, 0)
+    maker = (made.acrobat, made.ladder, made.chain)[which]
+    made.is_tinted = False
+    for number in range(count):
+        root = maker(iota.Vec3(3.0 * (number % 20), 3.4, 3.0 * (number // 20)), "#888888", number)
+        made.things.append(world.levels.manage(root.articulate))
+    return world
+
+
+def set_level(world: iota.World, name: str) -> None:
+    for thing in world.levels.things:
+        if name == "stiff":
+            thing._set_stiff(True)
+        else:
+            thing.root.articulate.stride = STRIDES[name]
+
+
+def cost(world: iota.World, steps: int = 60) -> float:
+    """Mean processor time of a step, ms."""
+    taken = []
+    for _ in range(steps):
+        began = time.process_time()
+        world.system.step(DT)
+        taken.append(1e3 * (time.process_time() - began))
+    return float(np.mean(taken))
+
+
+@dataclass
+class Row:
+    """gain: how many times less a step costs. p50, p99: error, degrees. lost, gained: energy in 0.5 s that the full simulation
+    does not lose or gain, of the kinetic energy."""
+
+    name: str
+    level: str
+    gain: float
+    p50: float
+    p99: float
+    lost: float
+    gained: float
+
+
+def gain_and_error() -> list[Row]:
+    rows: list[Row] = []
+    print("| things | level | gain | error p50, degrees | p99 | energy lost | gained |\n|---|---|---|---|---|---|---|")
+    for which, name in enumerate(("acrobats", "rope ladders", "chains")):
+        full = 0.0
+        for level in LEVELS:
+            world, twin = kind(which, 40), kind(which, 40)
+            for each in (world, twin):
+                for _ in range(WARM):
+                    each.system.step(DT)
+            before = world.system.energy
+            points = dict(zip(world.system.particles, twin.system.particles, strict=True))
+            set_level(world, level)
+            errors: list[float] = []
+            gained = 0.0
+            for _ in range(60):
+                world.system.step(DT)
+                twin.system.step(DT)
+                gap = np.array([list(p.position - q.position) for p, q in points.items() if p.alive])
+                errors.extend(np.degrees(np.arctan(np.linalg.norm(gap, axis=1) / DISTANCE)))
+                gained = max(gained, world.system.energy.total - before.total)
+            lost = (twin.system.energy.total - world.system.energy.total) / before.kinetic
+            ms = cost(world)
+            full = full or ms
+            p50, p99 = np.percentile(errors, [50, 99])
+            rows.append(Row(name, level, full / max(ms, 1e-9), float(p50), float(p99), lost, gained / before.kinetic))
+            row = rows[-1]
+            print(
+                f"| {name} | {level} | {row.gain:.2g} | {row.p50:.1e} | {row.p99:.1e} | {row.lost:.1e} | {row.gained:.1e} |",
+                flush=True,
+            )
+    return rows
+
+
+def draw(rows: list[Row]) -> None:
+    """Gain against error, both logarithmic."""
+    colors = {"acrobats": "#b5462f", "rope ladders": "#2f6c80", "chains": "#5b7f4b"}
+
+    def at(row: Row) -> tuple[float, float]:
+        x = 70 + 110 * (math.log10(max(row.p99, 1e-3)) + 3)
+        return x, 300 - 80 * math.log10(max(row.gain, 0.5))
+
+    parts = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 360" font-family="sans-serif" font-size="12">']
+    parts.append('<rect width="640" height="360" fill="white"/>')
+    for power in range(-3, 2):
+        x = 70 + 110 * (power + 3)
+        parts.append(f'<path d="M{x} 40V320" stroke="#ddd"/><text x="{x - 14}" y="336">{10.0**power:g}</text>')
+    for power in range(4):
+        y = 300 - 80 * power
+        parts.append(f'<path d="M70 {y}H610" stroke="#ddd"/><text x="36" y="{y + 4}">{10**power}</text>')
+    parts.append('<path d="M290 40V320" stroke="#888" stroke-dasharray="4"/>')
+    parts.append('<text x="200" y="354">error at 10 m after up to 0.5 s, p99, degrees</text>')
+    parts.append('<text x="10" y="30">times cheaper than full</text>')
+    for i, (name, color) in enumerate(colors.items()):
+        mine = [row for row in rows if row.name == name and row.level != "full"]
+        parts.append(f'<text x="{200 + 120 * i}" y="30" fill="{color}">{name}</text>')
+        for row in mine:
+            x, y = at(row)
+            parts.append(f'<circle cx="{x:.0f}" cy="{y:.0f}" r="4" fill="{color}"/>')
+            parts.append(f'<text x="{x + 6:.0f}" y="{y - 4:.0f}" fill="{color}">{row.level}</text>')
+    PICTURE.write_text("\n".join([*parts, "</svg>"]) + "\n")
+
+
+def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
+    """A load of `factor` budgets: percentiles of a step, and how long it takes until all is full after the load falls."""
+    world = crowd.build(count, None)
+    for _ in range(20):
+        world.step()
+    offered = cost(world)
+    limit = offered / factor
+    world.levels.budget_ms = limit
+    taken: list[float] = []
+    object.__setattr__(world.levels, "_take_ms", _noting(world.levels._take_ms, taken))
+    for _ in range(steps):
+        world.step()
+    after = np.array(taken[240:])
+    print(f"{count} things, {len(world.system.bodies)} bodies: offered {offered:.2f} ms, budget {limit:.2f} ms")
+    print(
+        "step: p50 {:.2f} p90 {:.2f} p99 {:.2f} p99.9 {:.2f} most {:.2f} of the budget".format(
+            *(np.percentile(after, [50, 90, 99, 99.9, 100]) / limit)
+        ),
+        f"management {world.levels.own_ms:.3f} ms",
+    )
+    print(world.levels)
+    world.levels.budget_ms = 20 * offered
+    steps_back = 0
+    while world.levels.counts().get("full", 0) < count and steps_back < 1000:
+        world.step()
+        steps_back += 1
+    print(f"all full after {steps_back * DT:.2f} s")
+
+
+def _noting(function: Callable[[float], None], taken: list[float]) -> Callable[[float], None]:
+    def note(ms: float) -> None:
+        taken.append(ms)
+        function(ms)
+
+    return note
+
+
+def control(count: int = 10_000) -> None:
+    """What management takes of a step."""
+    system = iota.System()
+    world = iota.World(system, ground=None)
+    for number in range(count):
+        rod = system.body()
+        at = iota.Vec3(number % 100, 0, number // 100)
+        rod.particle(at).nail()
+        rod.particle(at + (0.5, 0, 0))
+    world.levels.viewers = lambda: [(50.0, 0.0, 50.0)]
+    world.levels.budget_ms = 8.0
+    for _ in range(100):
+        world.step()
+    planned: list[float] = []
+    plan = world.levels._plan
+
+    def timed() -> None:
+        began = time.perf_counter()
+        plan()
+        planned.append(1e3 * (time.perf_counter() - began))
+
+    object.__setattr__(world.levels, "_plan", timed)
+    for _ in range(600):
+        world.step()
+    planned = planned[300:]
+    print(
+        f"{count} articulates: {np.median(planned):.3f} ms, p90 {np.percentile(planned, 90):.3f} ms of 8 ms; {world.levels}"
+    )
+
+
+def main() -> None:
+    wanted = sys.argv[1] if len(sys.argv) > 1 else "gain"
+    if wanted == "gain":
+        draw(gain_and_error())
+    elif wanted == "budget":
+        budget(*map(int, sys.argv[2:3]))
+    elif wanted == "control":
+        control()
+
+
+if __name__ == "__main__":
+    main()

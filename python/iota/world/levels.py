@@ -1,0 +1,643 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Complexity management: a step that takes a given time, whatever the world holds; richest where people look and touch."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iota._core import Articulate, Body, Particle, StepReport, System, Vec3
+from iota.arguments import SHORT, is_number
+from iota.errors import StaleIdError
+from iota.world.callbacks import Guard
+from iota.world.clients import Clients
+from iota.world.parts import Part
+from iota.world.scene import Scene
+
+Floats = NDArray[np.float64]
+Place = Sequence[float] | Vec3
+
+SLICES = (8, 64)  # steps in which each thing is looked at once: with few and with many things
+PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
+NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
+HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
+AIM, FULL, LOW = 0.65, 0.75, 0.5  # of the budget: aimed at, begin to reduce, begin to restore
+URGENT = 1.5  # times the budget
+MOST, MOST_URGENT = 16, 128  # changes in a step
+SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
+IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
+JUMP = 2.0  # m in a step: then all things are looked at
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level of a thing. name: for reports. stride: see `Body.stride`. is_stiff: its bodies are one. quality: from 1, as good as
+    full, to 0. share: of the full cost, as far as is known before it is tried. enter, leave: functions of the script for a
+    level of its own, called with the thing."""
+
+    name: str
+    stride: int = 1
+    is_stiff: bool = False
+    quality: float = 1.0
+    share: float = 1.0
+    enter: Callable[[Managed], None] | None = None
+    leave: Callable[[Managed], None] | None = None
+
+
+FULL_LEVEL = Level("full")
+HALF, QUARTER, EIGHTH = (Level(f"1/{n}", n, quality=q, share=1 / n) for n, q in ((2, 0.97), (4, 0.92), (8, 0.85)))
+STIFF = Level("stiff", is_stiff=True, quality=0.4, share=0.15)
+FROZEN = Level("frozen", 0, quality=0.05, share=0.0)
+STANDARD = (FULL_LEVEL, HALF, QUARTER, EIGHTH, STIFF, FROZEN)
+BY_NAME = {level.name: level for level in STANDARD}
+
+
+@dataclass(frozen=True)
+class LevelChange:
+    """A change of the level of a thing. ms: what it was expected to save a step; negative: to cost. reason: why."""
+
+    time: float
+    thing: str
+    before: str
+    after: str
+    significance: float
+    ms: float
+    reason: str
+
+
+@dataclass(eq=False)
+class Managed:
+    """A thing whose level is managed: see `Levels.manage`."""
+
+    name: str
+    root: Body
+    levels: tuple[Level, ...]
+    size: float
+    significance: Callable[[Managed], float] | None = None
+    on_level: Callable[[Managed, Level], None] | None = None
+    is_pinned: bool = False
+    index: int = field(default=0, repr=False)
+    _lines: list[tuple[Particle, Particle]] = field(default_factory=list, repr=False)  # that it lacks as one body
+
+    @property
+    def level(self) -> Level:
+        """Its present level."""
+        return self.levels[self.index]
+
+    @property
+    def bodies(self) -> list[Body]:
+        """Its bodies, of which there is one while it is stiff. Those of a thing that was stiff are others than before,
+        but for the first one."""
+        return self.root.articulate.bodies
+
+    def _set_stiff(self, stiff: bool) -> None:
+        if stiff:
+            for p, q in self._lines:
+                if p.alive and q.alive and p.body == q.body:
+                    self.root.system.cosmetic_bond(p, q)
+            self._lines = []
+            for body in self.bodies:
+                if body != self.root:
+                    self.root.combine(body)
+        else:
+            for part in self.root.parts[1:]:
+                part.separate()
+
+
+class Levels(Part):
+    """Manages complexity: `world.levels.budget_ms` is the processor time that a step may take; what matters least is simulated less,
+    until it does. Without a budget it does nothing and costs nothing.
+
+        world.levels.budget_ms = 4
+        world.levels.viewers = lambda: [walker.position]
+        world.levels.pin(cradle)
+
+    What is held, pinned or within `reach` of a viewer is full, always. Each change of a level is an edit of the system, so
+    that recordings, replays and snapshots have it; the clock decides about changes between steps, never inside one.
+    """
+
+    def __init__(self, system: System, scene: Scene, clients: Clients, guard: Guard) -> None:
+        self._system, self._scene, self._clients, self._guard = system, scene, clients, guard
+        self._budget: float | None = None
+        self._viewers: Callable[[], Iterable[Place]] | None = None
+        self._reach = 3.0
+        self._things: list[Managed] = []
+        self._arrays = _Arrays(system)
+        self._is_old = False
+        self._manages_all = False
+        self._steps = 0
+        self._expected_step: int | None = None
+        self._ms = self._own_ms = self._ms_of_work = 0.0
+        self._latest_ms: tuple[float, ...] = ()
+        self._seen: Floats = np.zeros((0, 3))
+        self._changes: deque[LevelChange] = deque(maxlen=1000)
+
+    # --- for scripts ------------------------------------------------------------------------------------------------
+
+    @property
+    def budget_ms(self) -> float | None:
+        """Processor time that a step may take, ms; None: all is full. Without a call of `manage`, all articulates are
+        managed. Raises ValueError for numbers that are not above 0."""
+        return self._budget
+
+    @budget_ms.setter
+    def budget_ms(self, value: float | None) -> None:
+        if value is None:
+            if self._budget is not None:
+                self.off()
+            return
+        if not is_number(value):
+            raise TypeError(f"budget_ms must be a number of ms or None, not {SHORT.repr(value)}")
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"budget_ms must be above 0, got {value:g}; None turns management off")
+        if not isinstance(self._system, System):
+            raise TypeError("complexity management needs a System; this world has a simulator of its own")
+        self._budget = float(value)
+
+    @property
+    def reach(self) -> float:
+        """Distance from a viewer within which all is full, m."""
+        return self._reach
+
+    @reach.setter
+    def reach(self, value: float) -> None:
+        if not (is_number(value) and math.isfinite(value) and value >= 0):
+            raise ValueError(f"reach must be a length of 0 or more, m, not {SHORT.repr(value)}")
+        self._reach = float(value)
+
+    @property
+    def viewers(self) -> Callable[[], Iterable[Place]] | None:
+        """The places of eyes: a function that returns them, m. None: the cameras that the script gave to clients and world.
+        What matters to one of them matters."""
+        return self._viewers
+
+    @viewers.setter
+    def viewers(self, value: Callable[[], Iterable[Place]] | None) -> None:
+        if not (value is None or callable(value)):
+            raise TypeError(f"viewers must be a function that returns places, not {SHORT.repr(value)}")
+        self._viewers = value
+
+    def manage(
+        self,
+        thing: Body | Articulate | Iterable[Body],
+        levels: Sequence[str | Level] | None = None,
+        significance: Callable[[Managed], float] | None = None,
+        on_level: Callable[[Managed, Level], None] | None = None,
+        name: str = "",
+    ) -> Managed:
+        """Manages a thing: one articulate. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
+        "1/8", "stiff", "frozen") or `Level`s of one's own; None: all that it can have. significance: a function that returns a
+        number, instead of visual angle times speed (rad^2/s) for the most interested viewer. on_level: is told each change.
+
+            world.levels.manage(tower, levels=["full", "1/4", "frozen"])
+
+        Raises ValueError for unknown levels, for "stiff" of a thing with joints, which would end, and of one body.
+        """
+        bodies = [thing] if isinstance(thing, Body) else list(thing)
+        if not bodies or not all(isinstance(body, Body) for body in bodies):
+            raise TypeError(f"manage takes a body, an articulate or bodies, not {SHORT.repr(thing)}")
+        root = bodies[0]
+        members = root.articulate.bodies
+        others = [body for body in bodies if body not in members]
+        if others:
+            raise ValueError(
+                f"a managed thing is one articulate; {others[0]!r} is not hinged to {root!r}: manage it by itself"
+            )
+        if any(each.root.articulate == root.articulate for each in self._things if each.root.alive):
+            raise ValueError(f"the articulate of {root!r} is managed already")
+        can_be_stiff = len(members) > 1 and not self._has_joints(members)
+        chosen = None if levels is None else self._levels(levels, can_be_stiff)
+        made = self._add(root, members, can_be_stiff, name)
+        made.levels = chosen or made.levels
+        made.significance, made.on_level = significance, on_level
+        return made
+
+    def pin(self, thing: Body | Articulate | Managed) -> None:
+        """A thing that is never reduced."""
+        managed = thing if isinstance(thing, Managed) else self._find(thing)
+        if managed is None:
+            managed = self.manage(thing)  # type: ignore[arg-type]
+        managed.is_pinned = True
+        if managed.index:
+            self._change(managed, 0, 0.0, 0.0, "pinned")
+        self._is_old = True
+
+    def off(self) -> None:
+        """All is full again, and stays so."""
+        self._budget = None
+        for thing in self._things:
+            if thing.index and thing.root.alive:
+                self._change(thing, 0, 0.0, 0.0, "off")
+        self._things.clear()
+        self._manages_all = False
+        self._is_old = True
+
+    @property
+    def things(self) -> list[Managed]:
+        """All things that are managed."""
+        return list(self._things)
+
+    @property
+    def ms(self) -> float:
+        """Processor time of a step, smoothed, ms."""
+        return self._ms
+
+    @property
+    def own_ms(self) -> float:
+        """Processor time that management itself takes of it, ms."""
+        return self._own_ms
+
+    @property
+    def changes(self) -> list[LevelChange]:
+        """The latest 1000 changes."""
+        return list(self._changes)
+
+    def counts(self) -> dict[str, int]:
+        """How many things are at each level, by its name."""
+        found: dict[str, int] = {}
+        for thing in self._things:
+            found[thing.level.name] = found.get(thing.level.name, 0) + 1
+        return found
+
+    def __str__(self) -> str:
+        """A budget bar, and what was reduced: "[######....] 2.4 of 4 ms: 12 full, 30 1/8, 5 frozen"."""
+        if self._budget is None:
+            return "no budget: all is full"
+        filled = min(10, round(10 * self._ms / self._budget))
+        counts = ", ".join(f"{count} {name}" for name, count in self.counts().items())
+        return f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:g} ms: {counts}"
+
+    # --- the loop ---------------------------------------------------------------------------------------------------
+
+    def _step(self, dt: float) -> StepReport:
+        """A step of the system, within the budget."""
+        began = time.process_time()
+        try:
+            self._plan()
+        except StaleIdError:  # destroyed by the script since the last step
+            self._forget_dead()
+        planned = time.process_time()
+        try:
+            return self._system.step(dt)
+        finally:
+            ended = time.process_time()
+            self._expected_step = self._system.step_count
+            self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
+            self._take_ms(1e3 * (ended - planned))
+
+    def _take_ms(self, ms: float) -> None:
+        """The median of three: a single step that another process has held up is no load."""
+        self._latest_ms = (*self._latest_ms[-2:], ms)
+        ms = sorted(self._latest_ms)[len(self._latest_ms) // 2]
+        self._ms = ms if self._ms == 0 else self._ms + SMOOTH * (ms - self._ms)
+        work = self._arrays.load.sum()
+        if work > 0:
+            now = ms / work
+            self._ms_of_work = now if self._ms_of_work == 0 else self._ms_of_work + SLOW * (now - self._ms_of_work)
+
+    def _plan(self) -> None:
+        assert self._budget is not None
+        if self._expected_step != self._system.step_count and self._expected_step is not None:
+            self._resync()
+        if not self._things and not self._manages_all:
+            self._manage_all()
+        if self._is_old:
+            self._things = [thing for thing in self._things if thing.root.alive]
+            self._arrays.build(self._things)
+            self._is_old = False
+        if not self._things:
+            return
+        seen = self._eyes()
+        jumped = seen.shape != self._seen.shape or (len(seen) and np.abs(seen - self._seen).max() > JUMP)
+        self._seen = seen
+        self._steps += 1
+        arrays = self._arrays
+        for part in range(arrays.slices) if jumped or self._steps == 1 else (self._steps % arrays.slices,):
+            rows = slice(part, None, arrays.slices)
+            arrays.look(rows, part, seen, self._reach)
+            for near in np.nonzero(arrays.near[rows] & (arrays.level[rows] > 0))[0]:
+                self._change(self._things[part + arrays.slices * int(near)], 0, 1.0, 0.0, "in reach")
+        self._free_held()
+        self._follow_engine()
+        for row, thing in arrays.own:
+            if row % arrays.slices == self._steps % arrays.slices:
+                self._ask(row, thing)
+        if self._ms > URGENT * self._budget or self._steps % (1 + len(self._things) // PER_DECISION) == 0:
+            self._decide()
+
+    def _decide(self) -> None:
+        assert self._budget is not None
+        arrays, budget = self._arrays, self._budget
+        is_urgent = self._ms > URGENT * budget
+        waited = self._steps - arrays.changed
+        if self._ms > FULL * budget:
+            hold = HOLD_URGENT if is_urgent else HOLD
+            free = (waited >= hold) & ~arrays.near & ~arrays.pinned & (arrays.level < arrays.last)
+            self._reduce(
+                np.nonzero(free)[0],
+                self._ms - AIM * budget,
+                max(MOST_URGENT if is_urgent else MOST, len(self._things) // 40),
+            )
+        elif self._ms < LOW * budget:
+            free = (waited >= HOLD) & (arrays.level > 0)
+            self._restore(np.nonzero(free)[0], AIM * budget - self._ms)
+
+    def _reduce(self, rows: NDArray[np.intp], need: float, most: int) -> None:
+        """The least loss of significance for each saved millisecond first."""
+        arrays = self._arrays
+        if not len(rows):
+            return
+        target = arrays.next_level(rows)
+        here, there = arrays.share_now(rows), arrays.shares[rows, target]
+        saved = self._ms_of_work * arrays.full_load[rows] * np.maximum(here - there, 0.0)
+        lost = arrays.significance[rows] * (arrays.qualities[rows, arrays.level[rows]] - arrays.qualities[rows, target])
+        worth = saved > 1e-6 * need
+        rows, target, saved, lost = rows[worth], target[worth], saved[worth], lost[worth]
+        order = np.argsort((lost + 1e-12) / saved, kind="stable")[:most]
+        sums = np.cumsum(saved[order])
+        for i, done in zip(order, sums - saved[order], strict=True):
+            if done >= need:
+                break
+            self._change(
+                self._things[rows[i]],
+                int(target[i]),
+                float(arrays.significance[rows[i]]),
+                float(saved[i]),
+                "over budget",
+            )
+            self._ms -= float(saved[i])
+
+    def _restore(self, rows: NDArray[np.intp], room: float) -> None:
+        """The most significance for each millisecond first."""
+        arrays = self._arrays
+        if not len(rows):
+            return
+        unit = self._ms_of_work * arrays.full_load[rows]
+        here, quality = arrays.share_now(rows), arrays.qualities[rows, arrays.level[rows]]
+        gain = arrays.significance[rows] * (1 - quality)
+        order = np.argsort(-(gain + 1e-12) / (unit * np.maximum(1 - here, 0.0) + 1e-9), kind="stable")
+        for i in order[: max(MOST, len(self._things) // 60)]:
+            row = int(rows[i])
+            costs = unit[i] * np.maximum(arrays.shares[row, : arrays.level[row]] - here[i], 0.0)
+            fitting = np.nonzero(costs <= room)[0]
+            if not len(fitting):
+                break
+            cost = float(costs[fitting[0]])
+            room -= cost
+            self._change(self._things[row], int(fitting[0]), float(arrays.significance[row]), -cost, "time is left")
+            self._ms += cost
+
+    def _change(self, thing: Managed, index: int, significance: float, ms: float, reason: str) -> None:
+        """One or several levels up or down; what fails stays at its level and is not managed any more."""
+        if not thing.root.alive:
+            self._is_old = True
+            return
+        before, after = thing.level, thing.levels[index]
+
+        def change() -> None:
+            if before.leave is not None:
+                before.leave(thing)
+            was_stiff = len(thing.root.parts) > 1
+            if after.is_stiff or (after.name == "frozen" and before.is_stiff):
+                if not was_stiff:
+                    thing._set_stiff(True)
+            elif before.is_stiff or (was_stiff and after.name == "full"):
+                thing._set_stiff(False)
+            thing.root.articulate.stride = after.stride
+            if after.enter is not None:
+                after.enter(thing)
+            if thing.on_level is not None:
+                thing.on_level(thing, after)
+
+        thing.index = index
+        is_own = before.leave is not None or after.enter is not None or thing.on_level is not None
+        if not is_own:
+            change()
+        elif not self._guard.call(f"The level {after.name!r} of {thing.name}", change):
+            thing.is_pinned = True
+            self._is_old = True
+        self._arrays.note(thing, self._steps)
+        self._changes.append(
+            LevelChange(self._system.time, thing.name, before.name, after.name, significance, ms, reason)
+        )
+
+    # --- things -----------------------------------------------------------------------------------------------------
+
+    def _manage_all(self) -> None:
+        self._manages_all = True
+        jointed = self._jointed()
+        for articulate in self._system.articulates:
+            members = articulate.bodies
+            moving = [body for body in members if body.kind in ("dynamic", "resting")]
+            if moving and not moving[0].is_spark and any(len(body.particles) > 1 for body in moving):
+                can_be_stiff = len(members) > 1 and not any(body in jointed for body in members)
+                self._add(moving[0], members, can_be_stiff, "")
+
+    def _add(self, root: Body, members: list[Body], can_be_stiff: bool, name: str) -> Managed:
+        places = np.array([list(p.position) for body in members for p in body.particles] or [[0.0, 0.0, 0.0]])
+        size = float(np.linalg.norm(np.ptp(places, axis=0))) + max(body.radius for body in members)
+        stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
+        levels = tuple(stiff if level is STIFF else level for level in STANDARD if can_be_stiff or level is not STIFF)
+        lines: list[tuple[Particle, Particle]] = []
+        if can_be_stiff:  # as they are drawn now
+            lined = {p.body for p, _ in self._system.cosmetic_lines}
+            plain = [body for body in members if not body.solids and body not in lined]
+            lines = [pair for body in plain for pair in pairwise(body.particles)]
+        made = Managed(
+            name or root.name or f"the articulate of body {root.slot}", root, levels, max(size, 1e-6), _lines=lines
+        )
+        self._things.append(made)
+        self._is_old = True
+        return made
+
+    def _levels(self, given: Sequence[str | Level], can_be_stiff: bool) -> tuple[Level, ...]:
+        levels = []
+        for level in given:
+            if isinstance(level, str) and level not in BY_NAME:
+                raise ValueError(
+                    f"no level is called {level!r}; there are {', '.join(map(repr, BY_NAME))}, or a Level of one's own"
+                )
+            levels.append(BY_NAME[level] if isinstance(level, str) else level)
+        if not levels or levels[0].name != "full":
+            raise ValueError("levels begin with 'full'")
+        if any(level.is_stiff for level in levels) and not can_be_stiff:
+            raise ValueError(
+                "a thing can be stiff if it has several bodies, held together by hinges alone: joints would end when its bodies become one"
+            )
+        return tuple(levels)
+
+    def _jointed(self) -> set[Body]:
+        """Bodies that joints, bonds and angle springs refer to."""
+        system = self._system
+        found = {body for joint in system.constraints for body in (joint.a, joint.b) if body is not None}
+        found |= {end.body for spring in system.angle_springs for end in spring.ends}
+        return found | {end.body for bond in system.bonds for end in bond.ends}
+
+    def _has_joints(self, members: list[Body]) -> bool:
+        jointed = self._jointed()
+        return any(body in jointed for body in members)
+
+    def _find(self, thing: Body | Articulate) -> Managed | None:
+        body = thing if isinstance(thing, Body) else thing.bodies[0]
+        return next(
+            (each for each in self._things if each.root.alive and each.root.articulate == body.articulate), None
+        )
+
+    def _eyes(self) -> Floats:
+        if self._viewers is not None:
+            found = [list(map(float, place)) for place in self._viewers()]
+        else:
+            cameras = [client.camera for client in self._clients.by_id.values()] + [self._scene.camera]
+            found = [list(map(float, camera.position)) for camera in cameras if camera is not None]
+        places = np.array(found, dtype=float).reshape(-1, 3)
+        finite: Floats = places[np.isfinite(places).all(axis=1)]
+        return finite
+
+    def _free_held(self) -> None:
+        for hold in self._clients.holds():
+            body = hold.body
+            thing = self._find(body) if body is not None else None
+            if thing is not None and thing.index:
+                self._change(thing, 0, 1.0, 0.0, "held")
+
+    def _follow_engine(self) -> None:
+        """A thing that an edit, a force or something full has touched takes every step."""
+        slices = self._arrays.slices
+        part = self._steps % slices
+        for i in np.nonzero(self._arrays.runs[part::slices])[0]:
+            thing = self._things[part + slices * int(i)]
+            if thing.index and thing.root.stride != thing.level.stride:
+                self._change(thing, 0, 1.0, 0.0, "touched")
+
+    def _ask(self, row: int, thing: Managed) -> None:
+        def ask() -> None:
+            assert thing.significance is not None
+            value = float(thing.significance(thing))
+            if not math.isfinite(value) or value < 0:
+                raise ValueError(f"significance must be 0 or more, got {value}")
+            self._arrays.significance[row] = value
+
+        if not self._guard.call(f"The significance of {thing.name}", ask, hint="Visual angle and speed count instead."):
+            thing.significance = None
+            self._is_old = True
+
+    def _forget_dead(self) -> None:
+        self._is_old = True
+
+    def _resync(self) -> None:
+        """The system was restored or undone: its bodies tell their levels."""
+        for thing in self._things:
+            if not thing.root.alive:
+                continue
+            stride, is_stiff = thing.root.stride, len(thing.root.parts) > 1
+            fitting = [
+                i
+                for i, level in enumerate(thing.levels)
+                if level.enter is None and level.stride == stride and (level.is_stiff == is_stiff or stride == 0)
+            ]
+            thing.index = fitting[0] if fitting else 0
+        self._is_old = True
+
+
+class _Arrays:
+    """The numbers that decisions are made of, with a row for each thing."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._row: dict[int, int] = {}
+        self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
+        self.changed = np.zeros(0, dtype=int)
+        self.build([])
+
+    def build(self, things: list[Managed]) -> None:
+        before = [
+            (key, row, self.significance, self.load, self.full_load, self.changed) for key, row in self._row.items()
+        ]
+        count, width = len(things), max((len(thing.levels) for thing in things), default=1)
+        self.slices = min(max(SLICES[0], count // PER_SLICE), SLICES[1])
+        self._row = {id(thing): row for row, thing in enumerate(things)}
+        self.own = [(row, thing) for row, thing in enumerate(things) if thing.significance is not None]
+        self._asked = np.array([thing.significance is not None for thing in things], dtype=bool)
+        self.level = np.array([thing.index for thing in things], dtype=int)
+        self.last = np.array([len(thing.levels) - 1 for thing in things], dtype=int)
+        self.pinned = np.array([thing.is_pinned for thing in things], dtype=bool)
+        self.size = np.array([thing.size for thing in things], dtype=float)
+        self.qualities, self.shares = np.zeros((count, width)), np.zeros((count, width))
+        self.strides = np.ones((count, width), dtype=int)
+        for row, thing in enumerate(things):
+            for i, level in enumerate(thing.levels):
+                self.qualities[row, i], self.shares[row, i], self.strides[row, i] = (
+                    level.quality,
+                    level.share,
+                    level.stride,
+                )
+        self.near = np.zeros(count, dtype=bool)
+        self.significance, self.load, self.full_load = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.changed = np.full(count, -HOLD, dtype=int)
+        for key, former, significance, load, full_load, changed in before:
+            row = self._row.get(key, -1)
+            if row >= 0:
+                self.significance[row], self.load[row] = significance[former], load[former]
+                self.full_load[row], self.changed[row] = full_load[former], changed[former]
+        self._roots = [
+            self._system.array([thing.root for thing in things[part :: self.slices]]) if part < count else None
+            for part in range(self.slices)
+        ]
+        self._things = things
+
+    def note(self, thing: Managed, step: int) -> None:
+        row = self._row.get(id(thing))
+        if row is not None:
+            self.level[row], self.changed[row] = thing.index, step
+            self.load[row] = self.full_load[row] * self.shares[row, thing.index]
+            self.touches[row] = self.runs[row] = False
+
+    def look(self, rows: slice, part: int, eyes: Floats, reach: float) -> None:
+        """Reads some things, and what they mean to the viewers."""
+        roots = self._roots[part]
+        if roots is None:
+            return
+        places, speeds = roots.positions, np.linalg.norm(roots.velocities, axis=1)
+        work, steps = roots.work.T
+        size = self.size[rows]
+        load = np.where(steps > 0, work / np.maximum(steps, 1), 0.0)
+        self.load[rows] = load
+        level = self.level[rows]
+        at_full = (level == 0) & (load > 0)
+        full = self.full_load[rows]
+        self.full_load[rows] = np.where(at_full, np.where(full > 0, full + 0.3 * (load - full), load), full)
+        stride = np.take_along_axis(self.strides[rows], level[:, None], axis=1)[:, 0]
+        self.touches[rows] = (stride > 1) & (steps == 1)
+        self.runs[rows] = (stride != 1) & (steps == 1)
+        if len(eyes):
+            distance = np.linalg.norm(places[:, None, :] - eyes[None, :, :], axis=2).min(axis=1)
+            distance = np.maximum(distance - 0.5 * size, 1e-3)
+            seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
+            self.near[rows] = distance <= NEAR * reach
+        else:
+            seen = speeds + IDLE
+            self.near[rows] = False
+        self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen)
+
+    def share_now(self, rows: NDArray[np.intp]) -> Floats:
+        """The share of the full cost at the present level; strides save nothing for what touches something."""
+        expected = self.shares[rows, self.level[rows]]
+        result: Floats = np.where(self.touches[rows], 1.0, expected)
+        return result
+
+    def next_level(self, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+        """The next one that is expected to cost less; the present one if there is none."""
+        index = np.arange(self.shares.shape[1])
+        shares = np.where(self.touches[rows, None] & (self.strides[rows] > 1), 1.0, self.shares[rows])
+        is_less = (index > self.level[rows, None]) & (index <= self.last[rows, None])
+        is_less &= shares < 0.9 * self.share_now(rows)[:, None]
+        target: NDArray[np.intp] = np.where(is_less.any(axis=1), is_less.argmax(axis=1), self.level[rows])
+        return target

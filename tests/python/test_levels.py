@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Complexity management: what matters least is simulated less until a step takes its budget. Judged by places and energies."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+import iota
+from iota.world import levels
+from iota.world.levels import Level, Managed
+
+PLENTY, LITTLE = 1e4, 1e-6  # ms
+FAR = 200.0  # m
+
+
+@pytest.fixture
+def made() -> Iterator[tuple[iota.World, list[iota.Body]]]:
+    """Chains that swing, each farther away than the one before."""
+    world = iota.World(iota.System(), ground=None)
+    roots = [chain(world.system, (0, 0, -20.0 * number)) for number in range(6)]
+    world.levels.viewers = lambda: [(0, 0, 2)]
+    yield world, roots
+
+
+def chain(system: iota.System, at: tuple[float, float, float], links: int = 5) -> iota.Body:
+    made: list[iota.Body] = []
+    for k in range(links):
+        link = system.body()
+        upper = link.particle(iota.Vec3(*at) + (0.3 * k, 0, 0))
+        link.particle(iota.Vec3(*at) + (0.3 * (k + 1), 0, 0))
+        if made:
+            made[-1].particles[1].combine(upper)
+        else:
+            upper.nail()
+        made.append(link)
+    return made[0]
+
+
+def run(world: iota.World, steps: int) -> None:
+    for _ in range(steps):
+        world.step()
+
+
+def test_without_a_budget_nothing_changes(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    run(world, 20)
+    assert [root.stride for root in roots] == [1] * 6
+    assert world.levels.things == [] and str(world.levels) == "no budget: all is full"
+
+
+def test_a_budget_that_is_too_small_reduces_all_but_what_is_in_reach(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 120)
+    assert roots[0].stride == 1, "2 m from the viewer"
+    assert [root.stride for root in roots[1:]] == [0] * 5
+    assert world.levels.counts() == {"full": 1, "frozen": 5}
+    assert {change.reason for change in world.levels.changes} == {"over budget"}
+    assert "frozen" in str(world.levels)
+    assert world.system.validate() == []
+
+
+def test_all_is_full_again_within_a_second_after_the_load_falls(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 120)
+    world.levels.budget_ms = PLENTY
+    run(world, 120)
+    assert world.levels.counts() == {"full": 6}
+    assert all(len(root.articulate.bodies) == 5 for root in roots), "what was stiff came apart"
+
+
+def test_a_viewer_who_comes_finds_all_in_full(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    place = [0.0, 0.0, 2.0]
+    world.levels.viewers = lambda: [place]
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    for number in (5, 3, 1):  # teleports
+        place[2] = -20.0 * number + 2
+        world.step()
+        assert roots[number].stride == 1 and len(roots[number].articulate.bodies) == 5
+        run(world, 60)
+        assert roots[number].stride == 1
+
+
+def test_two_viewers_count_as_the_nearer_one(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.viewers = lambda: [(0, 0, 2), (0, 0, -102)]
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    assert roots[0].stride == roots[5].stride == 1 and roots[2].stride == 0
+
+
+def test_what_is_pinned_or_has_a_significance_of_its_own_is_kept(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    system = world.system
+    told: list[str] = []
+    for number, root in enumerate(roots[:5]):
+        world.levels.manage(
+            root.articulate,
+            significance=lambda thing, number=number: 100.0 * number,
+            on_level=lambda thing, level: told.append(level.name),
+        )
+    world.levels.pin(roots[5])
+    world.levels.viewers = lambda: [(FAR, FAR, FAR)]
+    run(world, 1)
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert roots[5].stride == 1
+    assert "frozen" in told
+    assert system.validate() == []
+
+
+def test_an_edit_makes_full_at_once(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    roots[3].articulate.bodies[-1].velocity = (0, 0, 1)
+    world.system.step(world.dt)
+    assert roots[3].stride == 1
+
+
+def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    root = chain(system, (0, 0, 0))
+    root.particles[0].release()
+    root.articulate.bodies[-1].velocity = (0, 2, 1)
+    system.step(0.01)
+    thing = Managed("chain", root, levels.STANDARD, 1.5)
+    energy, momentum, spin = system.energy.kinetic, system.momentum, system.angular_momentum
+    places = [list(p.position) for body in thing.bodies for p in body.particles]
+    thing._set_stiff(True)
+    assert len(thing.bodies) == 1
+    assert energy >= system.energy.kinetic > 0.1 * energy
+    stiff = system.energy.kinetic
+    thing._set_stiff(False)
+    assert len(thing.bodies) == 5 and len(thing.root.articulate.bodies) == 5
+    assert system.energy.kinetic == pytest.approx(stiff, rel=1e-9)
+    assert abs(system.momentum - momentum) < 1e-12 and abs(system.angular_momentum - spin) < 1e-12
+    after = np.array([list(p.position) for body in thing.bodies for p in body.particles])
+    nearest = np.linalg.norm(after[:, None] - np.array(places)[None], axis=2).min(axis=1)
+    assert len(after) == len(places) and nearest.max() < 1e-7, "a straight chain is a line"
+    assert system.validate() == []
+
+
+def test_a_level_of_ones_own_is_entered_and_left(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    calls: list[str] = []
+    far = Level(
+        "far",
+        quality=0.5,
+        share=0.1,
+        enter=lambda thing: calls.append("enter"),
+        leave=lambda thing: calls.append("leave"),
+    )
+    world.levels.manage(roots[4].articulate, levels=["full", far])
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    world.levels.budget_ms = PLENTY
+    run(world, 100)
+    assert calls == ["enter", "leave"]
+
+
+def test_a_level_whose_function_raises_is_told_and_not_tried_again(
+    made: tuple[iota.World, list[iota.Body]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    world, roots = made
+
+    def fail(thing: Managed) -> None:
+        raise RuntimeError("no such model")
+
+    thing = world.levels.manage(roots[4].articulate, levels=["full", Level("far", share=0.1, quality=0.5, enter=fail)])
+    world.levels.budget_ms = LITTLE
+    run(world, 80)
+    assert thing.is_pinned
+    assert capsys.readouterr().err.count("RuntimeError: no such model") == 1
+
+
+@pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf")])
+def test_a_budget_is_above_zero(value: float) -> None:
+    world = iota.World(iota.System())
+    with pytest.raises(ValueError, match="budget_ms must be above 0"):
+        world.levels.budget_ms = value
+    with pytest.raises(ValueError, match="reach must be"):
+        world.levels.reach = -1
+
+
+def test_wrong_levels_are_refused(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    manage = world.levels.manage
+    with pytest.raises(ValueError, match="no level is called 'half'"):
+        manage(roots[0], levels=["full", "half"])
+    with pytest.raises(ValueError, match="levels begin with 'full'"):
+        manage(roots[1], levels=["1/2"])
+    with pytest.raises(ValueError, match="one articulate"):
+        manage([roots[2], roots[3]])
+    with pytest.raises(TypeError, match="manage takes"):
+        manage([])
+    manage(roots[0])
+    with pytest.raises(ValueError, match="is managed already"):
+        manage(roots[0])
+    system = world.system
+    door = system.body(shape=iota.Box((1, 1, 1)), position=(0, 50, 0))
+    frame = system.body(shape=iota.Box((1, 1, 1)), position=(2, 50, 0))
+    system.revolute(door, frame, at=(1, 50, 0), axis=(0, 1, 0))
+    with pytest.raises(ValueError, match="joints would end"):
+        manage([door], levels=["full", "stiff"])
+
+
+def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    world.levels.off()
+    assert [root.stride for root in roots] == [1] * 6 and world.levels.things == []
+    run(world, 5)
+    assert world.system.validate() == []
+
+
+def test_a_reset_finds_the_levels_of_the_start(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    world.levels.budget_ms = PLENTY
+    world.reset()
+    run(world, 3)
+    assert world.levels.counts() == {"full": 6} and [root.stride for root in roots] == [1] * 6
+
+
+def test_what_is_replayed_has_the_same_bits() -> None:
+    world = iota.World(iota.System(), ground=None)
+    for number in range(4):
+        chain(world.system, (0, 0, -20.0 * number))
+    world.levels.viewers = lambda: [(0, 0, 2)]
+    world.system.start_recording()
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    world.levels.budget_ms = PLENTY
+    run(world, 60)
+    recording = world.system.stop_recording()
+    assert iota.System().replay(recording) is None
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_scenes_budgets_and_viewers_keep_the_promises(seed: int) -> None:
+    dice = random.Random(seed)
+    system = iota.System()
+    world = iota.World(system, ground=None)
+    roots = [
+        chain(system, tuple(dice.uniform(-30, 30) for _ in range(3)), dice.randint(2, 6))
+        for _ in range(dice.randint(2, 8))
+    ]
+    place = [0.0, 0.0, 0.0]
+    world.levels.viewers = lambda: [tuple(place), (dice.uniform(-9, 9), 0, 0)]
+    start = system.energy.total
+    edits = 0
+    for step in range(120):
+        if step % 10 == 0:
+            world.levels.budget_ms = 10 ** dice.uniform(-5, 1)
+            place[:] = [dice.uniform(-30, 30) for _ in range(3)]
+        choice = dice.random()
+        alive = [root for root in roots if root.alive]
+        if choice < 0.02 and len(alive) > 1:
+            dice.choice(alive).destroy()
+            edits += 1
+        elif choice < 0.04:
+            grip = system.grip(dice.choice(alive), (0, 0, 0), tuple(place))
+            world.step()
+            grip.destroy()
+            edits += 1
+        report = world.step()
+        assert report is not None and report.unconverged == 0
+        assert abs(system.energy.balance) < 1e-6 * max(1.0, system.energy.kinetic)
+        assert edits or system.energy.total <= start + 1e-4 * max(1.0, system.energy.kinetic)
+    assert system.validate() == []
