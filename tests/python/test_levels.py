@@ -224,6 +224,15 @@ def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:
     assert world.system.validate() == []
 
 
+def test_the_costs_have_a_row_for_management(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, _ = made
+    run(world, 3)
+    assert "levels" not in world.clock.costs
+    world.levels.budget_ms = LITTLE
+    run(world, 3)
+    assert 0 < world.clock.costs["levels"] < 1
+
+
 def test_a_reset_finds_the_levels_of_the_start(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE

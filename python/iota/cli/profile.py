@@ -36,6 +36,8 @@ def profile(arguments: argparse.Namespace) -> None:
             world.advance(steps)
         wall = time.perf_counter() - begun
         rows.extend(rows_of(world.clock.costs, wall, world.system.step_count - first))
+        if world.levels.budget_ms is not None:
+            forces.append(str(world.levels))
         if isinstance(world.system, System) and len(costs := world.system.profile()):
             forces.append(str(costs))
 

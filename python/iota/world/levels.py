@@ -18,6 +18,7 @@ from iota.arguments import SHORT, is_number
 from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
 from iota.world.clients import Clients
+from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
 
@@ -123,8 +124,9 @@ class Levels(Part):
     that recordings, replays and snapshots have it; the clock decides about changes between steps, never inside one.
     """
 
-    def __init__(self, system: System, scene: Scene, clients: Clients, guard: Guard) -> None:
+    def __init__(self, system: System, scene: Scene, clients: Clients, guard: Guard, costs: Costs) -> None:
         self._system, self._scene, self._clients, self._guard = system, scene, clients, guard
+        self._costs = costs
         self._budget: float | None = None
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach = 3.0
@@ -280,7 +282,8 @@ class Levels(Part):
         """A step of the system, within the budget."""
         began = time.process_time()
         try:
-            self._plan()
+            with self._costs.of("levels"):
+                self._plan()
         except StaleIdError:  # destroyed by the script since the last step
             self._forget_dead()
         planned = time.process_time()
@@ -420,7 +423,7 @@ class Levels(Part):
         is_own = before.leave is not None or after.enter is not None or thing.on_level is not None
         if not is_own:
             change()
-        elif not self._guard.call(f"The level {after.name!r} of {thing.name}", change):
+        elif not self._guard.call(f"The level {after.name!r}", change):
             thing.is_pinned = True
             self._is_old = True
         self._arrays.note(thing, self._steps)
@@ -524,7 +527,7 @@ class Levels(Part):
                 raise ValueError(f"significance must be 0 or more, got {value}")
             self._arrays.significance[row] = value
 
-        if not self._guard.call(f"The significance of {thing.name}", ask, hint="Visual angle and speed count instead."):
+        if not self._guard.call("A significance", ask, hint="Visual angle and speed count instead."):
             thing.significance = None
             self._is_old = True
 

@@ -139,7 +139,7 @@ class World:
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
-        self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard)
+        self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
         self.camera = camera
         self._runner: int | None = None
         self._background: threading.Thread | None = None
