@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Acrobats, rope ladders and chains in a valley: a lamp walks through it, and only what is near the lamp is simulated in full; t tints the levels."""
+"""Acrobats, rope ladders and chains: only what is near a walking lamp is simulated in full; t tints the levels."""
 
 from __future__ import annotations
 
