@@ -92,6 +92,8 @@ class Island {
   /// A step of h seconds, or of several of them at once, or none: see Strides. The rings of an island with a stride have
   /// rows in the table of tracks.
   const solver::AdvanceReport& advance(model::Model&, double h, const Limits&);
+  /// A part of a step, in seconds, before `advance` takes the rest. Ends a stride.
+  const solver::AdvanceReport& advance_part(model::Model&, double part, const Limits&);
   /// The stride of all its bodies, or the shortest one, which those with a longer one get. Reads them again if that was
   /// asked for, and gives rings tracks. Not while other islands step.
   std::uint32_t agree_on_stride(model::Model&);

@@ -597,8 +597,7 @@ const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island,
     double& ahead = ahead_[model.bodies[body].articulate];
     if (model.articulates[model.bodies[body].articulate].first == body) ahead += part;
   }
-  island.try_step(model, part, {deadline, share_of(island)});
-  return island.commit(model, part);
+  return island.advance_part(model, part, {deadline, share_of(island)});
 }
 
 void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
