@@ -269,7 +269,7 @@ void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double c
     c.roller = HalfTurn(spin_p, motion.h).back(c.normal);
     const HalfTurn turn_of_q(spin_q, motion.h);
     c.roll_first = turn_of_q.back(c.roll_first), c.roll_second = turn_of_q.back(c.roll_second);
-    c.rolling = coefficient * radius, c.carried = push;
+    c.rolling = coefficient * radius, c.carried = std::max(0.0, push);  // it pulls where a step was not solved
   }
 }
 

@@ -53,7 +53,7 @@ const solver::AdvanceReport& Island::advance(Model& model, double h, const Limit
   return last_;
 }
 
-// What meets something so fast takes every step: the search of contacts has ended its stride.
+// An island with a body that meets something so fast takes every step: the search of contacts has ended its stride.
 const solver::AdvanceReport& Island::advance_part(Model& model, double part, const Limits& limits) {
   const auto visit_rings = [&](auto visit) { for_each_ring(model, visit); };
   if (Strides::any(model) && Strides::phase(model, part, visit_rings) != Strides::Phase::none) leave_stride(model);

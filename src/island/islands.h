@@ -65,7 +65,7 @@ class Islands {
   std::size_t grain(const Parallel&) const;
   /// A part of a step, before `advance` takes the rest of it. Its contacts are those of this part.
   const solver::AdvanceReport& advance_part(model::Model&, Island&, double part, Island::Clock::time_point deadline);
-  /// What it has advanced in parts since the last step, s.
+  /// The time that it has advanced in parts since the last step, s.
   double ahead(const model::Model&, const Island&) const;
   /// A step of h seconds of one of them: of `awake`, then of `loose`. Those of others may run at the same time.
   void advance(model::Model&, std::size_t index, double h, Island::Clock::time_point deadline);

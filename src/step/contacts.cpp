@@ -15,8 +15,8 @@ namespace {
 constexpr double of_way = 1.5;    ///< a body that speeds up goes further than it would
 constexpr double of_size = 0.02;  ///< what it may turn further
 
-// Of the size of the smaller body. Shots at walls (docs/contact.md): with 1 and 0.5 instead of `far` and `near` twice as many
-// get through.
+// Shares of the size of the smaller body. With 1 and 0.5 instead of `far` and `near` twice as many shots (docs/contact.md) get
+// through walls.
 constexpr double far = 0.5;      ///< a body that goes or swings further in the rest of a step is followed on its way
 constexpr double closing = 0.1;  ///< what comes closer in the rest of a step meets: the step is cut there
 constexpr double near = 0.25;    ///< the way and the swing in a part in which bodies meet

@@ -76,7 +76,7 @@ class Folder:
             self._lock = None
 
     def __del__(self) -> None:
-        """Of a world that never ran."""
+        """Gives the lock back if the world never ran."""
         self.unlock()
 
     def files(self) -> list[File]:

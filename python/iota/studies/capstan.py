@@ -112,7 +112,7 @@ class Capstan:
             self._grip = self.system.grip(ball)
 
     def _follow(self) -> None:
-        if self._grip is not None:
+        if self._grip is not None and self._grip.alive:
             way = min(0.12, 0.2 * (self.system.time - self._begun))
             self._grip.move(self._start + (0, way, 0))
 

@@ -133,7 +133,7 @@ class Links:
         now = self.system.time
         if not self._grips:
             return
-        if now >= self._way[-1][0]:
+        if now >= self._way[-1][0] or not all(grip.alive for grip in self._grips):
             return self.release()
         place = between(self._way, now)
         for side, grip in zip((-1, 1), self._grips, strict=True):

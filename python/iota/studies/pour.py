@@ -195,7 +195,7 @@ class Pour:
     def pull(self, out: bool) -> None:
         """By a grip, as a hand would: it does not crush what is in its way."""
         self._goal = TRAVEL if out else 0.0
-        if self._grip is None:
+        if self._grip is None or not self._grip.alive:
             self._grip = self.system.grip(self.slide)
 
     def _follow(self) -> None:
@@ -203,7 +203,7 @@ class Pour:
         if self.world.users.held() == self.slide:
             self._goal = TRAVEL if self.opened > TRAVEL / 2 else 0.0
             self._release()
-        elif self._grip is not None:
+        elif self._grip is not None and self._grip.alive:
             way = self._goal - self.opened
             if abs(way) < 0.004:
                 self._release()
@@ -211,9 +211,9 @@ class Pour:
                 self._grip.move(self.slide.center_of_mass + (math.copysign(min(abs(way) + 0.02, 0.06), way), 0, 0))
 
     def _release(self) -> None:
-        if self._grip is not None:
+        if self._grip is not None and self._grip.alive:  # an undo may have ended it
             self._grip.destroy()
-            self._grip = None
+        self._grip = None
 
     def weight(self) -> float:
         """On the scales, N."""

@@ -356,6 +356,7 @@ Scene::Script build_impact(System& system) {
 /// Ropes between neighbors in a row of boxes come and go: islands of seven and of ten boxes that lose boxes at one end and
 /// gain others at the other, and a large one that takes them over and sheds them.
 Scene::Script build_ties(System& system) {
+  system.set_threads(1);  // each thread warms up by itself, and on a busy machine a second one may come late
   system.set_gravity({});
   constexpr int count = 120, period = 12;
   std::vector<ParticleId> knots;
