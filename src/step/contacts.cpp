@@ -78,7 +78,7 @@ void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outli
 ContactFinder::Mover ContactFinder::mover_at(const model::Model& model, const contact::Outlines& outlines,
                                              std::uint32_t slot) {
   const model::Body& body = model.bodies[slot];
-  Mover mover{slot, is_particle(body, outlines, slot), outlines.reach(slot), model.position(body.first), {}, 0};
+  Mover mover{slot, outlines.reach(slot), model.position(body.first), {}, 0};
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
@@ -172,15 +172,16 @@ bool is_sensor(const model::Model& model, const std::pair<std::uint32_t, std::ui
 }
 
 /// Whether two bodies that are near each other may touch: their materials and what joins them say it.
-bool touch_each_other(const model::Model& model, const std::pair<std::uint32_t, std::uint32_t>& pair) {
+bool touch_each_other(const model::Model& model, const contact::Outlines& outlines,
+                      const std::pair<std::uint32_t, std::uint32_t>& pair) {
   const auto [first, second] = pair;
   const auto touches = [&](std::uint32_t body) { return model.material(body)->touches; };
   if (is_sensor(model, pair)) {
     if (touches(first) == touches(second)) return false;
   } else if (model.bodies[second].kind != BodyKind::static_) {
     if (touches(first) != Touches::all || touches(second) != Touches::all) return false;
-    if (model.bodies[first].count == 1 && model.bodies[second].count == 1 && are_plain(model, first, second))
-      return false;
+    const auto is_ball = [&](std::uint32_t body) { return is_particle(model.bodies[body], outlines, body); };
+    if (is_ball(first) && is_ball(second) && are_plain(model, first, second)) return false;
     if (!model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return false;
   }
   return !ingredient::IgnoredContacts::include(model, first, second) && !are_joined(model, first, second);
@@ -202,7 +203,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   find_pairs(model, outlines);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
-  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, pair); });
+  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, pair); });
   for (const Pair& pair : pairs_) {
     if (is_sensor(model, pair)) {
       sense(model, outlines, pair);

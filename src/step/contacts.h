@@ -50,11 +50,10 @@ class ContactFinder {
   };
   /// A body that may touch others.
   struct Mover {
-    std::uint32_t body;
-    bool is_ball;          ///< a particle
-    double reach;          ///< m
+    std::uint32_t body = 0;
+    double reach = 0;      ///< m
     Vec3 place, velocity;  ///< of its first particle; mean
-    double spread;         ///< of the velocities of its points, m/s
+    double spread = 0;     ///< of the velocities of its points, m/s
     double steps = 1;      ///< that it may take at once
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one

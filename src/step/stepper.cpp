@@ -120,18 +120,22 @@ void Stepper::advance_in_parts(StepReport& report) {
   island::Islands& islands = editor_.islands;
   hasty_ = contacts_.hasty();
   for (int round = 0; !hasty_.empty(); ++round) {
+    islands.replace_by_leaders(hasty_);
+    std::erase_if(hasty_, [&](std::uint32_t leader) { return !islands.of_articulate(leader); });
     parts_.clear();
-    islands.for_each_of(model, hasty_, [&](island::Island& island) {
+    for (const std::uint32_t leader : hasty_) {
+      const island::Island& island = *islands.of_articulate(leader);
       const bool may_cut =
           round < most && static_cast<std::size_t>(round) * island.size() <= most_points && !island.is_driven(model);
       parts_.push_back(contacts_.find_part(model, outlines_, island.bodies(), report.dt - islands.ahead(model, island),
                                            {.is_first = round == 0, .may_cut = may_cut}));
-    });
+    }
     islands.update(model, editor_.parallel);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < hasty_.size(); ++i) {
-      if (!parts_[i]) continue;
-      add(islands.advance_part(model, *islands.of_articulate(hasty_[i]), *parts_[i], deadline_), report);
+      island::Island* const island = islands.of_articulate(hasty_[i]);
+      if (!parts_[i] || !island) continue;
+      add(islands.advance_part(model, *island, *parts_[i], deadline_), report);
       hasty_[kept++] = hasty_[i];
     }
     hasty_.resize(kept);
