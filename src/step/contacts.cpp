@@ -209,9 +209,10 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
       sense(model, outlines, pair);
       continue;
     }
-    const Ahead ahead = look_ahead(model, outlines, pair);
+    const Meeting meeting = meeting_of(model, outlines, pair);
+    const Ahead ahead = look_ahead(model, outlines, pair, meeting);
     if (ahead.apart >= h) continue;
-    if (!(ahead.apart > 0)) touch(model, outlines, pair);
+    if (!(ahead.apart > 0)) touch(model, outlines, pair, meeting);
     if (!(ahead.part < h)) continue;
     ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
@@ -238,17 +239,22 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
   sensed_.push_back({first, second, deepest.place, normal, deepest.gap, speed});
 }
 
-void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair) {
+ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, const contact::Outlines& outlines,
+                                                 const Pair& pair) {
+  Meeting meeting{mover_at(model, outlines, pair.first), {}, 0};
+  if (model.bodies[pair.second].kind != BodyKind::static_) meeting.second = mover_at(model, outlines, pair.second);
+  meeting.size = meeting.second ? std::min(meeting.first.reach, meeting.second->reach) : meeting.first.reach;
+  return meeting;
+}
+
+void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting) {
   const auto [first, second] = pair;
-  const Mover mover = mover_at(model, outlines, first);
-  std::optional<Mover> other;
-  if (model.bodies[second].kind != BodyKind::static_) other = mover_at(model, outlines, second);
+  const auto& [mover, other, size] = meeting;
   // Only a body with three dimensions carries a spin.
   const auto spin = [&](std::uint32_t body) {
     return model.bodies[body].rank == 4 ? model::body_angular_velocity(model, body) : Vec3{};
   };
   const Vec3 spins[2] = {spin(first), other ? spin(second) : Vec3{}};
-  const double size = other ? std::min(mover.reach, other->reach) : mover.reach;
   found_.clear();
   const contact::Outline& outline = outlines.placed(first);
   if (other) (void)outlines.placed(second);
@@ -275,24 +281,22 @@ contact::Motion ContactFinder::motion_of(const model::Model& model, const contac
   return motion;
 }
 
-ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contact::Outlines& outlines,
-                                               const Pair& pair) {
+ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contact::Outlines& outlines, const Pair& pair,
+                                               const Meeting& meeting) {
   constexpr double never = std::numeric_limits<double>::infinity();
   const auto [first, second] = pair;
-  const Mover mover = mover_at(model, outlines, first);
-  const bool is_fixed = model.bodies[second].kind == BodyKind::static_;
-  const Mover other = is_fixed ? Mover{} : mover_at(model, outlines, second);
-  const double size = is_fixed ? mover.reach : std::min(mover.reach, other.reach);
-  const double speed = norm(mover.velocity - other.velocity) + mover.spread + other.spread;
+  const auto& [mover, other, size] = meeting;
+  const double speed = other ? norm(mover.velocity - other->velocity) + mover.spread + other->spread
+                             : norm(mover.velocity) + mover.spread;
   if (!(h_ * speed > far * size)) return {0, never};
   const contact::Outline& outline = outlines.placed(first);
-  if (!is_fixed) (void)outlines.placed(second);
+  if (other) (void)outlines.placed(second);
   const contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
   const contact::Outline& other_outline = outlines.described(second);
   const double time = approaches_.time(outline, motions[0], other_outline, motions[1], of_size * size, h_);
   if (time > least * h_) return {time, time};
   found_.clear();
-  touches_.find(outline, {}, other_outline, {}, within(mover, is_fixed ? nullptr : &other), found_);
+  touches_.find(outline, {}, other_outline, {}, within(mover, other ? &*other : nullptr), found_);
   double approach = 0, swing = 0;
   for (const contact::Touch& touch : found_) {
     const Vec3 swings[2] = {cross(motions[0].spin, touch.center - motions[0].center),
@@ -309,7 +313,8 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
 }
 
 // Only pairs of one island: all that is in it has taken the same part of the step.
-void ContactFinder::list_pairs_of(const model::Model& model, std::span<const std::uint32_t> bodies) {
+void ContactFinder::list_pairs_of(const model::Model& model, const contact::Outlines& outlines,
+                                  std::span<const std::uint32_t> bodies) {
   listed_.clear();
   is_here_.resize(std::max<std::size_t>(is_here_.size(), model.bodies.slot_count()), 0);
   for (const std::uint32_t body : bodies) is_here_[body] = 1;
@@ -317,24 +322,24 @@ void ContactFinder::list_pairs_of(const model::Model& model, std::span<const std
     for (auto at = std::lower_bound(pairs_.begin(), pairs_.end(), Pair{body, 0});
          at != pairs_.end() && at->first == body; ++at)
       if ((model.bodies[at->second].kind == BodyKind::static_ || is_here_[at->second]) && !is_sensor(model, *at))
-        listed_.push_back({*at, 0});
+        listed_.push_back({*at, meeting_of(model, outlines, *at)});
   for (const std::uint32_t body : bodies) is_here_[body] = 0;
 }
 
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,
                                                std::span<const std::uint32_t> bodies, double left, const Part& which) {
-  list_pairs_of(model, bodies);
+  list_pairs_of(model, outlines, bodies);
   set_time(model, left);
   double part = left;
   if (which.may_cut)
-    for (auto& [pair, apart] : listed_) {
-      const Ahead ahead = look_ahead(model, outlines, pair);
+    for (auto& [pair, meeting, apart] : listed_) {
+      const Ahead ahead = look_ahead(model, outlines, pair, meeting);
       apart = ahead.apart, part = std::min(part, ahead.part);
     }
   set_time(model, part);
   ingredient::Contacts::begin_part(model, bodies, which.is_first);
-  for (const auto& [pair, apart] : listed_)
-    if (apart < part) touch(model, outlines, pair);
+  for (const auto& [pair, meeting, apart] : listed_)
+    if (apart < part) touch(model, outlines, pair, meeting);
   ingredient::Contacts::end_part(model, bodies);
   return part < left ? std::optional(part) : std::nullopt;
 }

@@ -63,7 +63,14 @@ class ContactFinder {
   void list_movers(model::Model&, const contact::Outlines&);
   void find_obstacles(model::Model&);
   void find_pairs(model::Model&, contact::Outlines&);
-  void touch(model::Model&, contact::Outlines&, const Pair&);
+  /// A pair as it moves now, measured once for a step or a part of it.
+  struct Meeting {
+    Mover first;
+    std::optional<Mover> second;  ///< of what moves
+    double size;                  ///< of the smaller one that moves, m
+  };
+  static Meeting meeting_of(const model::Model&, const contact::Outlines&, const Pair&);
+  void touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;
   void set_time(const model::Model&, double h);
@@ -73,9 +80,9 @@ class ContactFinder {
     double apart;  ///< the bodies do not touch before, s; 0: they may from now on
     double part;   ///< the step should be cut there, s
   };
-  Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&);
+  Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
-  void list_pairs_of(const model::Model&, std::span<const std::uint32_t> bodies);
+  void list_pairs_of(const model::Model&, const contact::Outlines&, std::span<const std::uint32_t> bodies);
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
@@ -88,8 +95,13 @@ class ContactFinder {
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
   std::vector<std::uint32_t> hasty_;
-  std::vector<std::pair<Pair, double>> listed_;  ///< of an island, with the time before which they do not touch
-  std::vector<std::uint8_t> is_here_;            ///< by body slot, in the island; zeros before and after
+  struct Listed {
+    Pair pair;
+    Meeting meeting;
+    double apart = 0;  ///< they do not touch before, s
+  };
+  std::vector<Listed> listed_;         ///< of an island
+  std::vector<std::uint8_t> is_here_;  ///< by body slot, in the island; zeros before and after
 };
 
 }  // namespace iota::step
