@@ -171,7 +171,8 @@ void Islands::find_members(const Model& model, Home& home) {
   const auto bodies = home.island.bodies();
   if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return model.bodies.is_alive(body); }))
     return drop(home);
-  for (const std::uint32_t a : home.articulates) places_[a].home = nullptr;
+  members_.assign(home.articulates.begin(), home.articulates.end());
+  for (const std::uint32_t a : members_) places_[a].home = nullptr;
   home.articulates.clear();
   std::uint32_t elsewhere = none;  // the latest
   for (const std::uint32_t body : bodies) {
@@ -183,6 +184,8 @@ void Islands::find_members(const Model& model, Home& home) {
     else
       place.home = &home, home.articulates.push_back(a);
   }
+  for (const std::uint32_t a : members_)  // with inactive bodies only: the island does not list them
+    if (!places_[a].home && model.articulates.is_alive(a)) wait(a);
   if (home.articulates.empty()) return;
   std::sort(home.articulates.begin(), home.articulates.end());
   set_leader(home);

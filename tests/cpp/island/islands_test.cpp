@@ -249,6 +249,31 @@ TEST(Islands, are_the_connected_sets_of_bodies_whatever_comes_and_goes) {
   }
 }
 
+// The rod to it is no row, and acts again with the body.
+TEST(Islands, keep_inactive_bodies_that_are_tied_to_them_after_a_cut_elsewhere) {
+  constexpr int links = 200;
+  System system;
+  std::vector<ParticleId> ends;
+  for (int i = 0; i < links; ++i) {
+    const BodyId link = system.bodies().create();
+    for (const int end : {0, 1}) ends.push_back(system.particles().create(link, {double(i + end), 0, 0}, 1));
+    if (i > 0) (void)system.edits().combine(ends[ends.size() - 3], ends[ends.size() - 2]);
+  }
+  const BodyId loose = system.bodies().create();
+  const ParticleId near = system.particles().create(loose, {links, 1, 0}, 1);
+  (void)system.particles().create(loose, {links + 1, 1, 0}, 1);
+  (void)system.joints().create(DistanceSpec{.kind = ConstraintKind::rod, .p = ends.back(), .q = near});
+  system.bodies().set_kind(loose, BodyKind::inactive);
+  (void)system.step(1.0 / 120);
+  (void)system.edits().separate(ends[21], ends[22]);
+  (void)system.step(1.0 / 120);
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+  system.bodies().set_kind(loose, BodyKind::dynamic);
+  (void)system.step(1.0 / 120);
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+  EXPECT_NEAR(norm(system.particles().position(near) - system.particles().position(ends.back())), 1, 1e-9);
+}
+
 // Grips on bodies whose island is new in the same update. With threads it was built by two of them at once.
 TEST(Islands, are_built_once_where_bodies_are_held_cut_and_joined_at_once) {
   for (unsigned seed = 0; seed < 12; ++seed) {
