@@ -63,6 +63,8 @@ void ActiveSet::set_cone(ConstraintPool<C>& pool, std::size_t k, ConeState state
   }
 }
 
+template void ActiveSet::set_cone(ConstraintPool<ContactConstraint>&, std::size_t, ConeState);
+
 template <class C>
 void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem& problem, const Stage& stage) {
   const C& c = pool.items[k];

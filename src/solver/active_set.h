@@ -34,6 +34,9 @@ class ActiveSet {
   /// would have reversed their slip; returns whether there were any.
   static bool switch_impacts(Problem&, double h, std::span<const double> impulses);
 
+  template <class C>
+  static void set_cone(ConstraintPool<C>&, std::size_t item, ConeState);
+
   /// @name Sides in an explicit sub-step, which do not change in it (active_set_motion.cpp)
   ///@{
   struct Sides {
@@ -59,8 +62,6 @@ class ActiveSet {
   template <class C>
   static ConeState choose_state(const ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&,
                                 const Vec3* x);
-  template <class C>
-  static void set_cone(ConstraintPool<C>&, std::size_t item, ConeState);
 
   void soften(Problem&, const Stage&, const Vec3* x);
 

@@ -128,7 +128,9 @@ class Newton {
   Wanted begin_after_step(Problem&, const Stage&, const AfterStep&);
   std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
   std::optional<double> project_impacts(Problem&, const Wanted&, double h, double energy);
-  double find_rebounds(Problem&, const Stage&);
+  double find_rebounds(Problem&, const Stage&, const Wanted&);
+  void take_turns(Problem&, const Wanted&, double least);
+  std::optional<double> take_turn(Problem&, const Wanted&, double kinetic);
   double rate_in_the_middle(const ContactConstraint&, std::span<const Vec3> velocity) const;
   void give_back_momenta(Problem&) const;
   double find_rates(const Problem&, const Wanted&);
@@ -146,6 +148,13 @@ class Newton {
   std::vector<double> impulses_, multipliers_saved_, merit_weights_;
   std::vector<Vec3> mean_place_,
       mean_velocity_;  // over the last step; only if rows keep their rates
+  struct Turn {
+    std::size_t contact = 0;
+    ConeState state;  // by the step
+    bool acts = false, has_acted = false;
+  };
+  std::vector<Turn> turns_;        // of impacts,
+  std::vector<Vec3> after_step_, end_of_step_;  // velocities and places, meanwhile
   bool has_laws_ = false;
   Solver* external_ = nullptr;
 };

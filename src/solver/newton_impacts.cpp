@@ -12,7 +12,7 @@ std::optional<double> Newton::settle_impacts(Problem& problem, const Stage& stag
   constexpr double round_off = 1e-14;
   Wanted wanted = begin_after_step(problem, stage, known);
   wanted.has_impacts = true;
-  most += find_rebounds(problem, stage);
+  most += find_rebounds(problem, stage, wanted);
   const double limit = std::isfinite(most) ? 4 * std::max(known.kinetic, most) : most;
   const auto project = [&](double energy) {
     std::optional<double> kinetic = project_impacts(problem, wanted, stage.h, energy);
@@ -68,26 +68,100 @@ double Newton::rate_in_the_middle(const ContactConstraint& c, std::span<const Ve
 
 // An approach below what gravity gives in a step ends without a rebound. Contacts that slip get friction by their late
 // impulse, too. Returns the energy that the rows of those that leave have stored, J: the motion gets it back.
-double Newton::find_rebounds(Problem& problem, const Stage& stage) {
-  double stored = 0;
-  const double least = stage.h * norm(problem.gravity), per_time = (stage.is_mid_point() ? 2 : 1) / stage.h;
+double Newton::find_rebounds(Problem& problem, const Stage& stage, const Wanted& wanted) {
+  constexpr double noise = 1e-9;  // of the fastest approach
+  const double per_time = (stage.is_mid_point() ? 2 : 1) / stage.h;
   for (std::size_t i = 0; i < problem.size(); ++i) x_[i] = problem.velocity[i] - per_time * u_[i];  // before the step
   auto& pool = problem.pool_of<ContactConstraint>();
+  const auto is_closed = [&](std::size_t k) {
+    return pool.items[k].restitution > 0 &&
+           pool.states.cone(k * ContactConstraint::rows).mode != ConeState::Mode::open;
+  };
+  double least = stage.h * norm(problem.gravity);
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     ContactConstraint& c = pool.items[k];
-    c.rebound = c.drags[0] = c.drags[1] = 0;
-    const ConeState state = pool.states.cone(k * ContactConstraint::rows);
-    if (state.mode == ConeState::Mode::open) continue;
-    if (c.restitution > 0 && pool.states.has_been_met(k * ContactConstraint::rows)) {
-      const double approach = -rate_in_the_middle(c, x_);
-      c.leaves = approach > least;
-      if (c.leaves) c.rebound = c.restitution * approach, stored += strain_energy(c, pool.multiplier(k));
-    }
+    c.drags[0] = c.drags[1] = 0;
+    c.rebound = is_closed(k) ? -rate_in_the_middle(c, x_) : 0;  // the approach, for now
+    least = std::max(least, noise * c.rebound);
+  }
+  bool any_leaves = false, any_waits = false;
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    ContactConstraint& c = pool.items[k];
+    if (!is_closed(k)) continue;
+    c.leaves = c.rebound > least && pool.states.has_been_met(k * ContactConstraint::rows);
+    c.rebound = c.leaves ? c.restitution * c.rebound : 0;
+    (c.leaves ? any_leaves : any_waits) = true;
+  }
+  if (any_leaves && any_waits) take_turns(problem, wanted, least);
+  double stored = 0;
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    ContactConstraint& c = pool.items[k];
     const double* const l = pool.multiplier(k);
-    if (state.slips() && l[0] < 0)
+    if (pool.states.cone(k * ContactConstraint::rows).slips() && l[0] < 0)
       for (int i = 0; i < 2; ++i) c.drags[i] = l[1 + i] / l[0];
+    if (c.leaves) stored += strain_energy(c, l);
   }
   return stored;
+}
+
+// Impacts that others pass on: a cradle. Those that approach act at once, by Newton's law, while all others that have a
+// restitution are open; then those that approach by the velocities that this has given, until none does. Contacts without a
+// restitution always act. The normal speeds at its end are the rebounds of the step, so that the step has one projection
+// with its guards. Without friction, with which Newton's law may gain energy (Kane's pendulum).
+void Newton::take_turns(Problem& problem, const Wanted& wanted, double least) {
+  constexpr int most_rounds = 24;
+  constexpr double little = 1e-3;  // of the first approach
+  auto& pool = problem.pool_of<ContactConstraint>();
+  turns_.clear();
+  for (std::size_t k = 0; k < pool.items.size(); ++k)
+    if (const ConeState state = pool.states.cone(k * ContactConstraint::rows);
+        state.mode != ConeState::Mode::open && pool.items[k].restitution > 0)
+      turns_.push_back({.contact = k, .state = state});
+  after_step_ = u_saved_, end_of_step_ = problem.position;
+  problem.position = mean_place_;
+  std::copy(x_.begin(), x_.end(), u_saved_.begin());
+  std::optional<double> kinetic = take_turn(problem, wanted, problem.kinetic_energy([&](std::size_t i) { return x_[i]; }));
+  for (int round = 0; round < most_rounds && kinetic; ++round) {
+    bool any = false;
+    for (Turn& turn : turns_) {
+      ContactConstraint& c = pool.items[turn.contact];
+      const double approach = -rate_in_the_middle(c, problem.velocity);
+      turn.acts = round == 0 ? c.leaves : approach > least;
+      if (!turn.acts) continue;
+      any = turn.has_acted = true;
+      c.rebound = c.restitution * std::max(0.0, approach);
+      if (round == 0) least = std::max(least, little * approach);
+    }
+    if (!any) break;
+    std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
+    kinetic = take_turn(problem, wanted, *kinetic);
+  }
+  for (const Turn& turn : turns_) {
+    ContactConstraint& c = pool.items[turn.contact];
+    ActiveSet::set_cone(pool, turn.contact, turn.state);
+    c.rebound = turn.has_acted ? std::max(0.0, rate_in_the_middle(c, problem.velocity)) : 0;
+    c.leaves = c.rebound > 0;
+  }
+  u_saved_ = after_step_, problem.position = end_of_step_;
+}
+
+// Leaves the velocities as they are if there is no solution.
+std::optional<double> Newton::take_turn(Problem& problem, const Wanted& wanted, double kinetic) {
+  constexpr int most_openings = 8;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (const Turn& turn : turns_)
+    ActiveSet::set_cone(pool, turn.contact, turn.acts ? ConeState{ConeState::Mode::slips, 1} : ConeState{ConeState::Mode::open});
+  std::optional<double> after;
+  for (int opening = 0; opening < most_openings; ++opening) {
+    std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
+    after = project_onto_sides(problem, wanted, kinetic);
+    bool pulls = false;
+    for (Turn& turn : turns_)
+      if (turn.acts && impulses_[pool.slots[turn.contact].unknown] > 0)
+        ActiveSet::set_cone(pool, turn.contact, {ConeState::Mode::open}), turn.acts = false, pulls = true;
+    if (!after || !pulls) break;
+  }
+  return after;
 }
 
 }  // namespace iota::solver

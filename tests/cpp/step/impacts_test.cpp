@@ -12,6 +12,7 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace iota {
@@ -104,16 +105,64 @@ TEST(Impacts, beside_the_line_of_centers_keep_both_momenta) {
   }
 }
 
-TEST(Impacts, of_balls_in_a_row_are_simultaneous) {
+// Balls in a row that touch, the first of which arrive from the left.
+std::vector<double> speeds_of_row(const std::vector<double>& masses, std::size_t moving, double restitution,
+                                  IntegrationMode mode) {
+  constexpr double radius = 0.1, size = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   System system;
-  system.set_gravity({}), system.set_usual_material(Material{.friction = 0, .restitution = 1});
+  system.set_mode(mode), system.set_gravity({});
+  system.set_usual_material(Material{.friction = 0.3, .restitution = restitution});
   std::vector<BodyId> row;
-  for (const double x : {-0.5, 0.0, 0.2}) row.push_back(system.bodies().create(Sphere{0.1}, {.position = {x, 0, 0}}));
-  system.bodies().set_velocity(row[0], {1, 0, 0});
-  for (int i = 0; i < 90; ++i) (void)system.step(1.0 / 120);
-  EXPECT_NEAR(system.bodies().velocity(row[0]).x, -1.0 / 3, 1e-7);
-  EXPECT_NEAR(system.bodies().velocity(row[1]).x, 2.0 / 3, 1e-7);
-  EXPECT_NEAR(system.bodies().velocity(row[2]).x, 2.0 / 3, 1e-7);
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const double x = 2 * radius * static_cast<double>(i) - (i < moving ? 0.3 : 0);
+    row.push_back(system.bodies().create(Sphere{radius}, {.density = masses[i] / size, .position = {x, 0, 0}}));
+    if (i < moving) system.bodies().set_velocity(row.back(), {1, 0, 0});
+  }
+  for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+  std::vector<double> speeds;
+  for (const BodyId ball : row) speeds.push_back(system.bodies().velocity(ball).x);
+  return speeds;
+}
+
+TEST(Impacts, pass_through_a_row_of_balls_to_as_many_at_its_end) {
+  for (const IntegrationMode mode : both_modes)
+    for (const std::size_t count : {3, 5, 7})
+      for (std::size_t moving = 1; moving < count; ++moving) {
+        const std::vector<double> speeds = speeds_of_row(std::vector<double>(count, 1.0), moving, 1, mode);
+        for (std::size_t i = 0; i < count; ++i)
+          EXPECT_NEAR(speeds[i], i + moving >= count ? 1 : 0, 1e-6) << moving << " of " << count << ", ball " << i;
+      }
+}
+
+// Each pair in turn follows Newton's law of two balls.
+TEST(Impacts, pass_through_a_row_of_heavier_and_heavier_balls_in_turn) {
+  for (const double e : {0.6, 1.0}) {
+    const std::vector<double> masses{1, 2, 5, 20};
+    std::vector<double> wanted(masses.size(), 0.0);
+    wanted[0] = 1;
+    for (bool any = true; std::exchange(any, false);)
+      for (std::size_t i = 0; i + 1 < masses.size(); ++i) {
+        const double approach = wanted[i] - wanted[i + 1];
+        if (approach < 1e-3) continue;
+        const double impulse = (1 + e) * approach * masses[i] * masses[i + 1] / (masses[i] + masses[i + 1]);
+        wanted[i] -= impulse / masses[i], wanted[i + 1] += impulse / masses[i + 1], any = true;
+      }
+    const std::vector<double> speeds = speeds_of_row(masses, 1, e, IntegrationMode::energy_keeping);
+    for (std::size_t i = 0; i < masses.size(); ++i) EXPECT_NEAR(speeds[i], wanted[i], 1e-6) << e << ", ball " << i;
+  }
+}
+
+// What lies on the ground bounces off it with what hits it: two balls that exchange their speeds.
+TEST(Impacts, go_down_to_the_ground_and_come_back) {
+  System system = make_hall(Material{.friction = 0, .restitution = 1});
+  const BodyId below = drop_ball(system, 0, 0.1);
+  const BodyId above = system.bodies().create(Sphere{0.1}, {.position = {0, 0.5, 0}, .velocity = {0, -2, 0}});
+  const double energy = energy_of(system);
+  for (int i = 0; i < 24; ++i) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(energy_of(system), energy, 1e-4 * energy);
+  const double speed = system.bodies().velocity(above).y, height = system.bodies().center_of_mass(above).y;
+  EXPECT_NEAR(0.5 * speed * speed + g * height, 0.5 * 4 + g * 0.5, 1e-2);
+  EXPECT_NEAR(system.bodies().center_of_mass(below).y, 0.1, 5e-3);
 }
 
 TEST(Impacts, never_raise_the_energy) {
