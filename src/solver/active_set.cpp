@@ -278,7 +278,16 @@ bool ActiveSet::switch_impacts(Problem& problem, double h, std::span<const doubl
           set_cone(pool, k, {ConeState::Mode::open}), any = true;
           continue;
         }
-        if (!now.slips() || !pool.states.has_been_met(k * C::rows)) continue;
+        if (!now.slips()) {  // by less than the cone allows, or it begins to slip
+          C& c = pool.items[k];
+          const double size = std::hypot(impulse[1], impulse[2]), most = -c.friction * impulse[0];
+          if (!(size > most + noise * std::abs(impulse[0]))) continue;
+          for (int i = 0; i < 2; ++i) c.drags[i] = -c.friction * impulse[1 + i] / size;
+          c.stays_slipping = true;
+          set_cone(pool, k, {ConeState::Mode::slips, 1}), any = true;
+          continue;
+        }
+        if (pool.items[k].stays_slipping || !pool.states.has_been_met(k * C::rows)) continue;
         const RowMotion<C> motion(problem, pool.items[k]);
         double power = 0, size = 0;
         for (int r = 1; r < C::rows; ++r)

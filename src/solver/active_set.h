@@ -30,8 +30,8 @@ class ActiveSet {
   static void begin_impulses_after_step(Problem&);
   /// Releases rows whose impulse, by unknown, has the wrong sign; returns whether there were any.
   static bool release_impulses(Problem&, std::span<const double> impulses);
-  /// After a step of h seconds and late impulses: opens contacts that would pull by both, and lets those stick whose friction
-  /// would have reversed their slip; returns whether there were any.
+  /// After a step of h seconds and late impulses: opens contacts that would pull by both, lets those stick whose friction
+  /// would have reversed their slip, and those slip that would stick with more than their cone allows; returns whether there were any.
   static bool switch_impacts(Problem&, double h, std::span<const double> impulses);
 
   template <class C>

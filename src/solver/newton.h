@@ -153,7 +153,7 @@ class Newton {
     ConeState state;  // by the step
     bool acts = false, has_acted = false;
   };
-  std::vector<Turn> turns_;        // of impacts,
+  std::vector<Turn> turns_;                     // of impacts,
   std::vector<Vec3> after_step_, end_of_step_;  // velocities and places, meanwhile
   bool has_laws_ = false;
   Solver* external_ = nullptr;

@@ -74,13 +74,12 @@ double Newton::find_rebounds(Problem& problem, const Stage& stage, const Wanted&
   for (std::size_t i = 0; i < problem.size(); ++i) x_[i] = problem.velocity[i] - per_time * u_[i];  // before the step
   auto& pool = problem.pool_of<ContactConstraint>();
   const auto is_closed = [&](std::size_t k) {
-    return pool.items[k].restitution > 0 &&
-           pool.states.cone(k * ContactConstraint::rows).mode != ConeState::Mode::open;
+    return pool.items[k].restitution > 0 && pool.states.cone(k * ContactConstraint::rows).mode != ConeState::Mode::open;
   };
   double least = stage.h * norm(problem.gravity);
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     ContactConstraint& c = pool.items[k];
-    c.drags[0] = c.drags[1] = 0;
+    c.drags[0] = c.drags[1] = 0, c.stays_slipping = false;
     c.rebound = is_closed(k) ? -rate_in_the_middle(c, x_) : 0;  // the approach, for now
     least = std::max(least, noise * c.rebound);
   }
@@ -120,7 +119,8 @@ void Newton::take_turns(Problem& problem, const Wanted& wanted, double least) {
   after_step_ = u_saved_, end_of_step_ = problem.position;
   problem.position = mean_place_;
   std::copy(x_.begin(), x_.end(), u_saved_.begin());
-  std::optional<double> kinetic = take_turn(problem, wanted, problem.kinetic_energy([&](std::size_t i) { return x_[i]; }));
+  std::optional<double> kinetic =
+      take_turn(problem, wanted, problem.kinetic_energy([&](std::size_t i) { return x_[i]; }));
   for (int round = 0; round < most_rounds && kinetic; ++round) {
     bool any = false;
     for (Turn& turn : turns_) {
@@ -150,7 +150,8 @@ std::optional<double> Newton::take_turn(Problem& problem, const Wanted& wanted, 
   constexpr int most_openings = 8;
   auto& pool = problem.pool_of<ContactConstraint>();
   for (const Turn& turn : turns_)
-    ActiveSet::set_cone(pool, turn.contact, turn.acts ? ConeState{ConeState::Mode::slips, 1} : ConeState{ConeState::Mode::open});
+    ActiveSet::set_cone(pool, turn.contact,
+                        turn.acts ? ConeState{ConeState::Mode::slips, 1} : ConeState{ConeState::Mode::open});
   std::optional<double> after;
   for (int opening = 0; opening < most_openings; ++opening) {
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());

@@ -393,6 +393,11 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([-some, 0]);
     await study.letGo();
   },
+  "cradle-contact": async (study) => {
+    await study.does("l", "another ball is lifted", ({ kinetic }) => kinetic < 1e-3);
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
   crowd: async (study) => {
     await study.key("t");  // paint instead of tints
     await study.drag([some, 0]);

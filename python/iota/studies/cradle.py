@@ -84,7 +84,7 @@ class Cradle:
             ball.material = iota.Material(touches="nothing")
         self.mass = self.balls[0].mass
         self.groups = [Group(range(balls), 0, 0.0, 0.0)]
-        self._present(world)
+        present(world, self.balls, self.frame, looks.sphere(RADIUS, "steel"))
         self.put()
         world.on_step(self.step)
         world.on_frame(self.step)  # no picture shows balls that have met and not parted yet
@@ -221,22 +221,23 @@ class Cradle:
         system.revolute(ball, self.frame, at=top, axis=(0, 0, 1))
         return ball
 
-    def _present(self, world: iota.World) -> None:
-        """Balls with their strings; two bars on posts on a plate."""
-        strings = [
-            looks.cylinder(
-                0.0006, "rope", math.hypot(STRING, SPREAD), offset=(0, STRING / 2, side / 2),
-                rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
-            )
-            for side in (-SPREAD, SPREAD)
-        ]  # fmt: skip
-        world.draw(self.balls, [looks.sphere(RADIUS, "steel"), *strings])
-        reach = len(self.balls) * RADIUS + 0.05
-        upright = (0, 0, 0.5**0.5, 0.5**0.5)
-        parts = [looks.box((2 * reach + 0.03, 0.016, 2 * SPREAD + 0.03), "wood", 0.003, offset=(0, 0.008, 0))]
-        for side in (-SPREAD, SPREAD):
-            parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
-            for x in (-reach, reach):
-                post = looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright)
-                parts.append(post)
-        world.draw(self.frame, parts)
+
+def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: iota.Look) -> None:
+    """Balls with their strings; two bars on posts on a plate."""
+    strings = [
+        looks.cylinder(
+            0.0006, "rope", math.hypot(STRING, SPREAD), offset=(0, STRING / 2, side / 2),
+            rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
+        )
+        for side in (-SPREAD, SPREAD)
+    ]  # fmt: skip
+    world.draw(balls, [look, *strings])
+    reach = len(balls) * RADIUS + 0.05
+    upright = (0, 0, 0.5**0.5, 0.5**0.5)
+    parts = [looks.box((2 * reach + 0.03, 0.016, 2 * SPREAD + 0.03), "wood", 0.003, offset=(0, 0.008, 0))]
+    for side in (-SPREAD, SPREAD):
+        parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
+        for x in (-reach, reach):
+            post = looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright)
+            parts.append(post)
+    world.draw(frame, parts)

@@ -36,13 +36,14 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double reference = 1;
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
   double rebound = 0;               ///< the normal speed at which an impact ends, while velocities are settled, m/s
-  double drags[2] = {};       ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
-  bool is_of_sweeps = false;  ///< its overlap was left by sweeps: see Heap
-  bool is_round = false;      ///< the radius is that of both together, above zero
-  bool has_wires = false;     ///< round: two wires that cross, one along arm 2, one along arm 3
-  double bends[2] = {1, 0};   ///< k_2, k_3
-  bool meets = false;         ///< in this (sub-)step, by the velocities with which it begins
-  bool leaves = false;        ///< at its end after an impact, so that its rows store nothing
+  double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
+  bool stays_slipping = false;  ///< meanwhile: to stick needs more than its cone has
+  bool is_of_sweeps = false;    ///< its overlap was left by sweeps: see Heap
+  bool is_round = false;        ///< the radius is that of both together, above zero
+  bool has_wires = false;       ///< round: two wires that cross, one along arm 2, one along arm 3
+  double bends[2] = {1, 0};     ///< k_2, k_3
+  bool meets = false;           ///< in this (sub-)step, by the velocities with which it begins
+  bool leaves = false;          ///< at its end after an impact, so that its rows store nothing
 
   /// Arms 2 to 4, which do not turn with a body.
   void set_directions(const std::array<Vec3, 3>& of) {
