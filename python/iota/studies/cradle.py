@@ -222,7 +222,7 @@ class Cradle:
         return ball
 
 
-def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: iota.Look) -> None:
+def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look) -> None:
     """Balls with their strings; two bars on posts on a plate."""
     strings = [
         looks.cylinder(
