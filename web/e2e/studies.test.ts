@@ -412,6 +412,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, 0]);
     await study.letGo();
   },
+  knot: async (study) => {
+    await study.does("c", "the rope lies as at the start", ({ time }) => time < 1);
+    await study.does("k", "a hand lifts its end", ({ kinetic }) => kinetic > 1e-5);
+    await study.drag([some, -some]);
+    await study.letGo();
+  },
   lab: async (study) => {
     const ladder = await study.tab.page.evaluate(() => iota.bodies().slice(0, 7));  // obstacles have slots, too
     await study.drag([some, 0], (body) => ladder.includes(body));
