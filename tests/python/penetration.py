@@ -43,7 +43,12 @@ class Piece:
         """Lowest and highest corner of a box around it along the world's axes, m."""
         low, high = self.bounds
         middle, half = self.place + self.turn @ ((low + high) / 2), (high - low) / 2
-        if not isinstance(self.shape, iota.Sphere):  # the box of a ball does not turn
+        if isinstance(self.shape, iota.Sphere | iota.Capsule) or (
+            isinstance(self.shape, iota.Torus) and not self.shape.stretch
+        ):
+            radius = half.min()  # of a ball that goes along a segment or a circle
+            half = np.sqrt(self.turn**2 @ (half - radius) ** 2) + radius
+        else:
             half = np.abs(self.turn) @ half
         return np.array([middle - half, middle + half])
 

@@ -66,11 +66,10 @@ class Knot:
     def __init__(self, world: iota.World, friction: float = FRICTION) -> None:
         self.world, self.system = world, world.system
         along = START + ROD * np.arange(RODS + 1)
-        places = np.column_stack([along, np.full(RODS + 1, ROPE), np.zeros(RODS + 1)])
+        # Over the ring's lower side.
         middle = START + THREADED
-        near = np.abs(along - middle) < 3.5 * ROD
-        places[near, 1] += 1.6 * WIRE  # over the ring's lower side
-        places = evened(places)
+        over = np.clip(2.5 - 0.4 * np.abs(along - middle) / ROD, 0, 1)
+        places = evened(np.column_stack([along, ROPE + 2.1 * WIRE * over, np.zeros(RODS + 1)]))
         made = self.system.rod_array(places[:-1], places[1:], masses=MASS, damping=DAMPING)
         made.particles[1:-1:2].combine(made.particles[2::2])
         self.rods = list(made)
