@@ -59,11 +59,12 @@ class Heap {
     }
     return true;
   }
-  /// That of all bodies if they moved by a hundredth of their size in a step, J.
+  /// That of all bodies if they moved by a hundredth of their size in a step, or were lifted by it, as a coin that rolls on
+  /// its rim in long steps is, J.
   double least_energy() const {
     double mass = 0;
     for (const BodyId body : system_.bodies().ids()) mass += system_.bodies().mass(body);
-    return 0.5 * mass * std::pow(0.01 * size_ / dt_, 2);
+    return mass * (0.5 * std::pow(0.01 * size_ / dt_, 2) + 0.01 * size_ * norm(system_.gravity()));
   }
   bool has_driven() const {
     for (const BodyId body : system_.bodies().ids())
