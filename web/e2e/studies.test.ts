@@ -412,6 +412,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, 0]);
     await study.letGo();
   },
+  grasp: async (study) => {
+    await study.does("c", "the bar lies as at the start", ({ time }) => time < 1);
+    await study.does("k", "a gripper moves", ({ kinetic }) => kinetic > 1e-3);
+    await study.drag([some, -some]);
+    await study.letGo();
+  },
   knot: async (study) => {
     await study.does("c", "the rope lies as at the start", ({ time }) => time < 1);
     await study.does("k", "a hand lifts its end", ({ kinetic }) => kinetic > 1e-5);

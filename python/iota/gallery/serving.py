@@ -24,7 +24,7 @@ from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
 FIRST = (  # on the page
-    "chain", "ladder", "stack", "knot", "links", "pour", "capstan", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground",
+    "chain", "ladder", "stack", "knot", "grasp", "links", "pour", "capstan", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground",
     "physics-class", "fireworks",
 )  # fmt: skip
 LOOK = 0.1  # s, between two checks for visitors

@@ -47,6 +47,11 @@ class Story:
 
         return register
 
+    def begin(self) -> None:
+        """Begins now, unless it is under way."""
+        if self._began is None:
+            self._begins = self._world.system.time
+
     def touch(self) -> None:
         """Somebody does something. Called by a study's own actions; hands are seen by the story itself."""
         self._begins = self._world.system.time + self._wait
