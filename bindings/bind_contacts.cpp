@@ -84,6 +84,7 @@ constexpr const char* material_doc =
     "bodies the larger one counts.\n"
     "rolling: coefficient of rolling resistance; the torque against rolling is at most this times the normal force and the\n"
     "radius, so that a ball on level ground slows down by 5/7 rolling g. Of two bodies the larger one counts.\n"
+    "surface_velocity: of the surface against its body, in the world, m/s: a belt. Friction drives what lies on it.\n"
     "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n"
     "'sensor': it feels and gives no force; `World.on_contact` and `System.watch_contacts` tell what enters and leaves it.\n\n"
     "    ice = iota.Material(friction=0.02)\n"
@@ -94,33 +95,36 @@ constexpr const char* material_doc =
 
 void bind_material(nb::module_& module) {
   nb::class_<Material> type(module, "Material", material_doc);
-  const auto make = [](Material* self, double friction, double restitution, double rolling,
-                       const TouchesWord& touches) {
+  const auto make = [](Material* self, double friction, double restitution, double rolling, const TouchesWord& touches,
+                       VectorArgument surface_velocity) {
     if (finite_not_negative(restitution, "restitution", "") > 1)
       throw std::invalid_argument(text("restitution must be at most 1, not ", restitution));
     new (self) Material{finite_not_negative(friction, "friction", ""), to_touches(touches), restitution,
-                        finite_not_negative(rolling, "rolling", "")};
+                        finite_not_negative(rolling, "rolling", ""), to_vec3(surface_velocity, "surface_velocity")};
   };
   const auto touches_of = [](const Material& self) { return TouchesWord{to_word(touches_words, self.touches)}; };
   type.def("__init__", make, nb::kw_only(), "friction"_a = Material{}.friction,
-           "restitution"_a = Material{}.restitution, "rolling"_a = Material{}.rolling, "touches"_a = TouchesWord{"all"})
+           "restitution"_a = Material{}.restitution, "rolling"_a = Material{}.rolling, "touches"_a = TouchesWord{"all"},
+           "surface_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0))
       .def(
           "__getstate__",
           [touches_of](const Material& self) {
-            return nb::make_tuple(self.friction, self.restitution, self.rolling, touches_of(self));
+            return nb::make_tuple(self.friction, self.restitution, self.rolling, touches_of(self),
+                                  self.surface_velocity);
           },
           nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
       .def(
           "__setstate__",
-          [make](Material& self, const std::tuple<double, double, double, TouchesWord>& state) {
-            const auto& [friction, restitution, rolling, touches] = state;
-            make(&self, friction, restitution, rolling, touches);
+          [make](Material& self, const std::tuple<double, double, double, TouchesWord, nb::object>& state) {
+            const auto& [friction, restitution, rolling, touches, surface_velocity] = state;
+            make(&self, friction, restitution, rolling, touches, VectorArgument{surface_velocity});
           },
           nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def_ro("friction", &Material::friction)
       .def_ro("restitution", &Material::restitution)
       .def_ro("rolling", &Material::rolling)
       .def_prop_ro("touches", touches_of)
+      .def_ro("surface_velocity", &Material::surface_velocity)
       .def(
           "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator(),
           nb::sig("def __eq__(self, other: object, /) -> bool"))
@@ -131,8 +135,10 @@ void bind_material(nb::module_& module) {
         };
         const std::string touches =
             self.touches == Touches::all ? "" : ", touches='" + to_word(touches_words, self.touches) + "'";
+        const Vec3& v = self.surface_velocity;
+        const std::string belt = v == Vec3{} ? "" : text(", surface_velocity=(", v.x, ", ", v.y, ", ", v.z, ")");
         return text("Material(friction=", self.friction, unless_usual("restitution", self.restitution),
-                    unless_usual("rolling", self.rolling), touches, ")");
+                    unless_usual("rolling", self.rolling), touches, belt, ")");
       });
 }
 

@@ -254,6 +254,9 @@ void apply(Editor& e, const SetMaterial& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_material(c.value);
+  const Material* const before = model.material(body);
+  if (before && before->surface_velocity != c.value.surface_velocity)
+    ingredient::Contacts::end(model, body);  // it wakes what lies there
   if (c.touches)
     model.materials.make(body) = c.value;
   else

@@ -12,7 +12,7 @@ namespace {
 // The tables of a snapshot are in the order of the list of ingredients: its length is a part of the version, so that one
 // more is another format. Change the letter before it if a table changes.
 constexpr auto ingredients = static_cast<char>(std::tuple_size_v<ingredient::Ingredients>);
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'I', ingredients}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'J', ingredients}, "snapshot"};
 
 }  // namespace
 

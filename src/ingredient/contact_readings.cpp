@@ -41,8 +41,8 @@ ContactPoint read(const Model& model, const Contact& c, std::uint32_t body, Carr
   point.position = Contacts::place(model, c);
   point.normal = sign * c.normal, point.force = sign * c.force();
   point.gap = Contacts::gap(model, c);
-  const Vec3 relative =
-      carriers[0].velocity(model, body, point.position) - carriers[1].velocity(model, other, point.position);
+  const Vec3 relative = carriers[0].velocity(model, body, point.position) -
+                        carriers[1].velocity(model, other, point.position) - sign * c.drift;
   point.slip = norm(relative - dot(relative, c.normal) * c.normal);
   point.slides = norm(c.drag) >= (1 - of_limit) * c.friction * c.push;
   return point;

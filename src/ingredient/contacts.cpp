@@ -305,6 +305,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
     c.friction = std::sqrt(one.friction * other.friction);
     c.restitution = std::max(one.restitution, other.restitution);
+    c.drift = (t.is_turned ? 1.0 : -1.0) * (one.surface_velocity - other.surface_velocity);
     c.found_in = model.step + 1;
     const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
     const double kept = norm(across);
@@ -532,6 +533,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.impulse = {};
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
+    row.constant[1] -= h * c.drift;
     row.is_round = c.is_round() && c.radius + c.depth > 0;
     row.has_wires = c.form == TouchForm::wires && row.is_round;
     row.bends[0] = row.has_wires ? c.bends[0] : 1, row.bends[1] = row.has_wires ? c.bends[1] : 0;

@@ -31,6 +31,7 @@ struct Contact : model::Ends {
   std::array<double, 2> bends{};  ///< of wires
   double radius = 0, friction = 0, restitution = 0;
   double ball = 0;                       ///< part of the radius that is p's
+  Vec3 drift;                            ///< of q's surface against p's, beyond their bodies' motion, m/s
   double rolling = 0;                    ///< bound of the torque against rolling, of the force, m
   double carried = 0;                    ///< by all places of both in the last step, N
   Vec3 roller;                           ///< the direction of p that will be the normal in the middle of the step

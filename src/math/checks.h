@@ -53,6 +53,7 @@ inline void require_material(const Material& material) {
   if (!(material.restitution >= 0 && material.restitution <= 1))
     refuse("restitution", "be between 0 and 1", material.restitution);
   require_not_negative("rolling", material.rolling);
+  if (!is_finite(material.surface_velocity)) throw std::invalid_argument("surface_velocity must be finite");
 }
 
 inline void require_break_force(double newtons, std::string_view name = "break_force") {

@@ -75,6 +75,7 @@ void Audit::check_links() {
     require(std::isfinite(m.friction) && m.friction >= 0, whose, " has friction ", m.friction);
     require(m.restitution >= 0 && m.restitution <= 1, whose, " has restitution ", m.restitution);
     require(std::isfinite(m.rolling) && m.rolling >= 0, whose, " has rolling resistance ", m.rolling);
+    require(is_finite(m.surface_velocity), whose, " has no finite surface velocity");
     require(m.touches <= Touches::sensor, whose, " touches unknown bodies");
   };
   check(model_.usual_material, "the usual material");

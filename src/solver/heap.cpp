@@ -200,7 +200,7 @@ Vec3 unit_or(const Vec3& v, const Vec3& other) {
 
 }  // namespace
 
-void Heap::load_points(Problem& problem, double h) {
+void Heap::load_points(Problem& problem, double h, double rate) {
   points_.clear();
   has_new_points_ = false;
   auto& pool = problem.pool_of<ContactConstraint>();
@@ -223,9 +223,9 @@ void Heap::load_points(Problem& problem, double h) {
     auto [center, origin] = sums_of(c, 0, of_first, place);
     auto [touching, other] = sums_of(c, 1, of_first, place);
     if (has_world_point)
-      center = c.constant[0], touching = c.constant[1];
+      center = c.constant[0], touching = c.constant_start[1];
     else if (point.b == none)
-      origin = -1.0 * c.constant[0], other = -1.0 * c.constant[1];
+      origin = -1.0 * c.constant[0], other = -1.0 * c.constant_start[1];
     const Vec3 turned = c.arm(2, x, 1), way = center - origin;
     const Vec3 off = c.off(way, turned, c.arm(3, x, 1));
     point.normal = unit_or(c.is_round ? off : turned, up);
@@ -237,6 +237,8 @@ void Heap::load_points(Problem& problem, double h) {
     // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
     const Vec3 at = center + dot(touching - center, point.normal) * point.normal;
     point.height = dot(at, up);
+    const Vec3 belt = rate * (c.constant[1] - c.constant_start[1]);
+    point.drift = belt - dot(belt, point.normal) * point.normal;
     const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
     const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
     const auto load_side = [&](std::uint32_t b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
@@ -499,12 +501,12 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
   }
 }
 
-HeapReport Heap::advance(Problem& problem, double h, double fraction) {
+HeapReport Heap::advance(Problem& problem, double h, double from, double fraction) {
   HeapReport report;
   const double part = h / sub_steps;
   const Softness pushing(0.25 / part, part), plain;
   load_bodies(problem, part);
-  load_points(problem, part);
+  load_points(problem, part, (fraction - from) / h);
   load_held(problem, part);
   load_grips(problem);
   for (int k = 0; k < sub_steps; ++k) {

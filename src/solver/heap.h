@@ -31,7 +31,7 @@ class Heap {
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor();
   /// A (sub-)step of h seconds, at whose end targets have gone this fraction of their way.
-  HeapReport advance(Problem&, double h, double fraction);
+  HeapReport advance(Problem&, double h, double from, double fraction);
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -82,7 +82,7 @@ class Heap {
   };
 
   void load_bodies(const Problem&, double h);
-  void load_points(Problem&, double h);
+  void load_points(Problem&, double h, double rate);
   void load_held(Problem&, double h);
   void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);

@@ -247,7 +247,7 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
 void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
   has_corrected_ = is_instant_ = false;
   const EnergyBalance before = energy_;
-  const HeapReport swept = heap_->advance(problem, part.h, part.to);
+  const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to);
   energy_.measure_change(problem, part.to, swept.external_work);
   // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
   const double lifted = energy_.total - energy_.kinetic - (before.total - before.kinetic);
