@@ -27,6 +27,7 @@ Definition = ast.ClassDef | ast.FunctionDef
 CONTENTS = {
     "engine": ("The engine", ["iota._core", "iota.solvers"]),
     "world": ("Worlds that people enter", ["iota.world", "iota.world.widgets", "iota.world.shown", "iota.world.many"]),
+    "fixtures": ("Parts of rigs, furniture", ["iota.fixtures"]),
     "looks": ("How bodies are drawn", ["iota.looks"]),
     "builder": ("Builders", ["iota.builder"]),
     "shapelib": ("From file to world", ["iota.shapelib"]),

@@ -146,6 +146,23 @@ std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std
   return first;
 }
 
+bool stands_for_solid(const protocol::Part& part) { return part.shape.kind == "solid"; }
+
+/// How the solids of a body are drawn in one style. materials: those of the solids in their order; the last one is that of all
+/// further ones. beside: parts that are drawn with them.
+struct Dress {
+  std::vector<const protocol::Part*> materials, beside;
+};
+
+/// Without a part that stands for solids, the first part gives its material and none is drawn.
+Dress dress_of(const std::vector<protocol::Part>& parts, const std::string& style, const protocol::Part& first) {
+  Dress dress;
+  for (const protocol::Part& part : parts)
+    if (part.style == style) (stands_for_solid(part) ? dress.materials : dress.beside).push_back(&part);
+  if (dress.materials.empty()) return {{&first}, {}};
+  return dress;
+}
+
 }  // namespace
 
 // ------------------------------------------------------------------------------------------------------- the script's
@@ -154,7 +171,7 @@ void Presenter::set_visual(const std::string& name, std::vector<protocol::Part> 
   const auto [place, is_new] = given_.try_emplace(name);
   Given& known = place->second;
   if (!is_new && known.parts == parts) return;
-  known.is_solid = std::ranges::any_of(parts, [](const protocol::Part& part) { return part.shape.kind == "solid"; });
+  known.is_solid = std::ranges::any_of(parts, stands_for_solid);
   known.parts = std::move(parts);
   // Bodies of a new visual are not assigned to it yet.
   needs_all_ = needs_all_ || !is_new || std::ranges::find(tie_names, name) != tie_names.end();
@@ -310,10 +327,13 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
   std::vector<protocol::Part> parts;
   for (const auto& [style, first] :
        like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_style), &paint}}) {
+    const Dress dress = like ? dress_of(like->parts, style, *first) : Dress{{first}, {}};
+    std::size_t number = 0;
     for (const DrawnSolid& solid : body.solids) {
       const Mesh* const mesh = std::get_if<Mesh>(&solid.shape);
-      protocol::Part& part = parts.emplace_back(make_part(style, {}, first->material));
-      part.color = first->color;
+      const protocol::Part& own = *dress.materials[std::min(number++, dress.materials.size() - 1)];
+      protocol::Part& part = parts.emplace_back(make_part(style, {}, own.material));
+      part.color = own.color;
       part.offset = rounded(solid.position);
       part.rotation = to_wire(solid.orientation);
       if (mesh && mesh->triangles.size() > most_triangles) {
@@ -328,6 +348,7 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
         part.shape = to_wire(solid.shape);
       }
     }
+    for (const protocol::Part* const part : dress.beside) parts.push_back(*part);
   }
   return parts;
 }

@@ -22,8 +22,9 @@ namespace iota::net {
 
 class Presenter {
  public:
-  /// The parts of a visual, with which bodies or ties are drawn, in all styles. A part of kind "solid" represents the
-  /// body's own shape, and gives its material. After a change of a visual all bodies have to be described again.
+  /// The parts of a visual, with which bodies or ties are drawn, in all styles. A part of kind "solid" stands for the
+  /// body's own shape, and gives its material: the first for its first solid, the last for all further ones; other parts are drawn
+  /// beside them. After a change of a visual all bodies have to be described again.
   void set_visual(const std::string& name, std::vector<protocol::Part> parts);
   /// Draws a body with a visual; the body must be in the engine's next changes.
   void assign(BodyId body, const std::string& name, bool odd);

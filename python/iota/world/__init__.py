@@ -9,6 +9,7 @@ from iota.world.custom import Custom, Sound
 from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
+from iota.world.fixtures import Fixtures
 from iota.world.levels import Level, LevelChange, Levels, Managed
 from iota.world.pages import Pages
 from iota.world.queries import Queries
@@ -30,6 +31,7 @@ __all__ = [
     "Drawings",
     "Event",
     "Events",
+    "Fixtures",
     "Level",
     "LevelChange",
     "Levels",
@@ -45,5 +47,5 @@ __all__ = [
     "World",
 ]
 
-explain(Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages, Levels)
+explain(Scene, Drawings, Controls, Events, Tools, Fixtures, Queries, Users, Clock, Pages, Levels)
 explain(Client, Custom, Sound, Frame, Button, Checkbox, Choice, Plot, Slider, TextField)

@@ -23,6 +23,7 @@ from iota.world.clock import Clock
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.events import Events
+from iota.world.fixtures import Fixtures
 from iota.world.ground import level_below
 from iota.world.inputs import Inputs
 from iota.world.journal import Journal
@@ -46,7 +47,7 @@ from iota.world.widgets import Plot
 Result = TypeVar("Result")
 
 HEADLESS_SECONDS = 10.0  # default
-PARTS = (Scene, Drawings, Controls, Events, Tools, Queries, Users, Clock, Pages, Levels)
+PARTS = (Scene, Drawings, Controls, Events, Tools, Fixtures, Queries, Users, Clock, Pages, Levels)
 SOLIDS = (
     "sphere",
     "box",
@@ -135,6 +136,16 @@ class World:
             state.history,
             state.clients,
         )
+        self._fixtures = Fixtures(
+            state.system,
+            state.scene,
+            self._drawings,
+            self._controls,
+            self._events,
+            state.clients,
+            state.notices,
+            self._guard,
+        )
         self._queries = Queries(state.system, state.scene)
         self._users = Users(state.clients, state.notices)
         self._pages = Pages(state, inputs.call)
@@ -189,6 +200,11 @@ class World:
         return self._tools
 
     @property
+    def fixtures(self) -> Fixtures:
+        """Ready parts of training rigs and furniture, each by one call."""
+        return self._fixtures
+
+    @property
     def queries(self) -> Queries:
         """Questions about places."""
         return self._queries
@@ -224,6 +240,19 @@ class World:
     surface = forward(Drawings.surface)
     action = forward(Controls.action)
     offer = forward(Tools.offer)
+    push_button = forward(Fixtures.push_button)
+    switch = forward(Fixtures.switch)
+    lever = forward(Fixtures.lever)
+    knob = forward(Fixtures.knob)
+    dial = forward(Fixtures.dial)
+    door = forward(Fixtures.door)
+    drawer = forward(Fixtures.drawer)
+    plug_and_socket = forward(Fixtures.plug_and_socket)
+    table = forward(Fixtures.table)
+    wall = forward(Fixtures.wall)
+    ramp = forward(Fixtures.ramp)
+    stairs = forward(Fixtures.stairs)
+    shelf = forward(Fixtures.shelf)
     at = forward(Clock.at)
     after = forward(Clock.after)
     every = forward(Clock.every)

@@ -211,5 +211,29 @@ TEST(Presenter, draws_the_outline_that_acts) {
   EXPECT_GT(compared, 2000);
 }
 
+TEST(Presenter, draws_each_solid_of_a_body_in_a_material_of_its_own_with_what_is_beside_them) {
+  System system;
+  const BodyId arm = system.bodies().create(Shape(Capsule{0.1, 1}), {.position = {0, 0, 0}});
+  for (const double x : {0.5, -0.5})
+    (void)system.edits().combine(arm, system.bodies().create(Shape(Sphere{0.2}), {.position = {x, 0, 0}}));
+  const auto part = [](const std::string& kind, const std::string& material) {
+    protocol::Part made;
+    made.style = "*", made.material = material, made.shape.kind = kind, made.rotation = {0, 0, 0, 1};
+    if (kind == "sphere") made.shape.sizes = {0.05F};
+    return made;
+  };
+  Presenter presenter;
+  presenter.set_visual("arm", {part("solid", "steel"), part("sphere", "glass"), part("solid", "brass")});
+  presenter.assign(arm, "arm", false);
+  const EntityChanges changes = presenter.present(system.viewer().take_scene_changes());
+  const std::uint32_t visual = entities<protocol::BodyEntity>(changes).at(arm.slot).visual;
+  std::vector<std::string> drawn;
+  for (const protocol::Part& each : entities<protocol::VisualEntity>(changes).at(visual).parts)
+    drawn.push_back(each.shape.kind + " of " + each.material);
+  // The last material is that of all further solids.
+  EXPECT_EQ(drawn,
+            (std::vector<std::string>{"capsule of steel", "sphere of brass", "sphere of brass", "sphere of glass"}));
+}
+
 }  // namespace
 }  // namespace iota::net
