@@ -65,13 +65,14 @@ class Rig:
         self.send(protocol.GrabEnd(1))
 
     def point(
-        self, name: str, at: Any, origin: Any = (0, 0, 0), direction: Any = (0, 0, -1), button: float = 0.0
-    ) -> None:
+        self, name: str, at: Any, origin: Any = (0, 0, 0), direction: Any = (0, 0, -1), button: float = 0.0,
+        joints: tuple[float, ...] = (),
+    ) -> None:  # fmt: skip
         way = iota.Vec3(*direction).unit()
         self.send(
             protocol.Pointer(
                 protocol.PointerKind.MOVE, protocol.Id(0, 0), name, iota.Vec3(*at), iota.Vec3(*origin), way,
-                (0.0, 0.0, 0.0, 1.0), (button,), (), (),
+                (0.0, 0.0, 0.0, 1.0), (button,), (), joints,
             )
         )  # fmt: skip
 
@@ -145,6 +146,16 @@ def test_an_open_hand_presses_what_its_fingertip_touches_and_a_closed_one_does_n
         assert not button.pressed
     rig.send(protocol.Leave())
     assert all(body.name != "fingertip" for body in rig.system.bodies)
+
+
+def test_a_bare_hand_presses_with_the_tip_of_its_index_finger(rig: Rig) -> None:
+    button = rig.world.push_button((0, 1, 0), rig.hear)
+    for step in range(90):
+        tip = (0.0, 1.0, 0.12 - 0.002 * min(step, 60))
+        joints = [(9.0, 9.0, 9.0)] * 9 + [tip] + [(9.0, 9.0, 9.0)] * 15
+        rig.point("right hand", (0, 1.05, tip[2] + 0.03), joints=tuple(number for joint in joints for number in joint))
+        rig.world.step()
+    assert button.pressed and len(rig.told) == 1
 
 
 def test_fingertips_are_neither_drawn_nor_left_over_by_an_undo(rig: Rig) -> None:

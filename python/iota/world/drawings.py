@@ -39,6 +39,7 @@ from iota.world.shown import (
     Viewpoint,
 )
 from iota.world.skins import Skin
+from iota.world.stages import STAGES
 from iota.world.things import Attachable, Frame, Place, Thing, Things, place, vector
 
 EFFECTS = ("break", "join", "grab", "impact")
@@ -320,13 +321,33 @@ class Drawings(Part):
         """
         return Viewpoint(self._things, name=name, position=position, target=target)
 
-    def stage(self, sky: Color = None, horizon: Color = None, ground: Color = None, light: float = 1.0) -> Stage:
-        """Surroundings instead of the page's own: colors of the sky overhead, the horizon and the ground, and a factor
-        for the light of all lamps.
+    def stage(
+        self,
+        place: Literal["room", "studio", "space"] | None = None,
+        sky: Color = None,
+        horizon: Color = None,
+        ground: Color = None,
+        light: float | None = None,
+    ) -> Stage:
+        """Surroundings instead of the page's own: a place, or colors of the sky overhead, the horizon and the ground, and a factor
+        for the light of all lamps, which also change those of a place. None: as the place or the page has it. place: "room": 9 x 7 m
+        around the origin with walls that hold things, open to +z; "studio": a backdrop, with two lamps on what is there already;
+        "space": stars around what is there already, best with `World(..., ground=None)`. `destroy()` removes all of it.
 
-        world.drawings.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
+        world.stage("room")
+        world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
         """
-        return Stage(self._things, sky=sky, horizon=horizon, ground=ground, light=light)
+        if place is not None and place not in STAGES:
+            raise ValueError(f"place must be one of {', '.join(map(repr, STAGES))}, not {SHORT.repr(place)}")
+        given = {"sky": sky, "horizon": horizon, "ground": ground, "light": light}
+        colors, made = STAGES[place](self, self._scene) if place is not None else ({}, [])
+        values = {"light": 1.0} | colors | {name: value for name, value in given.items() if value is not None}
+        try:
+            return Stage(self._things, made, **{"sky": None, "horizon": None, "ground": None} | values)
+        except BaseException:
+            for each in made:
+                each.destroy()
+            raise
 
     def light(
         self,

@@ -16,7 +16,7 @@ FREQUENCY, ACCELERATION = 12.0, 200.0  # of the spring to the hand, Hz, and 50 N
 INDEX_TIP = 9  # joint of a bare hand, in the order of WebXR
 FORGOTTEN = 2.0  # s, of real time, after which a hand that tells nothing is gone
 CLOSED = 0.3  # of a trigger or pinch, with which a hand holds things instead
-HANDS = ("left", "right")
+HANDS = ("left", "right", "left hand", "right hand")  # controllers, and bare hands
 TOUCHING = Material(friction=0.8)
 PASSING = Material(touches="nothing")
 
@@ -73,8 +73,8 @@ class Fingers:
         return Finger(body, grip, 0.0)
 
     def _left(self, event: Event) -> None:
-        for hand in HANDS:
-            self._drop((event.client, hand))
+        for key in [key for key in self._fingers if key[0] == event.client]:
+            self._drop(key)
 
     def _tidy(self) -> None:
         """Hands that are gone, and fingertips that an undo has brought back."""

@@ -229,7 +229,7 @@ class Fixtures(Part):
         facing: Place = (0, 0, 1),
         color: str = "#dfe3e2",
     ) -> Furniture:
-        """A wall with a skirting, behind `at`. size: width and height, m."""
+        """A wall behind `at`, with a skirting if it is higher than 1 m; a lower one is a panel. size: width and height, m."""
         return self._make(furniture.wall, at, facing, None, size, thickness, color)
 
     def ramp(

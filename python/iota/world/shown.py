@@ -455,6 +455,18 @@ class Stage(Thing):
     sky, horizon, ground = Field(color), Field(color), Field(color)
     light = Field(number(0, 10))
 
+    def __init__(self, things: Things, made: Iterable[Any] = (), **values: Any) -> None:
+        """made: what belongs to it."""
+        self._made = list(made)
+        super().__init__(things, **values)
+
+    def destroy(self) -> None:
+        """Removes it, with all that was made for it; further calls do nothing."""
+        for each in self._made:
+            if each.alive:
+                each.destroy()
+        super().destroy()
+
     def _record(self) -> dict[str, Any] | None:
         return self._values
 

@@ -238,6 +238,7 @@ class World:
     label = forward(Drawings.label)
     points = forward(Drawings.points)
     surface = forward(Drawings.surface)
+    stage = forward(Drawings.stage)
     action = forward(Controls.action)
     offer = forward(Tools.offer)
     push_button = forward(Fixtures.push_button)
