@@ -403,6 +403,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, 0]);
     await study.letGo();
   },
+  evacuation: async (study) => {
+    await study.drag([some, 0]);
+    await study.letGo();
+    await study.knows("people are on their way", ({ time, kinetic }) => time > 2 && kinetic > 100);
+    await study.does("c", "all stand where they began", ({ kinetic }) => kinetic < 20);
+  },
   fireworks: async (study) => {
     await study.does("b", "a rocket flies", ({ dynamic }) => dynamic >= 1);
     await study.tab.goOn(0.6);
