@@ -532,6 +532,14 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, 0]);
     await study.letGo();
   },
+  rigging: async (study) => {
+    // Not an eye of the deck, which is nailed.
+    const named = await study.tab.page.evaluate(() => iota.bodies().filter((body) => iota.page.world.entities.body.ownNameOf(body) !== ""));
+    await study.drag([0, some], (body) => named.includes(body));
+    await study.letGo();
+    await study.does("k", "the load runs down", ({ kinetic }) => kinetic > 5);
+    await study.does("c", "it begins anew", ({ time }) => time < 1);
+  },
   shoal: async (study) => {
     await study.does("c", "the current is off", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
     await study.does("x", "they scatter", (now, before) => now.kinetic > 1.5 * before.kinetic);
