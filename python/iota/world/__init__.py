@@ -16,6 +16,7 @@ from iota.world.queries import Queries
 from iota.world.scene import Camera, Scene
 from iota.world.server import Server
 from iota.world.summary import RunSummary
+from iota.world.survey import Survey
 from iota.world.things import Frame
 from iota.world.tools import Tools
 from iota.world.users import Users
@@ -41,6 +42,7 @@ __all__ = [
     "RunSummary",
     "Scene",
     "Server",
+    "Survey",
     "Tools",
     "Users",
     "View",

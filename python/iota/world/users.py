@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
 from iota._core import Body
+from iota.world.callbacks import Guard
 from iota.world.clients import Client, Clients
+from iota.world.controls import Controls
+from iota.world.events import Events
 from iota.world.notices import Notices
 from iota.world.parts import Part
+from iota.world.survey import Survey
 
 
 class Users(Part):
@@ -15,8 +23,11 @@ class Users(Part):
     if world.users.held() == ball: world.users.notice("You have it")
     """
 
-    def __init__(self, clients: Clients, notices: Notices) -> None:
+    def __init__(
+        self, clients: Clients, notices: Notices, controls: Controls, events: Events, guard: Guard, title: str
+    ) -> None:
         self._clients, self._notices = clients, notices
+        self._controls, self._events, self._guard, self._title = controls, events, guard, title
 
     @property
     def clients(self) -> list[Client]:
@@ -34,6 +45,24 @@ class Users(Part):
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
         self._notices.send(title, text, hint, level, client)
+
+    def ask(
+        self,
+        questions: Mapping[str, Any],
+        file: str | Path = "answers.csv",
+        purpose: str = "",
+        on_answer: Callable[..., Any] | None = None,
+    ) -> Survey:
+        """Asks each visitor questions, on controls of their own page. Their answers are a row of a CSV file, once they agree and send
+        them: the time (UTC), a random number, the title of the world and the answers, but no name. questions: by their text:
+        str for a free answer, a list of choices, or a range (low, high). file: rows are added, each complete or not at all, also by
+        several worlds. purpose: what the answers are for, shown where visitors agree. on_answer: called after each, with one Event
+        or nothing. Raises ValueError for a file with other questions, OSError for one that cannot be written.
+
+            world.ask({"What was your impression of the motion?": str, "Was it plausible?": ["yes", "partly", "no"]})
+        """
+        given = (self._controls, self._events, self._clients, self._notices, self._guard)
+        return Survey(questions, file, purpose, self._title, *given, on_answer)
 
     def send_away(self, client: int) -> None:
         """Closes the page of a client. From another machine it does not come back, unless it has the host's address."""

@@ -147,7 +147,7 @@ class World:
             self._guard,
         )
         self._queries = Queries(state.system, state.scene)
-        self._users = Users(state.clients, state.notices)
+        self._users = Users(state.clients, state.notices, self._controls, self._events, self._guard, title)
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
         self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
@@ -240,6 +240,7 @@ class World:
     surface = forward(Drawings.surface)
     stage = forward(Drawings.stage)
     action = forward(Controls.action)
+    ask = forward(Users.ask)
     offer = forward(Tools.offer)
     push_button = forward(Fixtures.push_button)
     switch = forward(Fixtures.switch)
