@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -341,6 +342,40 @@ def test_each_part_works_in_any_direction_by_the_key_or_a_click(name: str, facin
         changed = changed or fixture.state != before
     assert changed
     assert all(body.center_of_mass - (0.3, 1, -0.2) for body in fixture.bodies)
+
+
+@pytest.mark.parametrize("mode", ["robust", "plausible"])
+@pytest.mark.parametrize("name", ["plug_and_socket", "door", "dial", "push_button"])
+def test_parts_work_in_other_modes_with_long_steps_and_asleep(name: str, mode: Any) -> None:
+    rig = Rig(dt=1 / 60)
+    rig.system.mode, rig.system.rest_after = mode, 0.3
+    fixture: Fixture = MAKERS[name](rig.world, (0.3, 1, -0.2))
+    rig.run(1.5)
+    before, changed = fixture.state, False
+    fixture.use()
+    for _ in range(192):
+        report = rig.world.step()
+        changed = changed or fixture.state != before
+        assert report is not None and not report.warnings
+    assert changed
+
+
+def test_a_journal_brings_back_what_was_switched_and_plugged(tmp_path: Path) -> None:
+    for run in range(2):
+        system = iota.System()
+        world = iota.World(system, ground=0)
+        switch, dial = world.switch((0, 1, 0)), world.dial((0.3, 1, 0), ["a", "b"])
+        plug = world.plug_and_socket((0.6, 1, 0), (0.6, 1, 0.05))
+        world.keep(tmp_path / "kept")
+        world.step()
+        if run == 0:
+            assert (switch.is_on, dial.value) == (False, "a")
+            switch.use()
+            dial.use()
+            for _ in range(240):
+                world.step()
+        assert (switch.is_on, dial.value, plug.is_plugged) == (True, "b", True)
+        world.close()
 
 
 @pytest.mark.parametrize("name", ["switch", "lever", "knob", "dial", "door", "drawer"])
