@@ -9,6 +9,7 @@ from shown import show
 import iota
 from iota._protocol import TieKind
 from iota.studies import mechanisms
+from iota.world.frames import turned
 
 
 def by_kind(system: iota.System) -> dict[str, list[iota.Constraint]]:
@@ -86,3 +87,31 @@ def test_ropes_and_springs_are_drawn_while_they_hold() -> None:
         rope.active = False
         shown.look()
         assert TieKind.ROPE not in [tie["kind"] for tie in shown.page.entities["tie"].values()]
+
+
+def drawn_places(world: iota.World, body: iota.Body, shape: type) -> list[iota.Vec3]:
+    """Where the parts of a body's look with a shape are, m."""
+    look = world.scene.look_of(body)
+    assert look is not None
+    listed = look["*"] if isinstance(look["*"], list) else [look["*"]]
+    return [
+        body.center_of_mass + turned(body.orientation, iota.Vec3(*each.offset))
+        for each in listed
+        if isinstance(each.shape, shape)
+    ]
+
+
+def test_the_crosses_and_the_pin_of_the_crank_are_drawn_where_the_joints_are() -> None:
+    world = mechanisms.build()
+    constraints = by_kind(world.system)
+    for _ in range(100):
+        world.step()
+    for joint in constraints["universal"]:
+        assert joint.b is not None
+        for body in (joint.a, joint.b):
+            hubs = drawn_places(world, body, iota.Sphere)
+            assert min(abs(hub - joint.position) for hub in hubs) < 1e-6
+    wheel, pin = constraints["revolute"][0].a, constraints["revolute"][1].position
+    assert min(abs(place - pin) for place in drawn_places(world, wheel, iota.Cylinder)) < 0.006
+    rod_ends = drawn_places(world, constraints["revolute"][1].a, iota.Cylinder)
+    assert min(abs(place - pin) for place in rod_ends) < 1e-6

@@ -14,6 +14,10 @@ BENCH_SIZE = (2.5, 0.05, 0.6)  # of its top, m
 BENCH_PLACE = (0.15, BENCH - 0.025, 0.0)
 STEEL = 7800.0  # kg/m^3
 WOOD = 700.0
+RED = "#c8322b"
+ABOUT_Z = (0.0, 0.5**0.5, 0.0, 0.5**0.5)  # of a cylinder, which lies along x
+ABOUT_Y = (0.0, 0.0, 0.5**0.5, 0.5**0.5)
+SHAFT, BAR = 0.2, 0.13  # m: from one cross to the next, and the bar between two forks
 
 
 def build() -> iota.World:
@@ -37,10 +41,10 @@ def present(world: iota.World) -> None:
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
     names = {"engine": -0.6, "torsion pendulum": -0.2, "two crosses": 0.2, "scales": 0.7, "crane": 1.1}
     for name, x in names.items():
-        world.label(name, at=(x, BENCH - 0.025, BENCH_SIZE[2] / 2 + 0.03), height=0.02)
+        world.label(name, at=(x, BENCH - 0.025, BENCH_SIZE[2] / 2 + 0.03), height=0.026)
     world.draw_ties("spring", looks.spring(0.016, 0.0022))
     world.draw_ties("rope", looks.cylinder(0.005, "rope"))
-    world.camera = iota.Camera(position=(0.25, 1.2, 2.3), target=(0.15, 0.62, 0))
+    world.camera = iota.Camera(position=(0.25, 1.15, 2.15), target=(0.15, 0.64, 0))
 
 
 def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
@@ -64,13 +68,14 @@ def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, den
 def engine(world: iota.World, axle: iota.Vec3) -> None:
     """A motor turns a crank, a rod pushes a piston along its guide: one closed loop, exact all the way round."""
     system, crank, rod = world.system, 0.09, 0.3
-    about_z = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
-    wheel = system.body(shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=about_z)
+    wheel = system.body(shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=ABOUT_Z)
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
     connecting_rod = bar(system, pin, wrist, 0.025)
     piston = system.body(shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
-    world.draw(wheel, spoked_wheel(0.12, 0.02))
-    world.draw([connecting_rod, piston], looks.solid("steel"))
+    world.draw(wheel, [*spoked_wheel(0.12, 0.02), *crank_of(crank)])
+    ends = [looks.cylinder(0.02, "brass", 0.02, offset=(x, 0, 0), rotation=ABOUT_Z) for x in (-rod / 2, rod / 2)]
+    world.draw(connecting_rod, [looks.solid("paint", RED), *ends])
+    world.draw(piston, looks.solid("steel"))
     speed, torque = 4.0, 20.0
     axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
@@ -105,6 +110,27 @@ def spoked_wheel(radius: float, width: float) -> list[looks.Look]:
     return [rim, hub, *spokes]
 
 
+def crank_of(radius: float) -> list[looks.Look]:
+    """An arm on the wheel, and the pin that holds the rod; the wheel's x points away from the viewer."""
+    return [
+        looks.box((0.012, 0.036, radius + 0.03), "paint", 0.004, color=RED, offset=(-0.016, 0, radius / 2)),
+        looks.cylinder(0.011, "steel", 0.05, offset=(-0.025, 0, radius)),
+    ]
+
+
+def fork(end: float, along_z: bool) -> list[looks.Look]:
+    """Two cheeks at an end of a bar along x, and the pin of the cross between them, along z or y."""
+    side = math.copysign(1.0, end)
+    middle, length = (BAR / 2 + abs(end)) / 2 + 0.004, abs(end) - BAR / 2 + 0.016
+    parts = []
+    for far in (-0.021, 0.021):
+        size = (length, 0.022, 0.007) if along_z else (length, 0.007, 0.022)
+        place = (side * middle, 0.0, far) if along_z else (side * middle, far, 0.0)
+        parts.append(looks.box(size, "steel", 0.002, offset=place))
+    pin = looks.cylinder(0.0055, "brass", 0.052, offset=(end, 0, 0), rotation=ABOUT_Z if along_z else ABOUT_Y)
+    return [*parts, pin, looks.sphere(0.011, "brass", offset=(end, 0, 0))]
+
+
 def turn_to(direction: tuple[float, float, float]) -> tuple[float, float, float, float]:
     """The rotation that takes local x to a direction across it."""
     _, y, z = direction
@@ -124,22 +150,25 @@ def pendulum(world: iota.World, axle: iota.Vec3) -> None:
 
 def shaft(world: iota.World, bearing: iota.Vec3) -> None:
     """A motor turns a shaft; two crosses carry the turn round a corner and make it even again."""
-    system, lean, length = world.system, 0.5, 0.2
+    system, lean, length = world.system, 0.5, SHAFT
     directions = [iota.Vec3(math.cos(a), math.sin(a), 0) for a in (0, lean, 0)]
     place, parts = bearing, []
     for direction, angle in zip(directions, (0, lean, 0), strict=True):
         end = place + direction * length
         parts.append(
             system.body(
-                shape=iota.Box((length * 0.9, 0.035, 0.035)),
+                shape=iota.Box((BAR, 0.035, 0.035), 0.003),
                 density=STEEL,
                 position=(place + end) * 0.5,
                 orientation=(0, 0, math.sin(angle / 2), math.cos(angle / 2)),
             )
         )
         place = end
-    world.draw(parts, looks.solid("steel"))
     first, middle, last = parts
+    red, half = looks.solid("paint", RED), length / 2
+    world.draw(first, [red, *fork(half, along_z=True)])
+    world.draw(middle, [red, *fork(-half, along_z=False), *fork(half, along_z=False)])
+    world.draw(last, [red, *fork(-half, along_z=True)])
     cross = bearing + directions[0] * length
     system.revolute(first, at=bearing + directions[0] * (length / 2), axis=(1, 0, 0), motor=(3.0, 5))
     system.universal(first, middle, at=cross, axis=(0, 0, 1), second_axis=directions[1].cross((0, 0, 1)))
