@@ -42,6 +42,39 @@ def test_who_has_looked_from_within_the_ball_comes_out_again() -> None:
     assert world.camera == outside
 
 
+def test_the_ball_is_mended_by_a_key_and_breathes_on() -> None:
+    world = bucky.build()
+    system = world.system
+    whole = system.positions
+    for _ in range(600):  # pulls an atom through the middle
+        atom = system.particles[0]
+        atom.body.apply_force(
+            (atom.position - bucky.CENTER) * -8.0 - iota.Vec3(*(whole[0] - np.asarray(bucky.CENTER))) * 12
+        )
+        world.step()
+    for _ in range(240):
+        world.step()
+    assert np.linalg.norm(system.positions - whole, axis=1).max() > 0.5 * bucky.RADIUS
+    world.controls.act("mend")
+    assert np.abs(system.positions - whole).max() < 1e-9
+    system.undo()
+    world.controls.act("mend")
+    radii = []
+    for _ in range(960):
+        world.step()
+        radii.append(np.linalg.norm(system.positions[:60] - np.asarray(bucky.CENTER), axis=1).mean())
+    assert np.ptp(radii[240:]) > 0.05 * bucky.RADIUS  # by itself
+    assert np.ptp(radii) < 0.4 * bucky.RADIUS
+
+
+def test_a_breath_tires() -> None:
+    system = bucky.build().system  # without its world nothing breathes anew
+    energy = system.energy.kinetic
+    for _ in range(120 * 30):
+        system.step(1 / 120)
+    assert system.energy.kinetic < 0.2 * energy
+
+
 def period_about_nail(system: iota.System, body: iota.Body) -> float:
     """Of a small swing about z, from mass and inertia."""
     arm = abs(body.center_of_mass - molecule.NAIL)

@@ -352,6 +352,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
       for (let breath = 0; breath < 5; ++breath) await study.key("b");
       return study.facts.kinetic;
     }, { interval: 200 }).toBeGreaterThan(Math.max(2 * kinetic, 0.03));
+    await study.does("c", "all atoms are back, and at rest", ({ kinetic: now }) => now < 5e-3);
     const before = await study.eye();
     await study.key("v");
     await study.tab.until("the camera is within the ball", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) < 0.3, undefined, patience);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sixty carbon atoms in a cage of springs breathe; b gives a breath, v looks from within, and back. 1 m is 0.71 nm."""
+"""Sixty carbon atoms in a cage of springs breathe; b gives a breath, c mends the ball, v looks from within, and back. 1 m is 0.71 nm."""
 
 from __future__ import annotations
 
@@ -15,12 +15,17 @@ CENTER = iota.Vec3(0, 1.3, 0)
 PERIOD = 1.6  # s, of a breath
 # From a particle at the center to each atom: it keeps the cage from collapsing.
 PRESSURE = "energy = 0.5*k*(r - r0)^2"
+TIRES, CALM, EVERY = (
+    0.12,
+    0.06,
+    1.0,
+)  # 1/s; m/s of the atoms below which it takes another breath by itself; s between two looks
 SHARE = 0.5  # of the stiffness against breathing is the center's, the rest that of the cage's springs
 
 
 def build() -> iota.World:
     """The world of the study."""
-    system = iota.System(gravity=(0, 0, 0))
+    system = iota.System(gravity=(0, 0, 0), damping=TIRES)
     world = iota.World(system, title="bucky: C60, 1 m is 0.71 nm")
     cage = shapelib.polyhedron("fullerene 60", "soft", scale=RADIUS, mass=0.72, at=CENTER, damping=0.0, radius=0.035)
     tune(cage)
@@ -31,12 +36,24 @@ def build() -> iota.World:
     cage.points.radius[60], cage.points.color[60] = 0.02, (0.9, 0.5, 0.1)
     made = cage.realize(system)
     made.points[60].nail()
+    whole = system.positions
     breathe(system, 0.22)
     present(world)
 
     @world.action("breathe", key="b", help="sends a breath through the ball", on="world")
     def breath() -> None:
         breathe(system, 0.15)
+
+    @world.every(EVERY)
+    def breath_by_itself() -> None:
+        speeds = np.linalg.norm(system.velocities, axis=1)
+        if world.users.held() is None and math.sqrt(float((speeds**2).mean())) < CALM:
+            breathe(system, 0.2)
+
+    @world.action("mend", key="c", help="puts all atoms back in place", on="world")
+    def mend() -> None:
+        with system.edit():
+            system.positions, system.velocities = whole, np.zeros_like(whole)
 
     outside = world.camera
     inside = iota.Camera(position=tuple(CENTER + (0, 0, 0.15)), target=tuple(CENTER + (1, 0.3, -1)))
