@@ -76,3 +76,14 @@ def test_the_flag_tears_where_it_is_pulled_too_hard_but_not_in_the_wind() -> Non
         torn += system.broken
     assert torn and all(broken.bond.broken and broken.force > 6 for broken in torn)
     assert len(torn) < 20  # and the rest goes on flying
+
+
+def test_the_bowl_is_drawn_around_the_beads() -> None:
+    world = weather.build()
+    bowl = next(thing for thing in world.drawings.things if getattr(thing, "material", "") == "glass")
+    places = np.asarray(bowl.points)  # type: ignore[attr-defined]
+    assert np.abs(np.linalg.norm(places, axis=1) - weather.BOWL).max() < 1e-9 and places[:, 1].max() < 1e-9
+    for _ in range(120):
+        world.step()
+    for bead in group(world.system, "beads"):
+        assert abs(bead.position - weather.MIDDLE) + weather.BEAD < weather.BOWL

@@ -101,7 +101,25 @@ def beads(world: iota.World, middle: iota.Vec3) -> None:
         bead.color = (0.15, 0.45 + 0.4 * number / BEADS, 0.75)
     system.pair_force("soft_repulsion", cutoff=NEAR, group=group, stiffness=400, length=NEAR)
     system.field("wind", group=group, drag=0.2)
-    for angle in (0.0, 0.4, 0.8, 1.2):
-        ring = looks.torus(BOWL * math.cos(angle), WIRE, "steel")
-        world.add_static(ring, (middle.x, middle.y - BOWL * math.sin(angle), middle.z), (0.5**0.5, 0, 0, 0.5**0.5))
+    world.add_static(looks.torus(BOWL, 2 * WIRE, "steel"), tuple(middle), (0.5**0.5, 0, 0, 0.5**0.5))
+    world.surface(*half_ball(BOWL), at=middle, color="#a9d0dfa0", material="glass")
     world.add_strut((middle.x, 0, middle.z), (middle.x, middle.y - BOWL, middle.z), looks.cylinder(0.02, "steel"))
+
+
+def half_ball(
+    radius: float, around: int = 48, rows: int = 12
+) -> tuple[list[tuple[float, float, float]], list[tuple[int, int, int]]]:
+    """The lower half of a ball: points, m, and triangles."""
+    points, triangles = [(0.0, -radius, 0.0)], [(0, 1 + k, 1 + (k + 1) % around) for k in range(around)]
+    for row in range(1, rows + 1):
+        a = math.pi / 2 * row / rows
+        turns = [2 * math.pi * k / around for k in range(around)]
+        points += [
+            (radius * math.sin(a) * math.cos(b), -radius * math.cos(a), radius * math.sin(a) * math.sin(b))
+            for b in turns
+        ]
+    for row in range(rows - 1):
+        for k in range(around):
+            i, j = 1 + row * around + k, 1 + row * around + (k + 1) % around
+            triangles += [(i, i + around, j), (j, i + around, j + around)]
+    return points, triangles
