@@ -135,12 +135,15 @@ def test_a_button_is_no_longer_pressed_after_a_reset_or_an_undo_in_a_hand(rig: R
 
 def test_an_open_hand_presses_what_its_fingertip_touches_and_a_closed_one_does_not(rig: Rig) -> None:
     button = rig.world.push_button((0, 1, 0), rig.hear)
+    pulses: list[tuple[str, float, float]] = []
+    rig.world._state.clients.send_pulse = lambda client, *pulse: pulses.append(pulse)
     for closed, presses in ((0.0, 1), (1.0, 1)):
         for step in range(90):
             depth = 0.12 - 0.002 * min(step, 60)  # ends within the cap
             rig.point("right", (0, 1, depth), button=closed)
             rig.world.step()
         assert len(rig.told) == presses
+        assert rig.told[0].client == 5 and pulses == [("right", 0.5, 0.03)]
         for step in range(60):
             rig.point("right", (0, 1, 0.01 * step), button=closed)
             rig.world.step()

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Literal
 
 from iota._core import Body, Grip, Material, Sphere, System, Vec3
 from iota.world.event import Event
@@ -42,6 +44,16 @@ class Fingers:
         events.on_pointer(self._moved)
         events.on_leave(self._left)
         events.on_frame(self._tidy)
+
+    def touching(self, bodies: Iterable[Body]) -> tuple[int, Literal["left", "right"]] | None:
+        """The client and the hand, "left" or "right", of a fingertip that touched one of these bodies in the last step."""
+        owners = {finger.body: key for key, finger in self._fingers.items()}
+        for body in bodies if owners else ():
+            for contact in body.contacts:
+                if contact.other in owners:
+                    client, pointer = owners[contact.other]
+                    return client, "left" if pointer.startswith("left") else "right"
+        return None
 
     def destroy(self) -> None:
         """Hands push nothing any more."""

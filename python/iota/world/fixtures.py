@@ -37,6 +37,7 @@ Made = TypeVar("Made", bound=Fixture)
 Callback = Callable[..., Any] | None
 Place = Sequence[float]
 USE_KEY = "Enter"
+PULSE = (0.5, 0.03)  # strength, s
 RED, OAK = "#c8322b", "#fff1dc"
 
 
@@ -46,7 +47,7 @@ class Fixtures(Part):
 
     at: the place where it is fixed, world, m; of a door the middle of its sill, of furniture the middle of its foot. facing: the
     direction from there to who uses it, (0, 0, 1) by default, (0, 1, 0) for the top of a desk. label: written at it, and its name.
-    The function that is given gets one Event (client: who holds or used it, 0 for a thing that touches it; target: its body) or
+    The function that is given gets one Event (client: who holds, touches or used it, 0 for a thing that hits it; target: its body) or
     nothing. Their values are part of the world's state: a reset, an undo and a journal bring them back, and tell of the
     change. `fixture.destroy()` removes one. They need a System, and raise TypeError in a World of another Simulator.
 
@@ -72,6 +73,7 @@ class Fixtures(Part):
         self._users: dict[Fixture, int] = {}
         self._of: dict[Body, Fixture] = {}
         self._guiding: Guiding | None = None
+        self._fingers: Fingers | None = None
 
     def __iter__(self) -> Iterator[Fixture]:
         """All that exist, in the order of creation."""
@@ -299,7 +301,7 @@ class Fixtures(Part):
     def _begin(self) -> None:
         """With the first that acts."""
         self._guiding = Guiding(self._system, self._events, self._clients, self._guide_of)
-        Fingers(self._system, self._scene, self._events)
+        self._fingers = Fingers(self._system, self._scene, self._events)
         self._events.on_step(self._act)
         taken = {action.key for action in self._controls.actions}
         if "use" not in {action.name for action in self._controls.actions}:
@@ -342,8 +344,19 @@ class Fixtures(Part):
             fixture.hands = held.keys() & set(fixture.bodies) if held else set()
             for body in fixture.hands:
                 self._users[fixture] = held[body]
-            if fixture.act():
+            if not fixture.act():
+                continue
+            self._feel(fixture)
+            if fixture.is_told:
                 self._tell(fixture, hook)
+
+    def _feel(self, fixture: Fixture) -> None:
+        """A fingertip that moves a part is felt in its hand, and its user is the one of the event."""
+        touch = None if self._fingers is None else self._fingers.touching(fixture.bodies)
+        client = None if touch is None else self._clients.by_id.get(touch[0])
+        if touch is not None and client is not None:
+            self._users[fixture] = client.id
+            client.pulse(touch[1], *PULSE)
 
     def _tell(self, fixture: Fixture, hook: Hook | None) -> None:
         """A function that raises is reported, and called again the next time."""
