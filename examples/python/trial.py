@@ -8,7 +8,7 @@ import sys
 
 from iota import studies
 
-# Those of the fifteen people who were asked then. The question was the same for each study.
+# Fifteen people saw these studies then, and were asked the first question about each.
 ASKED = "cradle", "ladder", "shoal", "undersea", "chain", "molecule", "soft-molecule", "bucky", "lab"
 
 named = [name for name in sys.argv[1:] if name in ASKED]

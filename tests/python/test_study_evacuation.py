@@ -27,7 +27,7 @@ def test_the_flow_through_a_door_is_between_the_published_ones(width: float) -> 
     flow, _ = leave(width, 60)
     assert (
         1.0 < flow / width < 2.2
-    )  # persons per metre and second: 1.3 (Weidmann) for planning, 1.9 (Seyfried) measured
+    )  # persons per meter and second: 1.3 (Weidmann) for planning, 1.9 (Seyfried) measured
 
 
 def test_a_wider_door_lets_more_people_out_and_those_who_stroll_fewer() -> None:

@@ -41,7 +41,7 @@ class Room:
     high: tuple[float, float]
 
     def has(self, places: Array) -> Flags:
-        """Of places (n, 2)."""
+        """Whether places (n, 2) are in it."""
         return np.asarray(((places >= self.low) & (places <= self.high)).all(axis=1))
 
 
@@ -245,12 +245,12 @@ class Evacuation:
         self.left = far
 
     def leaves(self) -> Array:
-        """Of the doors that do not lie at their walls, (n, 2, 2), m."""
+        """The leaves of the doors that do not lie at their walls, (n, 2, 2), m."""
         hinged = [gate for gate in self.plan.gates if gate.hinge is not None and gate.hinge.angle.value < WIDE - 0.3]
         return np.array([gate.leaf for gate in hinged]).reshape(-1, 2, 2)
 
     def wall_forces(self, places: Array, speeds: Array) -> Array:
-        """Of walls, posts and doors, as of people who stand there."""
+        """Forces of walls, posts and doors, as of people who stand there."""
         away = away_from(np.concatenate([self.walls, self.leaves()]), places)
         far = np.maximum(np.linalg.norm(away, axis=2), 1e-6)
         gap = RADIUS + WALL / 2 - far
@@ -318,7 +318,7 @@ class Evacuation:
         self.begins = self.system.time + BEGIN
 
     def forget(self) -> None:
-        """What has been counted. After a reset the time is 0."""
+        """Counts anew. After a reset the time is 0."""
         for gate in self.plan.gates:
             gate.passed.clear()
         self.before, self.empty_since, self.begins = self.where(), None, BEGIN

@@ -277,7 +277,7 @@ class Derrick:
                 self.ropes[name].length = abs(eye.position - end) + 0.01
 
     def tension(self, name: str) -> float:
-        """Of a rope, in the last step, N."""
+        """The force in a rope in the last step, N."""
         return abs(self.ropes[name].force)
 
     def expected(self) -> float:

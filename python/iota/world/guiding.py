@@ -27,7 +27,7 @@ class Ray:
     is_down: bool
 
     def distance(self, place: Vec3) -> float:
-        """Of a place, m."""
+        """The distance of a place, m."""
         arm = place - self.origin
         along = max(arm.dot(self.direction), 0.0)
         return abs(arm - self.direction * along)
@@ -35,7 +35,7 @@ class Ray:
 
 @dataclass
 class Way:
-    """Where a held point of a jointed body goes. start: the point, m, at the value `began` of the coordinate."""
+    """The way of a held point of a jointed body. start: the point, m, at the value `began` of the coordinate."""
 
     joint: Constraint
     start: Vec3

@@ -74,7 +74,7 @@ class Survey(Part):
 
     @property
     def answers(self) -> list[dict[str, str]]:
-        """Of this run, in the order in which they came."""
+        """The answers of this run, in the order in which they came."""
         return [dict(answer) for answer in self._answers]
 
     def destroy(self) -> None:
@@ -112,7 +112,7 @@ class Survey(Part):
         return self._controls.slider(text, low, high, (low + high) / 2)
 
     def _answer(self, field: Widget) -> str:
-        """What a visitor has given, as text; empty without an answer."""
+        """Returns the answer of a visitor as text; empty without one."""
         if isinstance(field, Slider):
             return f"{field.value:g}" if field in self._moved else ""
         assert isinstance(field, TextField | Choice)
@@ -125,7 +125,7 @@ class Survey(Part):
             widget.destroy()
 
     def _send(self, event: Event) -> None:
-        """Of one visitor, once."""
+        """Keeps the answers of one visitor, once."""
         form = self._forms.get(event.client)
         if form is None:
             return
