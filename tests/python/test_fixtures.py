@@ -298,10 +298,14 @@ def test_a_plug_is_turned_drawn_in_and_held_until_it_is_pulled_hard(rig: Rig) ->
     made = rig.world.plug_and_socket((0, 1, 0), (0.04, 0.95, 0.2), rig.hear, plug_facing=(0.5, 0.3, 1))
     rig.system.gravity = (0, 0, 0)
     start = made.plug.orientation
+    texts = list(rig.world.drawings.things)
     rig.grab(made.plug)
+    rig.run(0.05)
+    assert len(rig.world.drawings.things) == len(texts) + 4  # its three shapes at its place, on a frame
     rig.move((0, 1, 0.1))
     rig.run(2.0)
     rig.let_go()
+    assert made.is_plugged and list(rig.world.drawings.things) == texts
     rig.run(2.0)
     assert made.is_plugged and made.apart < 1e-6
     assert abs(sum(a * b for a, b in zip(start, made.plug.orientation, strict=True))) < 0.99
@@ -314,6 +318,17 @@ def test_a_plug_is_turned_drawn_in_and_held_until_it_is_pulled_hard(rig: Rig) ->
             rig.world.step()
         assert made.is_plugged == stays
     assert len(rig.told) == 2
+
+
+def test_a_cable_lies_on_the_table_where_it_begins(rig: Rig) -> None:
+    rig.world.table((0, 0, 0.4))
+    made = rig.world.plug_and_socket(
+        (0, 1.05, 0), (-0.2, 0.8, 0.4), plug_facing=(-1, 0.3, 0.2), cable_from=(-0.5, 0.77, 0.2)
+    )
+    rig.run(2.0)
+    lowest = min(particle.position.y for link in made.cable for particle in link.particles)
+    assert lowest > 0.75 and made.plug.center_of_mass.y > 0.75
+    assert 0.9 < sum(abs(link.particles[1].position - link.particles[0].position) for link in made.cable) / 0.72 < 1.4
 
 
 def test_a_plug_that_was_pulled_out_may_hang_near_its_socket(rig: Rig) -> None:

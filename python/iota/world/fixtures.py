@@ -28,6 +28,7 @@ from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
 from iota.world.fingers import Fingers
+from iota.world.ghosts import FREE, READY, Ghost
 from iota.world.guiding import Guiding
 from iota.world.notices import Notices
 from iota.world.parts import Part
@@ -74,6 +75,7 @@ class Fixtures(Part):
         self._of: dict[Body, Fixture] = {}
         self._guiding: Guiding | None = None
         self._fingers: Fingers | None = None
+        self._ghosts: dict[Fixture, Ghost] = {}
 
     def __iter__(self) -> Iterator[Fixture]:
         """All that exist, in the order of creation."""
@@ -340,15 +342,35 @@ class Fixtures(Part):
             held[hold.taken] = hold.client
         for fixture, hook in list(self._made.items()):
             if not fixture.is_alive:
+                self._hide_home(fixture)
                 continue
             fixture.hands = held.keys() & set(fixture.bodies) if held else set()
             for body in fixture.hands:
                 self._users[fixture] = held[body]
-            if not fixture.act():
+            is_changed = fixture.act()
+            if isinstance(fixture, PlugAndSocket):
+                self._show_home(fixture)
+            if not is_changed:
                 continue
             self._feel(fixture)
             if fixture.is_told:
                 self._tell(fixture, hook)
+
+    def _show_home(self, fixture: PlugAndSocket) -> None:
+        """While its plug is held, it is shown as it will be in the socket."""
+        if not fixture.hands or fixture.is_plugged:
+            self._hide_home(fixture)
+            return
+        ghost = self._ghosts.get(fixture)
+        if ghost is None:
+            ghost = self._ghosts[fixture] = Ghost(self._drawings, self._scene, fixture.plug, FREE)
+            ghost.put(*fixture.home)
+        ghost.paint(READY if fixture.is_near else FREE)
+
+    def _hide_home(self, fixture: Fixture) -> None:
+        ghost = self._ghosts.pop(fixture, None)
+        if ghost is not None:
+            ghost.destroy()
 
     def _feel(self, fixture: Fixture) -> None:
         """A fingertip that moves a part is felt in its hand, and its user is the one of the event."""

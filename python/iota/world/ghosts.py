@@ -14,6 +14,7 @@ from iota.world.shown import Marker
 from iota.world.visuals import listed
 
 SEEN_THROUGH = "a0"  # of a color #rrggbbaa
+FREE, READY = "#2f9d92", "#f2a324"  # far from its place, and so near that a release joins it
 
 Pose = tuple[Vec3, Sequence[float]]
 
@@ -40,8 +41,11 @@ class Ghost:
 
     def follow(self, shift: Vec3) -> None:
         """Moves it to the place of its body, moved by `shift`, m."""
-        self.frame.at = self.body.center_of_mass + shift
-        self.frame.rotation = self.body.orientation
+        self.put(self.body.center_of_mass + shift, self.body.orientation)
+
+    def put(self, center: Vec3, rotation: Sequence[float]) -> None:
+        """Moves its center to a place, m, with a rotation, quaternion x y z w."""
+        self.frame.at, self.frame.rotation = center, rotation
 
     def destroy(self) -> None:
         for marker in self._markers:

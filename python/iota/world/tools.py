@@ -15,7 +15,7 @@ from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
-from iota.world.ghosts import Ghost
+from iota.world.ghosts import FREE, READY, Ghost
 from iota.world.history import History
 from iota.world.joining import Joins, hinge_above, nearest_ends
 from iota.world.joint_marks import JointMarks
@@ -28,7 +28,6 @@ REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
 REWIND_SHARE = 0.01  # of the time: what copies of the world may take
 MOST_COPIES = 400  # that are there; some thousand bodies, doubled by "select all", stop a world
-FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 PARTS_COLORS = (
     "#d0402b",
     "#3f7fd0",
