@@ -4,6 +4,8 @@
 #include "shape_argument.h"
 #include "typed_argument.h"
 
+#include <cstdio>
+
 namespace iota::bindings {
 
 namespace {
@@ -15,10 +17,10 @@ constexpr const char* body_doc =
 constexpr const char* make_body_doc =
     "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
     "shape: any shape, of density (kg/m^3, default 1000) or mass (kg), with its origin at position\n"
-    "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses represent it, with exactly\n"
+    "(m) and its frame turned by orientation: ('z', 30) or ((1, 1, 0), 30), axis and degrees, or a quaternion x y z w. Four equal point masses represent it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
-    "material: with which it touches, see `Body.material`.\n"
+    "material: with which it touches, see `Body.material`. color: see `Body.color`.\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
     "stepped nor drawn) or 'resting' (dynamic but asleep, see `rest_after`). damping: 1/s, adds to the system's.\n\n"
     "Raises ValueError for numbers that are out of range, TypeError for mass, position, ... without a shape.\n\n"
@@ -33,8 +35,8 @@ constexpr const char* make_obstacle_doc =
     "can be tied to it, and `bodies`, masses, energies and articulates do not count it. `World.add_static` makes one with a\n"
     "look.\n\n"
     "shape: any; a Mesh need not be closed, and has then two sides and no inside. position: of its origin, m.\n"
-    "orientation: quaternion x y z w. Assigning `Body.position` moves it. material: bodies with one touch it, None: nothing\n"
-    "does.\n\n"
+    "orientation: as of `System.body`. Assigning `Body.position` moves it. material: bodies with one touch it, None: nothing\n"
+    "does. color: see `Body.color`.\n\n"
     "    wall = system.obstacle(iota.Box((4, 2, 0.1)), position=(0, 1, -2))\n"
     "    ground = system.obstacle(iota.HalfSpace((0, 1, 0)))";
 
@@ -78,11 +80,13 @@ void bind_making(nb::class_<SystemObject>& system) {
       [](nb::handle_t<SystemObject> self, const KindWord& kind, double damping, nb::object shape,
          std::optional<double> density, std::optional<double> mass, VectorArgument position, nb::object orientation,
          VectorArgument velocity, VectorArgument spin, nb::iterable attachments,
-         const std::optional<Material>& material) {
+         const std::optional<Material>& material, nb::object color) {
         System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("body(...)");
         finite_not_negative(damping, "damping", "1/s");
+        const std::optional<std::uint32_t> rgb = to_opaque_color(color);
         const auto made = [&](BodyId body) {
           if (material) engine.bodies().set_material(body, material);
+          if (rgb) engine.bodies().set_color(body, rgb);
           return handle_of(self, body);
         };
         if (shape.is_none()) {
@@ -104,34 +108,35 @@ void bind_making(nb::class_<SystemObject>& system) {
       "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
       "density"_a = nb::none(), "mass"_a = nb::none(), "position"_a = zero,
       "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
-      "attachments"_a = nb::tuple(), "material"_a.none() = nb::none(),
+      "attachments"_a = nb::tuple(), "material"_a.none() = nb::none(), "color"_a = nb::none(),
       nb::sig(
           "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Shape | None = None, "
           "density: float | None = None, mass: float | None = None, "
           "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
-          "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "
+          "orientation: " IOTA_ROTATION " = (0.0, 0.0, 0.0, 1.0), "
           "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = (), "
-          "material: Material | None = None) -> Body"),
+          "material: Material | None = None, color: " IOTA_COLOR " | None = None) -> Body"),
       make_body_doc);
   system.def(
       "obstacle",
       [](nb::handle_t<SystemObject> self, nb::handle shape, VectorArgument position, nb::object orientation,
-         const std::optional<Material>& material) {
+         const std::optional<Material>& material, nb::object color) {
         System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("obstacle(...)");
+        const std::optional<std::uint32_t> rgb = to_opaque_color(color);
         const BodyId body = engine.bodies().create_obstacle(to_shape(shape), to_vec3(position, "position"),
                                                             to_quaternion(orientation, "orientation"));
         if (material) engine.bodies().set_material(body, material);
+        if (rgb) engine.bodies().set_color(body, rgb);
         return handle_of(self, body);
       },
       "shape"_a, "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), nb::kw_only(),
-      "material"_a.none() = nb::none(),
-      nb::sig(
-          "def obstacle(self, shape: Shape, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
-          "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), *, material: Material | None = None) "
-          "-> Body"),
+      "material"_a.none() = nb::none(), "color"_a = nb::none(),
+      nb::sig("def obstacle(self, shape: Shape, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+              "orientation: " IOTA_ROTATION " = (0.0, 0.0, 0.0, 1.0), *, material: Material | None = None, "
+              "color: " IOTA_COLOR " | None = None) -> Body"),
       make_obstacle_doc);
 }
 
@@ -212,9 +217,10 @@ void bind_body(nb::module_& module) {
             set_pose(self, bodies.center_of_mass(self.id), to_quaternion(orientation.value, "orientation"));
           },
           nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
-          nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
+          nb::for_setter(nb::sig("def orientation(self, value: " IOTA_ROTATION ", /) -> None")),
           "Of the drawn frame: unit quaternion x y z w that turns body-frame vectors into the world frame. For a body\n"
-          "given by shape it is the shape's frame. Assigning turns it about its center of mass as `set_pose` does.")
+          "given by shape it is the shape's frame. Assigning turns it about its center of mass as `set_pose` does; axis and\n"
+          "degrees as in ('z', 30) will do, too.")
       .def(
           "set_pose",
           [](const BodyHandle& self, VectorArgument position, nb::object orientation) {
@@ -224,10 +230,10 @@ void bind_body(nb::module_& module) {
             engine.bodies().set_pose(self.id, to_vec3(position, "position"), turn);
           },
           "position"_a, "orientation"_a = nb::none(),
-          nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
-                  "collections.abc.Sequence[float] | None = None) -> None"),
+          nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: " IOTA_ROTATION
+                  " | None = None) -> None"),
           "Moves it and rigidly everything hinged to it, nails included. A scripted body arrives at the end of the\n"
-          "next step. position: of the center of mass, m. orientation: quaternion x y z w, None for the present one.")
+          "next step. position: of the center of mass, m. orientation: as assigned, None for the present one.")
       .def_prop_ro(
           "inertia", [](const BodyHandle& self) { return to_array(self.use().bodies().inertia(self.id)); },
           nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
@@ -257,6 +263,22 @@ void bind_body(nb::module_& module) {
             between_steps(self, "name = ...").bodies().set_name(self.id, name);
           },
           "A name given by the script: at most 63 bytes, '' for none. Names need not be unique.")
+      .def_prop_rw(
+          "color",
+          [](const BodyHandle& self) -> std::optional<std::string> {
+            const std::optional<std::uint32_t> rgb = self.use().bodies().color(self.id);
+            if (!rgb) return std::nullopt;
+            char text[8];
+            std::snprintf(text, sizeof text, "#%06x", *rgb & 0xffffffU);
+            return text;
+          },
+          [](const BodyHandle& self, ColorArgument color) {
+            self.use().bodies().set_color(self.id, to_opaque_color(color.value));
+          },
+          nb::for_getter(nb::sig("def color(self) -> str | None")), nb::for_setter(nb::arg("value").none()),
+          nb::for_setter(nb::sig("def color(self, value: " IOTA_COLOR " | None, /) -> None")),
+          "'#rrggbb', in which viewers draw it instead of in the colors of its look; None: in those. Assign that, a name of\n"
+          "CSS such as 'tomato', 0xRRGGBB, or three numbers from 0 to 1. Pieces that are split off it have it too.")
       .def_prop_ro(
           "energy",
           [](const BodyHandle& self) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
 #include "shape_argument.h"
+#include "typed_argument.h"
 
 #include <nanobind/stl/array.h>
 
@@ -16,7 +17,7 @@ constexpr const char* make_emitter_doc =
     "position (m), orientation (quaternion x y z w): of the source. velocity: in its frame, m/s, plus a random\n"
     "velocity of at most velocity_spread m/s. lifetime: s; lifetimes differ by at most lifetime_spread. mass: kg.\n"
     "damping: 1/s. max_count: alive at once. curve: at most 8 of (life, radius, color), life rising from 0 at birth\n"
-    "to 1 at death, radius in m, color 3 or 4 numbers from 0 to 1. Equal seeds give equal particles.\n\n"
+    "to 1 at death, radius in m, color as of `Particle.color`. Equal seeds give equal particles.\n\n"
     "    fire = system.emitter(rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
     "                          curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
 
@@ -35,7 +36,7 @@ std::vector<AttributeKey> to_curve(nb::iterable curve) {
     key.life = finite(nb::cast<double>(nb::handle(PySequence_Fast_GET_ITEM(parts.ptr(), 0))), "life");
     key.radius =
         finite_not_negative(nb::cast<double>(nb::handle(PySequence_Fast_GET_ITEM(parts.ptr(), 1))), "radius", "m");
-    key.color = to_color(PySequence_Fast_GET_ITEM(parts.ptr(), 2), "color");
+    key.color = to_color(PySequence_Fast_GET_ITEM(parts.ptr(), 2));
     keys.push_back(key);
   }
   return keys;
@@ -158,12 +159,12 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
           [](const ParticleHandle& self, nb::object value) {
             System& engine = between_steps(self, "color = ...");
             ParticleAttributes attributes = engine.particles().attributes(self.id);
-            attributes.color = to_color(value, "color");
+            attributes.color = to_color(value);
             engine.particles().set_attributes(self.id, attributes);
           },
           nb::for_getter(nb::sig("def color(self) -> tuple[float, float, float, float]")),
-          nb::for_setter(nb::sig("def color(self, value: collections.abc.Sequence[float], /) -> None")),
-          "Red, green, blue, opacity from 0 to 1.");
+          nb::for_setter(nb::sig("def color(self, value: " IOTA_COLOR ", /) -> None")),
+          "Red, green, blue, opacity from 0 to 1. Assign these, a name such as 'tomato', '#rrggbb' or 0xRRGGBB.");
 }
 
 void bind_orientation(nb::class_<ParticleHandle>& type) {
@@ -178,7 +179,7 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
                 .set_orientation(self.id, to_quaternion(value, "orientation"));
           },
           nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
-          nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
+          nb::for_setter(nb::sig("def orientation(self, value: " IOTA_ROTATION ", /) -> None")),
           "Quaternion x y z w. Assigning makes it an oriented particle: it rotates like a free ball of its radius\n"
           "(0.05 m if it has none), independently of its body.")
       .def_prop_ro(

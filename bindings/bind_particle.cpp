@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
+#include "typed_argument.h"
 
 #include <numeric>
 
@@ -94,7 +95,7 @@ void bind_particle(nb::module_& module) {
       .def(
           "particle",
           [](const BodyHandle& self, VectorArgument position, double mass, VectorArgument velocity,
-             std::optional<double> lifetime, std::optional<double> radius, nb::object color, bool nailed) {
+             std::optional<double> lifetime, std::optional<double> radius, ColorArgument color, bool nailed) {
             const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
             if (mass != 0) finite_positive(mass, "mass", "kg");
             self.use();
@@ -103,9 +104,9 @@ void bind_particle(nb::module_& module) {
             if (lifetime && *lifetime != attributes.lifetime)
               attributes.lifetime = finite_positive(*lifetime, "lifetime", "s");
             if (radius) attributes.radius = finite_not_negative(*radius, "radius", "m");
-            if (!color.is_none()) attributes.color = to_color(color, "color");
+            if (!color.value.is_none()) attributes.color = to_color(color.value);
             const ParticleHandle made = sibling(self, engine.particles().create(self.id, place, mass, speed));
-            if (lifetime || radius || !color.is_none()) engine.particles().set_attributes(made.id, attributes);
+            if (lifetime || radius || !color.value.is_none()) engine.particles().set_attributes(made.id, attributes);
             if (nailed) engine.particles().nail(made.id);
             return made;
           },

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
+#include "typed_argument.h"
 
 #include <nanobind/operators.h>
+#include <nanobind/stl/array.h>
 
+#include <array>
 #include <cstring>
 
 namespace iota::bindings {
@@ -41,6 +44,14 @@ Vector3Array make_vector3_array(std::vector<double> numbers) {
 }
 
 void bind_vector(nb::module_& module) {
+  module.def(
+      "unit_quaternion",
+      [](nb::handle rotation) {
+        const Quaternion q = to_quaternion(rotation, "a rotation");
+        return std::array{q.x, q.y, q.z, q.w};
+      },
+      "rotation"_a, nb::sig("def unit_quaternion(rotation: " IOTA_ROTATION ") -> tuple[float, float, float, float]"),
+      "x y z w, from these or an axis and an angle in degrees: ('z', 30) or ((1, 1, 0), 30). Raises TypeError, ValueError.");
   nb::class_<Vec3>(module, "Vec3", vector_doc)
       .def(
           "__init__", [](Vec3* self, double x, double y, double z) { new (self) Vec3{x, y, z}; }, "x"_a = 0.0,

@@ -29,7 +29,11 @@ struct TypedArgument {
 using SpringArgument = TypedArgument<"float | collections.abc.Sequence[float]">;
 using ServoArgument = TypedArgument<"tuple[float, float] | tuple[float, float, float]">;
 using PlaceArgument = TypedArgument<"Vec3 | collections.abc.Sequence[float]">;
-using QuaternionArgument = TypedArgument<"collections.abc.Sequence[float]">;
+/// See `to_quaternion` and `to_color`.
+#define IOTA_ROTATION "collections.abc.Sequence[float] | tuple[str | Vec3 | collections.abc.Sequence[float], float]"
+#define IOTA_COLOR "str | int | collections.abc.Sequence[float]"
+using QuaternionArgument = TypedArgument<IOTA_ROTATION>;
+using ColorArgument = TypedArgument<IOTA_COLOR " | None">;
 using PathArgument = TypedArgument<
     "collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] | "
     "collections.abc.Callable[[float], Vec3 | collections.abc.Sequence[float]]">;

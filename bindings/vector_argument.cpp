@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vector_argument.h"
 
-#include <nanobind/stl/vector.h>
+#include <nanobind/stl/array.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numbers>
 #include <string>
-#include <vector>
 
 namespace iota::bindings {
 
@@ -66,14 +68,51 @@ Vec3 to_vec3(VectorArgument argument, const char* name) {
   return vector;
 }
 
+namespace {
+
+/// The items of a sequence of this many; null for any other object.
+nb::object items_of(nb::handle value, Py_ssize_t count) {
+  if (!PySequence_Check(value.ptr()) || PyUnicode_Check(value.ptr())) return {};
+  nb::object items = nb::steal(PySequence_Fast(value.ptr(), ""));
+  if (!items.is_valid()) PyErr_Clear();
+  return items.is_valid() && PySequence_Fast_GET_SIZE(items.ptr()) == count ? items : nb::object();
+}
+
+/// An axis of the world by its letter, or a direction.
+bool try_axis(nb::handle value, Vec3& axis) {
+  if (!PyUnicode_Check(value.ptr())) return try_vec3(value, axis);
+  const std::string letter = nb::cast<std::string>(value);
+  axis = {letter == "x" ? 1.0 : 0.0, letter == "y" ? 1.0 : 0.0, letter == "z" ? 1.0 : 0.0};
+  return dot(axis, axis) > 0;
+}
+
+bool try_rotation(nb::handle value, double (&q)[4]) {
+  if (const nb::object items = items_of(value, 4); items.is_valid()) {
+    for (Py_ssize_t i = 0; i < 4; ++i)
+      if (!try_number(PySequence_Fast_GET_ITEM(items.ptr(), i), q[i])) return false;
+    return true;
+  }
+  const nb::object items = items_of(value, 2);
+  Vec3 axis;
+  double degrees = 0;
+  if (!items.is_valid() || !try_axis(PySequence_Fast_GET_ITEM(items.ptr(), 0), axis) ||
+      !try_number(PySequence_Fast_GET_ITEM(items.ptr(), 1), degrees))
+    return false;
+  const double length = norm(axis), half = degrees * std::numbers::pi / 360;
+  const double sine = length > 0 ? std::sin(half) / length : std::numeric_limits<double>::quiet_NaN();
+  q[0] = sine * axis.x, q[1] = sine * axis.y, q[2] = sine * axis.z, q[3] = std::cos(half);
+  return true;
+}
+
+}  // namespace
+
 Quaternion to_quaternion(nb::handle value, const char* name) {
   double v[4] = {};
-  nb::object items = PySequence_Check(value.ptr()) ? nb::steal(PySequence_Fast(value.ptr(), "")) : nb::object();
-  bool good = items.is_valid() && PySequence_Fast_GET_SIZE(items.ptr()) == 4;
-  if (!items.is_valid()) PyErr_Clear();
-  for (Py_ssize_t i = 0; good && i < 4; ++i) good = try_number(PySequence_Fast_GET_ITEM(items.ptr(), i), v[i]);
-  if (!good) {
-    const std::string text = std::string(name) + " must be 4 numbers x y z w, not " + describe(value);
+  if (!try_rotation(value, v)) {
+    const std::string text = std::string(name) +
+                             " must be an axis and an angle in degrees, as in ('z', 30) or ((1, 1, 0), 30), or 4 "
+                             "numbers x y z w of a quaternion, not " +
+                             describe(value);
     throw nb::type_error(text.c_str());
   }
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
@@ -112,21 +151,14 @@ double finite_not_negative(double value, const char* name, const char* unit) {
   return value;
 }
 
-Color to_color(nb::handle value, const char* name) {
-  Color color{1, 1, 1, 1};
-  try {
-    const auto numbers = nb::cast<std::vector<double>>(value);
-    if (numbers.size() == 3 || numbers.size() == 4) {
-      bool good = true;
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        good = good && numbers[i] >= 0 && numbers[i] <= 1;
-        color[i] = static_cast<float>(numbers[i]);
-      }
-      if (good) return color;
-    }
-  } catch (const nb::cast_error&) {
-  }
-  throw nb::value_error((std::string(name) + " must be 3 or 4 numbers from 0 to 1, not " + describe(value)).c_str());
+Color to_color(nb::handle value) {
+  const auto parts = nb::cast<std::array<float, 4>>(nb::module_::import_("iota.colors").attr("rgba")(value));
+  return {parts[0], parts[1], parts[2], parts[3]};
+}
+
+std::optional<std::uint32_t> to_opaque_color(nb::handle value) {
+  if (value.is_none()) return std::nullopt;
+  return nb::cast<std::uint32_t>(nb::module_::import_("iota.colors").attr("opaque_number")(value));
 }
 
 }  // namespace iota::bindings

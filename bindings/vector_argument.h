@@ -7,6 +7,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
+#include <cstdint>
+#include <optional>
+
 namespace iota::bindings {
 
 namespace nb = nanobind;
@@ -23,11 +26,14 @@ bool try_vec3(nb::handle value, Vec3& out);
 /// As `try_vec3`; TypeError if it is not a vector, ValueError if it is not finite. The text contains `name`.
 Vec3 to_vec3(VectorArgument argument, const char* name);
 
-/// A unit quaternion from any 4 numbers x y z w; TypeError or ValueError for other values, or zero.
+/// A unit quaternion from any 4 numbers x y z w that are not zero, or from an axis and an angle in degrees: ('z', 30) or
+/// ((1, 1, 0), 30). TypeError or ValueError for other values.
 Quaternion to_quaternion(nb::handle value, const char* name);
 
-/// Red, green, blue and opacity from 3 or 4 numbers from 0 to 1; ValueError for other values.
-Color to_color(nb::handle value, const char* name);
+/// Red, green, blue and opacity, each from 0 to 1, of anything that `iota.colors.rgba` takes; its errors.
+Color to_color(nb::handle value);
+/// The same as 0xRRGGBB; None: none. ValueError for a color that is seen through.
+std::optional<std::uint32_t> to_opaque_color(nb::handle value);
 
 /// `value` in short, for error texts.
 std::string describe(nb::handle value);

@@ -69,12 +69,13 @@ CLIENT: list[Vector] = [
     (
         "grab_start",
         "grab_start",
-        b"\x03" + pack("<I", 7) + identity(12, 1) + vec3([0.5, -0.25, 0.0]) + vec3([1.5, -2.0, 1024.125]),
+        b"\x03" + pack("<I", 7) + identity(12, 1) + vec3([0.5, -0.25, 0.0]) + vec3([1.5, -2.0, 1024.125]) + text("left"),
         {
             "hold": 7,
             "body": {"slot": 12, "generation": 1},
             "local_point": [0.5, -0.25, 0.0],
             "target": [1.5, -2.0, 1024.125],
+            "pointer": "left",
         },
     ),
     (
@@ -416,8 +417,8 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
     ),
     (
         "body",
-        b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125) + text("left \u00e4rm"),
-        {"kind": 2, "visual": 9, "odd": True, "length": 0.125, "name": "left \u00e4rm"},
+        b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125) + pack("<I", 0xFF6347) + text("left \u00e4rm"),
+        {"kind": 2, "visual": 9, "odd": True, "length": 0.125, "color": 0xFF6347, "name": "left \u00e4rm"},
     ),
     ("membership", pack("<I", 40000), {"articulate": 40000}),
     (

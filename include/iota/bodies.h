@@ -115,6 +115,9 @@ class Bodies : public View {
   double radius(BodyId) const;
   /// Throws std::invalid_argument for a body given by shape.
   void set_radius(BodyId, double meters);
+  /// 0xRRGGBB, in which viewers draw it; none: that of its look. Pieces that are split off have it too.
+  std::optional<std::uint32_t> color(BodyId) const;
+  void set_color(BodyId, std::optional<std::uint32_t> rgb);
   /// Its own. With a material its outline touches the outlines of static bodies that have one: it rests, slides and rolls on them.
   /// None: System::usual_material counts, but for static bodies, which touch nothing then.
   std::optional<Material> material(BodyId) const;

@@ -48,6 +48,7 @@ struct DrawnBody {
   std::uint32_t particles = 0;
   double radius = 0;                             ///< of its lines, or of its only particle; 0 for a body of solids
   std::optional<ParticleAttributes> attributes;  ///< of a body of one particle that has some
+  std::optional<std::uint32_t> color;            ///< 0xRRGGBB, instead of that of its material
   std::vector<DrawnBall> balls;                  ///< particles with a radius, in a body of several
 };
 

@@ -45,8 +45,8 @@ using Views = std::tuple<Bodies, Particles, Bonds, CosmeticBonds, AngleSprings, 
 /// StaleIdError for ids of destroyed objects, before any change. A system is used from one thread at a time.
 ///
 /// During a step, functions of the script may read everything, and request the edits that `queued_edits` lists:
-/// combine, destroy, nail, release, separate, set_active, set_compliance, set_coordinate, set_kind, set_length,
-/// set_material, set_radius. These are made right after the step; all others throw std::logic_error.
+/// combine, destroy, nail, release, separate, set_active, set_color, set_compliance, set_coordinate, set_kind,
+/// set_length, set_material, set_radius. These are made right after the step; all others throw std::logic_error.
 class System {
  public:
   explicit System(const SystemOptions& options = {});

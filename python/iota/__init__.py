@@ -20,7 +20,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from iota import arguments, builder, looks, types
+from iota import arguments, builder, elsewhere, looks, types
 from iota._core import (
     AngleSpring,
     Articulate,
@@ -141,18 +141,7 @@ __all__ = [
     "types",
 ]
 
-# Scripts look for these at one class, and another one has them.
-arguments.explain_reading(
-    (AngleSpring, Articulate, Body, Bond, Constraint, Emitter, Field, Grip, Group, Law, PairForce, Particle, System),
-    {
-        "particle": "body.particle(...), of a body such as system.body()",
-        "particles": "body.particles or system.particles",
-        "nail": "particle.nail()",
-        "combine": "p.combine(q), of particles or bodies",
-        "separate": "p.separate(q), of particles",
-        "apply_force": "particle.apply_force(force) or body.apply_force(force)",
-    },
-)
+elsewhere.explain()
 for _module in (builder.__name__, looks.__name__, types.__name__, __name__):
     arguments.explain_module(_module)
 
@@ -161,4 +150,6 @@ def __getattr__(name: str) -> ModuleType:
     """Parts that take long to import, or need more packages, when they are first used."""
     if name in _LATER:
         return import_module(f"iota.{name}")
+    if name in elsewhere.OF_MODULE:
+        raise AttributeError(f"module 'iota' has no attribute {name!r}: it is {elsewhere.OF_MODULE[name]}")
     raise AttributeError(f"module 'iota' has no attribute {name!r}", name=name, obj=import_module("iota"))

@@ -23,6 +23,7 @@ from iota._core import Vec3
 
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
+INSTEAD: dict[type, Mapping[str, str]] = {}  # what to use instead of attributes that classes of the engine do not have
 VECTOR = ("Sequence", "NDArray")  # types accepted as a Vec3
 LARGEST = 2**31
 RAISE = dis.opmap["RAISE_VARARGS"]  # the statement
@@ -69,7 +70,8 @@ def explain_assignment(kind: type, name: str) -> str | None:
     known = [n for n in dir(kind) if not n.startswith("_")]
     member = getattr(kind, name, None)
     if name not in known:
-        return f"{a(kind.__name__)} has no attribute '{name}'{suggestion(name, [n for n in known if is_settable(kind, n)])}"
+        near = near_attribute(name, [n for n in known if is_settable(kind, n)], INSTEAD.get(kind, {}))
+        return f"{a(kind.__name__)} has no attribute '{name}'{near}"
     if not isinstance(member, property):
         return f"{kind.__name__}.{name} is a method and cannot be assigned"
     if member.fset is not None:
@@ -115,16 +117,16 @@ def refuse_reading(thing: object, name: str, elsewhere: Mapping[str, str] = Mapp
     raise AttributeError(f"{a(kind.__name__)} has no attribute '{name}'{near}")
 
 
-def explain_reading(kinds: Iterable[type], elsewhere: Mapping[str, str]) -> None:
-    """Lets classes of the engine say where names are that they do not have; tracebacks add near names of their own."""
+def explain_reading(kind: type, elsewhere: Mapping[str, str]) -> None:
+    """Lets a class of the engine say where names are that it does not have; tracebacks add near names of its own."""
+    INSTEAD[kind] = elsewhere
 
     def read(thing: object, name: str) -> object:
         if name in elsewhere:
             refuse_reading(thing, name, elsewhere)
         return object.__getattribute__(thing, name)  # raises
 
-    for kind in kinds:
-        setattr(kind, "__getattr__", read)  # noqa: B010  # checkers would take any name
+    setattr(kind, "__getattr__", read)  # noqa: B010  # checkers would take any name
 
 
 def near_attribute(name: str, names: Iterable[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:

@@ -8,7 +8,7 @@ the page while it runs. The style "*" is used for every style:
     world.draw(links, {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)})
 
 Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. The page draws exactly the engine's shape. The functions
-below are shortcuts. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at
+below are shortcuts. Lengths in m, colors by name or as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at
 the center of mass and +x from its first particle to its last.
 
 A `texture` is a PNG or JPEG file or an array: on each face of a box, around a ball, a cylinder or a cone, and on a mesh as
@@ -29,8 +29,9 @@ from typing import Any, TypeAlias, get_args
 import numpy as np
 
 from iota import shapes
-from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus, unit_quaternion
 from iota.arguments import SHORT, is_number, of_type
+from iota.colors import color_text
 from iota.textures import Texture, check_image, material_name, texture_of
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
@@ -44,9 +45,11 @@ class Look:
 
     shape: Shape | None  #: None: the body's own shape, see `solid`
     material: str = "paint"
-    color: Any = None  #: "#rrggbb" or "#rrggbbaa", 0xRRGGBB, or numbers from 0 to 1; None: that of the material
+    color: Any = (
+        None  #: "tomato", "#rrggbb" or "#rrggbbaa", 0xRRGGBB, or numbers from 0 to 1; None: that of the material
+    )
     offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
-    rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
+    rotation: Any = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame: ("z", 30), axis and degrees, or a quaternion x y z w
     turn: float = 0.0  #: of every other body with this look, about the body's x axis, rad
     fits: bool = False  #: has the length of its body or strut
     texture: Any = None  #: path of a PNG or JPEG file, or an array, see `texture_of`; None: that of the material
@@ -59,13 +62,8 @@ class Look:
             raise TypeError(
                 f"a look is of a shape, as in Look(iota.Sphere(0.1), 'wood'), not of {SHORT.repr(self.shape)}"
             )
-        for name, counts in (("offset", (2, 3)), ("rotation", (4,))):
-            object.__setattr__(self, name, _finite(name, getattr(self, name), counts))
-        size = math.hypot(*self.rotation)
-        if not size > 0:
-            raise ValueError("rotation must be a quaternion x y z w that is not zero")
-        if abs(size - 1) > 1e-9:
-            object.__setattr__(self, "rotation", tuple(part / size for part in self.rotation))
+        object.__setattr__(self, "offset", _finite("offset", self.offset, (2, 3)))
+        object.__setattr__(self, "rotation", tuple(unit_quaternion(self.rotation)))
         object.__setattr__(self, "turn", _finite("turn", (self.turn,), (1,))[0])
         if self.color is not None:
             object.__setattr__(self, "color", color_text(self.color))
@@ -120,29 +118,6 @@ def _finite(name: str, values: Any, counts: Sequence[int]) -> tuple[float, ...]:
         wanted = "a finite number" if counts == (1,) else f"{' or '.join(map(str, counts))} finite numbers"
         raise ValueError(f"{name} must be {wanted}, not {SHORT.repr(values)}")
     return tuple(float(part) for part in parts) + (0.0,) * (max(counts) - len(parts))
-
-
-def color_text(color: Any) -> str:
-    """As "#rrggbb" or "#rrggbbaa". Raises ValueError and TypeError."""
-    if isinstance(color, str):
-        color_number(color)
-        return color
-    if isinstance(color, int) and 0 <= color <= 0xFFFFFF:
-        return f"#{color:06x}"
-    if isinstance(color, int):
-        raise ValueError(f"a color is from 0 to 0xFFFFFF, not {color:#x}")
-    parts = tuple(color) if isinstance(color, Iterable) else ()
-    if len(parts) not in (3, 4) or not all(is_number(part) and math.isfinite(part) for part in parts):
-        raise TypeError(f'a color is "#rrggbb", 0xRRGGBB, or 3 or 4 numbers from 0 to 1, not {SHORT.repr(color)}')
-    return "#" + "".join(f"{round(255 * min(max(float(part), 0.0), 1.0)):02x}" for part in parts)
-
-
-def color_number(text: str) -> int:
-    """0xRRGGBB of "#rrggbb"; of "#rrggbbaa" with the transparency in the highest byte. Raises ValueError."""
-    digits = text.removeprefix("#")
-    if text == digits or len(digits) not in (6, 8) or not all(digit in "0123456789abcdefABCDEF" for digit in digits):
-        raise ValueError(f'a color is "#rrggbb" or "#rrggbbaa", not {text!r}')
-    return 255 - int(digits[6:] or "ff", 16) << 24 | int(digits[:6], 16)
 
 
 Looks: TypeAlias = dict[str, Look | list[Look]]

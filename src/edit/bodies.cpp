@@ -250,6 +250,17 @@ void apply(Editor& e, const SetRadius& c) {
   set_radius(model, body, c.value);
 }
 
+void apply(Editor& e, const SetColor& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  if (c.value > 0xffffff) throw std::invalid_argument(text("color must be at most 0xffffff, not ", c.value));
+  if (c.has_one)
+    model.colors.make(body) = c.value;
+  else
+    model.colors.erase(body);
+  model.note_body(body);
+}
+
 void apply(Editor& e, const SetMaterial& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);

@@ -43,6 +43,14 @@ struct SetRadius {
   BodyId body;
   double value;
 };
+/// Instead of the color of its material, in which it is drawn otherwise.
+struct SetColor {
+  static constexpr std::string_view queued_as = "set_color";
+  static constexpr bool keeps_energy = true;
+  BodyId body;
+  bool has_one;
+  std::uint32_t value;  ///< 0xRRGGBB
+};
 /// A body without a material touches nothing.
 struct SetMaterial {
   static constexpr std::string_view queued_as = "set_material";
@@ -73,6 +81,7 @@ void apply(Editor&, const SetRod&);
 void apply(Editor&, const SetKind&);
 void apply(Editor&, const SetBodyDamping&);
 void apply(Editor&, const SetRadius&);
+void apply(Editor&, const SetColor&);
 void apply(Editor&, const SetMaterial&);
 void apply(Editor&, const SetPose&);
 void apply(Editor&, const SetBodyVelocity&);

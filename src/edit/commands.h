@@ -141,7 +141,8 @@ using OfNouns = std::variant<
     SetMaterial,
     SetUsualMaterial,
     CreateObstacle,
-    TakeSnapshot>;
+    TakeSnapshot,
+    SetColor>;
 // clang-format on
 
 namespace detail {

@@ -71,6 +71,10 @@ void Audit::check_links() {
     require(model_.bodies.is_alive(slot), "dead body ", slot, " has a radius");
     require(std::isfinite(radius) && radius > 0, "body ", slot, " has radius ", radius);
   });
+  model_.colors.for_each([&](std::uint32_t slot, std::uint32_t color) {
+    require(model_.bodies.is_alive(slot), "dead body ", slot, " has a color");
+    require(color <= 0xffffff, "body ", slot, " has color ", color);
+  });
   const auto check = [this](const Material& m, std::string_view whose) {
     require(std::isfinite(m.friction) && m.friction >= 0, whose, " has friction ", m.friction);
     require(m.restitution >= 0 && m.restitution <= 1, whose, " has restitution ", m.restitution);

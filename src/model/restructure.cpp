@@ -337,7 +337,7 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     model.rebuild_basis(body);
     const std::vector<ParticleId> strays = stray_markers(model, body);
     const std::uint32_t own = model.make_body(model.bodies[body].kind, model.body_damping[body]);
-    model.radii.copy(body, own), model.materials.copy(body, own);
+    model.radii.copy(body, own), model.materials.copy(body, own), model.colors.copy(body, own);
     model.particles[q].part = model.bodies.id(own);
     Ring ring;
     ring.position = position, ring.velocity = velocity;

@@ -45,7 +45,7 @@ std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::u
                         RestructureReport& report, bool& torn) {
   std::sort(leaving.begin(), leaving.end());
   const std::uint32_t own = model.make_body(model.bodies[body].kind, model.body_damping[body]);
-  model.radii.copy(body, own), model.materials.copy(body, own);
+  model.radii.copy(body, own), model.materials.copy(body, own), model.colors.copy(body, own);
   Body &from = model.bodies[body], &to = model.bodies[own];
   hand_over(model.solids, from.first_solid, to.first_solid, own, [&](const Solid& s) {
     return std::pair{

@@ -146,7 +146,8 @@ void Structure::remove_body(std::uint32_t body) {
   remove_solids_of(body, none);
   take_from_articulate(body);
   forget_body(body);
-  more_rows.erase(body), body_damping.erase(body), radii.erase(body), obstacles.erase(body), materials.erase(body);
+  more_rows.erase(body), body_damping.erase(body), radii.erase(body), obstacles.erase(body), materials.erase(body),
+      colors.erase(body);
   bodies.destroy(body);
 }
 

@@ -180,6 +180,7 @@ class Structure {
   SideTable<Obstacle> obstacles;        ///< of bodies
   SideTable<double> radii;              ///< of bodies that have one of their own, m; see outline.h
   double usual_radius = 0;              ///< of all other bodies, m; 0: not chosen yet
+  SideTable<std::uint32_t> colors;      ///< of bodies that have one instead of that of their material, 0xRRGGBB
   SideTable<Material> materials;        ///< of bodies that touch others ...
   Material usual_material;              ///< ... and of all other bodies that can move,
   std::uint8_t has_usual_material = 0;  ///< if there is one
@@ -519,6 +520,7 @@ void Structure::archive(Archive& ar) {
   more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
   obstacles.archive(ar, bodies.slot_count());
   radii.archive(ar, bodies.slot_count()), ar.value(usual_radius);
+  colors.archive(ar, bodies.slot_count());
   materials.archive(ar, bodies.slot_count()), ar.value(usual_material), ar.value(has_usual_material);
   corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);

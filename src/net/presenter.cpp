@@ -101,15 +101,27 @@ Vec3 rotated(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
+/// 0xRRGGBB. levels: of each of the three, without 0.
+std::uint32_t to_wire(const Color& color, double levels) {
+  std::uint32_t rgb = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = std::round(std::clamp<double>(color[i], 0, 1) * levels);
+    rgb = rgb << 8 | static_cast<std::uint32_t>(share * 255 / levels);
+  }
+  return rgb;
+}
+
 /// The color is rounded, so that many share a visual.
 protocol::Part ball(double radius, const Color& color) {
   protocol::Part part = make_part(every_style, to_wire(Sphere{radius}), "paint");
-  part.color = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double share = std::round(std::clamp<double>(color[i], 0, 1) * 7);
-    part.color = part.color << 8 | static_cast<std::uint32_t>(share * 255 / 7);
-  }
+  part.color = to_wire(color, 7);
   return part;
+}
+
+/// Instead of that of its look: its own, or that of its only particle.
+std::uint32_t color_of(const DrawnBody& body, bool is_assigned) {
+  if (body.color) return *body.color;
+  return body.attributes && !is_assigned ? to_wire(body.attributes->color, 255) : protocol::no_color;
 }
 
 std::pair<Vec3, Box> box_around(const Mesh& mesh) {
@@ -276,6 +288,7 @@ void Presenter::present_body(const DrawnBody& body, const NameOf& name_of) {
                             visual,
                             is_assigned && assignment->second.odd,
                             size(length),
+                            color_of(body, is_assigned),
                             name_of ? fit_text(name_of(body.id), max_name) : std::string()},
        is_other);
   if (drawn.visual != protocol::no_visual) release_visual(drawn.visual);
@@ -315,7 +328,9 @@ std::uint32_t Presenter::visual_of(const DrawnBody& body, const Assignment* assi
   if (assignment && !own) return protocol::no_visual;
   if (own && ((body.particles <= 2 && body.balls.empty()) || !body.solids.empty()))
     return own->is_solid ? protocol::no_visual : use_visual(assignment->name, on_line(own->parts, body));
-  if (body.particles == 1) return use_visual("(particle)", {part_of_particle(body)});
+  if (body.particles == 1)
+    return use_visual("(particle)",
+                      {make_part(every_style, to_wire(Sphere{body.radius}), body.attributes ? "paint" : "brass")});
   if (body.particles == 2 && body.balls.empty())
     return use_visual("(rod)",
                       on_line({make_part(every_style, to_wire(Capsule{body.radius, of_body}), "steel")}, body));
@@ -380,12 +395,6 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
     if (parts.size() == before) add(to_wire(Sphere{radius}));
   }
   return parts;
-}
-
-/// A ball; one with attributes has its color.
-protocol::Part Presenter::part_of_particle(const DrawnBody& body) const {
-  if (!body.attributes) return make_part(every_style, to_wire(Sphere{body.radius}), "brass");
-  return ball(body.radius, body.attributes->color);
 }
 
 std::uint32_t Presenter::use_tie_visual(std::size_t kind) {

@@ -89,7 +89,6 @@ class Presenter {
   std::uint32_t visual_of(const DrawnBody& body, const Assignment* assignment);
   std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Given* like);
   std::vector<protocol::Part> parts_along_lines(const DrawnBody& body, const Given* like) const;
-  protocol::Part part_of_particle(const DrawnBody& body) const;
   std::uint32_t use_tie_visual(std::size_t kind);
   std::uint32_t use_visual(std::string_view name, const std::vector<protocol::Part>& parts);
   void release_visual(std::uint32_t slot);

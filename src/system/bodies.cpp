@@ -221,6 +221,15 @@ double Bodies::radius(BodyId id) const { return model::radius_of(core_.model, co
 
 void Bodies::set_radius(BodyId body, double meters) { core_.execute(edit::SetRadius{body, meters}); }
 
+std::optional<std::uint32_t> Bodies::color(BodyId id) const {
+  const std::uint32_t* const color = core_.model.colors.find(core_.slot(id));
+  return color ? std::optional(*color) : std::nullopt;
+}
+
+void Bodies::set_color(BodyId body, std::optional<std::uint32_t> rgb) {
+  core_.execute(edit::SetColor{body, rgb.has_value(), rgb.value_or(0)});
+}
+
 std::optional<Material> Bodies::material(BodyId id) const {
   const Material* const material = core_.model.materials.find(core_.slot(id));
   return material ? std::optional(*material) : std::nullopt;

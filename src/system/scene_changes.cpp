@@ -35,6 +35,7 @@ void describe_body(Core& core, const ingredient::SceneView& view, std::uint32_t 
   drawn.kind = body.kind;
   drawn.particles = body.count;
   drawn.radius = model::radius_of(core.model, slot);
+  drawn.color = Bodies(core).color(drawn.id);
   const Quaternion& q = body.orientation;
   for (SolidView& solid : Bodies(core).solids(drawn.id))
     drawn.solids.push_back({std::move(solid.shape), view.point_in(slot, solid.position),

@@ -35,6 +35,8 @@ NOTHING = (0, 0)  # in place of an id: slot and generation
 def encode(name: str, /, **values: Any) -> bytes:
     """One message to the server."""
     message = TO_SERVER[name]
+    if name == "grab_start":
+        values.setdefault("pointer", "mouse")
     return bytes([message["type"]]) + fields(name, message["fields"], dict(values))
 
 

@@ -17,7 +17,7 @@ import pytest
 import sweep
 
 import iota
-from iota import _core, arguments, builder, looks
+from iota import _core, arguments, builder, elsewhere, looks
 from iota.world.callbacks import one_line
 from iota.world.pages import Pages
 from iota.world.world import ELSEWHERE, PARTS
@@ -145,6 +145,12 @@ MISTAKES: dict[str, tuple[Callable[[sweep.Scene], Any], str]] = {
     "a tether": (lambda c: c.system.bond(c.p, c.point, "tether", length=1), r"a tether needs stiffness"),
     "a particle of a system": (lambda c: c.system.particle(V), r"a System has no attribute 'particle': it is body.particle"),
     "a nail of a body": (lambda c: c.box.nail(), r"a Body has no attribute 'nail': it is particle.nail\(\)"),
+    "the shape of a body": (lambda c: c.box.shape, r"a Body has no attribute 'shape': it is body.solids\[0\].shape"),
+    "a friction": (lambda c: setattr(c.box, "friction", 0.5), r"no attribute 'friction': it is body.material = iota.Material"),
+    "a box that is added": (lambda c: c.system.add_box(), r"no attribute 'add_box': it is system.body\(shape=iota.Box"),
+    "a body that is created": (lambda c: c.system.create_body(), r"no attribute 'create_body': it is system.body\(\.\.\.\)"),
+    "a pin": (lambda c: c.p.pin(), r"a Particle has no attribute 'pin': it is particle.nail\(\)"),
+    "another library's shape": (lambda c: iota.Cube, "module 'iota' has no attribute 'Cube': it is iota.Box"),
     "a coupling of one": (lambda c: c.system.couple([(c.hinge.angle, 1)]), "couples two or more coordinates"),
     "a scripted body that flies": (lambda c: c.system.body("scripted", shape=iota.Sphere(1), velocity=V), "set its position"),
 }  # fmt: skip
@@ -159,6 +165,29 @@ def test_a_mistake_is_named(name: str) -> None:
     with pytest.raises((TypeError, ValueError, AttributeError), match=text):
         use(scene)
     assert scene.system.state_hash() == before
+
+
+def test_what_stands_in_for_a_missing_name_exists() -> None:
+    """The names in iota.elsewhere are not those of things that are there, and the places that they name are."""
+    world = iota.World(iota.System())
+    body = world.system.body(shape=iota.Box((1, 1, 1)))
+    things = {"body": body, "particle": body.particles[0], "system": world.system, "world": world, "iota": iota}
+    for owner, words in (
+        ("body", elsewhere.OF_BODY),
+        ("particle", elsewhere.OF_PARTICLE),
+        ("system", elsewhere.OF_SYSTEM),
+        ("iota", elsewhere.OF_MODULE),
+    ):
+        for word, place in words.items():
+            if word != "ball":
+                assert not hasattr(things[owner], word), f"{owner}.{word} exists"
+            for named, path in re.findall(r"\b(body|particle|system|world|iota)((?:\.\w+)+)", place):
+                found = things[named]
+                for part in path.split(".")[1:]:
+                    found = getattr(found, part)
+            plain = re.fullmatch(r"(\w+)(\(.*\)|: .*|\.\w)?", place)
+            if plain and plain[1] not in things and owner != "iota":
+                assert plain[1] in ("a",) or hasattr(things[owner], plain[1]), f"{owner}.{word} -> {place}"
 
 
 def test_good_calls_cost_nothing_more() -> None:
@@ -390,7 +419,7 @@ DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     "a polygon in a line": (lambda w: looks.polygon([(0, 0), (1, 0), (2, 0)], 0.1), "encloses no volume"),
     "a polygon without thickness": (lambda w: looks.polygon([(0, 0), (1, 0), (0, 1)], 0), "thickness of a polygon"),
     "a look that is nowhere": (lambda w: looks.sphere(1, offset=(math.nan, 0, 0)), "offset must be 2 or 3 finite numbers"),
-    "a look without a rotation": (lambda w: looks.sphere(1, rotation=(0, 0, 0, 0)), "quaternion x y z w that is not zero"),
+    "a look without a rotation": (lambda w: looks.sphere(1, rotation=(0, 0, 0, 0)), "a rotation must be finite and not zero"),
     "a look turned by nothing": (lambda w: looks.sphere(1, turn=math.nan), "turn must be a finite number"),
     "a look of a word": (lambda w: looks.Look("ball"), "a look is of a shape.*not of 'ball'"),  # type: ignore[arg-type]
     "a camera in its target": (lambda w: iota.Camera(V, V), "a target elsewhere than its position"),

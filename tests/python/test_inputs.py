@@ -19,7 +19,7 @@ Runner = Callable[[iota.World], str]
 POINTER = {"name": "left", "point": (1, 2, 3), "origin": (4, 5, 6), "direction": (0, 0, -1), "rotation": (0, 0, 0, 1)}
 SENT: list[tuple[str, dict[str, Any]]] = [
     ("select", {"body": (0, 1)}),
-    ("grab_start", {"hold": 3, "body": (0, 1), "local_point": (0.5, 0, 0), "target": (1, 2, 3)}),
+    ("grab_start", {"hold": 3, "body": (0, 1), "local_point": (0.5, 0, 0), "target": (1, 2, 3), "pointer": "left"}),
     ("grab_move", {"hold": 3, "target": (2, 2, 3)}),
     ("grab_end", {"hold": 3}),
     ("action", {"name": "break", "body": (0, 1), "others": ((1, 1), (2, 5))}),

@@ -231,7 +231,7 @@ def test_hands_of_those_who_were_there_are_gone_and_their_names_are_told(make: M
     first = make()
     inputs = first.world._inputs
     join = protocol.Join("Ada", protocol.Role.ACTOR)
-    inputs.take([(1, join), (1, protocol.GrabStart(1, 7, (0, 0, 0), (3, 3, 0)))], lambda ids: [first.ball])
+    inputs.take([(1, join), (1, protocol.GrabStart(1, 7, (0, 0, 0), (3, 3, 0), "mouse"))], lambda ids: [first.ball])
     first.steps(10)
     assert first.world.users.held() == first.ball
     first.end()

@@ -221,7 +221,7 @@ def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota
     ("make", "said"),
     [
         (lambda w: w.label("x", at=(float("nan"), 0, 0)), "at: must be finite"),
-        (lambda w: w.label("x", color="red"), 'color: a color is "#rrggbb"'),
+        (lambda w: w.label("x", color="redd"), 'color: a color is "#rrggbb"'),
         (lambda w: w.label("x", height=-1), "height: must be a finite number from 0"),
         (lambda w: w.points(np.zeros((3, 4))), r"points: must have the shape \(n, 2\) or \(n, 3\)"),
         (lambda w: w.points([[0, 0, np.inf]]), "points: must be finite"),
@@ -400,8 +400,9 @@ def test_a_class_of_bodies_is_a_group_which_they_join_and_leave(rod: iota.Body, 
 def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system)
     heard: list[Any] = []
+    pointers: list[str] = []
     world.on_drag(rod, grab=False)(lambda e: heard.append((e.phase, e.point and tuple(e.point))))
-    world.on_press(lambda: heard.append("press"))
+    world.on_press(lambda e: heard.append("press") or pointers.append(e.pointer))  # type: ignore[func-returns-value]
     world.on_release(lambda: heard.append("release"))
     with PageClient(run_world(world)) as page:
         page.send("grab_start", hold=1, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0))
@@ -412,8 +413,11 @@ def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> Non
         page.send("grab_end", hold=1)
         page.wait_for(lambda: len(heard) == 5)
         assert heard == ["press", ("start", (1, 0, 0)), ("update", (2, 0, 0)), ("end", None), "release"]
-        page.send("grab_start", hold=2, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0))
+        page.send(
+            "grab_start", hold=2, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0), pointer="left"
+        )
         page.wait_for(lambda: len(heard) == 7)
+        assert pointers == ["mouse", "left"]
     world.call(lambda: None)
     for _ in range(200):
         if len(heard) == 9:
@@ -689,7 +693,10 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
             lambda w: w.drawings.shapes(looks.sphere(0.1), [(0, 0, 0)], rotations=[(0, 0, 0, 0)]),
             "rotations: must have the shape",
         ),
-        (lambda w: w.drawings.shape(looks.sphere(0.1), rotation=(0, 0, 0, 0)), "rotation: a rotation is a quaternion"),
+        (
+            lambda w: w.drawings.shape(looks.sphere(0.1), rotation=(0, 0, 0, 0)),
+            "rotation: a rotation must be finite and not zero",
+        ),
         (lambda w: w.drawings.tube((0, 0, 0), (1, 0, 0), radius=0), "radius: must be a finite number"),
         (lambda w: w.drawings.tube((0, 0, 0), (1, 0, 0), radius=1, material="silk"), "material must be one of"),
         (lambda w: looks.sphere(0.1, color="#12345"), "a color is"),
@@ -702,6 +709,16 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
 def test_wrong_shapes_are_refused_with_the_reason(system: iota.System, make: Callable[..., Any], says: str) -> None:
     with pytest.raises((ValueError, TypeError), match=says):
         make(iota.World(system))
+
+
+def test_a_thing_in_a_prompt_says_what_it_is(system: iota.System) -> None:
+    world = iota.World(system, title="lab")
+    slider = world.controls.slider("gravity", 0, 20, value=9.81)
+    label = world.label("hello", at=(0, 1, 0), color="tomato")
+    assert repr(slider).startswith("<Slider label='gravity'") and "value=9.81" in repr(slider)
+    assert repr(label).startswith("<Label text='hello'") and "color=#ff6347" in repr(label)
+    label.destroy()
+    assert repr(label) == "<Label: destroyed>" and repr(world) == "<World 'lab'>"
 
 
 def test_looks_of_all_shapes_enclose_their_volume() -> None:

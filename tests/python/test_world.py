@@ -98,7 +98,7 @@ def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Ru
         page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15)
         (hold,) = page.wait_for(lambda: page.last["poses"]["holds"])
         assert hold["client"] == page.id and hold["hold"] == 1 and hold["body"] == 23 and hold["force"] > 0
-        assert world.call(lambda: world.users.held(page.id)) == world.call(lambda: world.users.held())
+        assert world.users.held(page.id) == world.call(lambda: world.users.held()), "from any thread"
         assert world.call(lambda: world.users.held(page.id).slot) == 23
         page.send("grab_move", hold=1, target=(-1.2, 1.2, 0.0))
         page.wait_for(lambda: page.places[23][0] < -0.8)

@@ -24,7 +24,7 @@ function bytes(buffer: ArrayBuffer): number[] {
 
 const id = (slot: number, generation = 1) => ({ slot, generation });
 const link = (slot: number, generation = 1): EntityRecords["body"] => ({
-  id: id(slot, generation), kind: BodyKind.dynamic, visual: 0, odd: slot % 2 === 1, length: 0.1, name: "",
+  id: id(slot, generation), kind: BodyKind.dynamic, visual: 0, odd: slot % 2 === 1, length: 0.1, color: NO_COLOR, name: "",
 });
 const part = (style: string, kind: string, sizes: number[]) => ({
   style, shape: { kind, sizes: Float32Array.from(sizes), vertices: new Float32Array(0), triangles: new Uint32Array(0) },

@@ -65,7 +65,7 @@ describe("pictures", () => {
       const delays: number[] = [];
       for (let trial = 0; trial < 5; trial++) {
         const began = performance.now();
-        iota.page.session.connection.send({ type: "grabStart", hold: 500 + trial, body: iota.page.session.idOf(16), localPoint: [0, 0, 0], target: [0, 2.5, 0] });
+        iota.page.session.connection.send({ type: "grabStart", hold: 500 + trial, body: iota.page.session.idOf(16), localPoint: [0, 0, 0], target: [0, 2.5, 0], pointer: "mouse" });
         await new Promise<void>((resolve) => {
           const look = () => (iota.holds().some((hold) => hold.force > 0) ? resolve() : requestAnimationFrame(look));
           look();

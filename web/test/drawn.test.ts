@@ -98,6 +98,30 @@ describe("a thing on a frame", () => {
   });
 });
 
+describe("the color of a body", () => {
+  it("is drawn, changes alone, is under a paint, and ends", () => {
+    const test = new TestWorld();
+    test.set("visual", visual(0, "bar", bar));
+    test.set("body", bodyEntity(0, { color: 0xff0000 }), bodyEntity(1));
+    const hue = (slot: number) => {
+      test.update();
+      const [mesh] = test.meshes();
+      const hues = mesh.geometry.getAttribute("hue");
+      return [hues.getX(slot), hues.getY(slot), hues.getZ(slot)].map(Math.round);
+    };
+    expect(hue(0)).toEqual([2, 1, 1]);
+    expect(hue(1)).toEqual([0, 0, 0]);
+    test.set("body", bodyEntity(1, { color: 0x00ff00 }));
+    expect(hue(1)).toEqual([1, 2, 1]);
+    test.set("paint", { id: id(0), bodies: Uint32Array.of(1), colors: Uint32Array.of(0x0000ff) });
+    expect(hue(1)).toEqual([1, 1, 2]);
+    test.destroy("paint", id(0));
+    expect(hue(1)).toEqual([1, 2, 1]);
+    test.set("body", bodyEntity(0), bodyEntity(1));
+    expect([hue(0), hue(1)]).toEqual([[0, 0, 0], [0, 0, 0]]);
+  });
+});
+
 describe("paint", () => {
   it("stays with its body when others come and go, and ends with it", () => {
     const test = new TestWorld();

@@ -52,7 +52,7 @@ export function visual(slot: number, name: string, ...parts: Part[]): VisualEnti
 }
 
 export function bodyEntity(slot: number, extra: Partial<BodyEntity> = {}): BodyEntity {
-  return { id: id(slot), kind: BodyKind.dynamic, visual: 0, odd: false, length: 0, name: "", ...extra };
+  return { id: id(slot), kind: BodyKind.dynamic, visual: 0, odd: false, length: 0, color: NO_COLOR, name: "", ...extra };
 }
 
 export class TestWorld implements WorldListener {

@@ -21,13 +21,16 @@ Dress: TypeAlias = Callable[[str, int], Drawn | None]
 """Takes the kind of a body ("plank") and its index from 0; returns its look, None for the default one."""
 
 MOST_PARTS = 1_000_000
+UNITS = dict.fromkeys(("length", "width", "thickness", "radius", "tube", "spacing", "height", "x", "y", "z"), "m")
+UNITS |= {"density": "kg/m^3", "mass": "kg", "stiffness": "N/m"}
 
 
 def check(**numbers: float) -> None:
     """Raises ValueError for values that are not finite and above 0."""
     for name, value in numbers.items():
-        if not 0 < value < math.inf:
-            raise ValueError(f"{name} must be above 0 and finite, not {value}")
+        if not (is_number(value) and 0 < value < math.inf):
+            unit = UNITS.get(name, "")
+            raise ValueError(f"{name} must be above 0{unit and ' ' + unit} and finite, not {value!r}")
 
 
 def check_counts(least: int = 1, **counts: int) -> None:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iota._core import Vec3
+from iota.arguments import is_number
+from iota.colors import ColorLike, rgba
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -58,9 +60,10 @@ class Points:
         mass: ArrayLike = 1.0,
         velocity: ArrayLike = (0.0, 0.0, 0.0),
         radius: ArrayLike = 0.0,
-        color: ArrayLike = (1.0, 1.0, 1.0),
+        color: ColorLike | ArrayLike = (1.0, 1.0, 1.0),
     ) -> range:
-        """Adds points; returns their numbers. position: (k, 3) or (3,). The others: one for all, or one each."""
+        """Adds points; returns their numbers. position: (k, 3) or (3,). The others: one for all, or one each; color by name, as
+        "#rrggbb", or rows of red, green and blue."""
         places = np.atleast_2d(np.asarray(position, float))
         if places.ndim != 2 or places.shape[1] != 3:
             raise ValueError(f"position must be of shape (k, 3), not {np.shape(position)}")
@@ -70,7 +73,7 @@ class Points:
             grown[:first] = self._rows[:first]
             self._rows = grown
         new = self._rows[first : self._count]
-        new[:, 0:3], new[:, 3:6], new[:, 6], new[:, 7], new[:, 8:11] = places, velocity, mass, radius, color
+        new[:, 0:3], new[:, 3:6], new[:, 6], new[:, 7], new[:, 8:11] = places, velocity, mass, radius, rows_of(color)
         return range(first, self._count)
 
     def add_all(self, other: Points) -> range:
@@ -80,3 +83,11 @@ class Points:
     def to_json(self) -> dict[str, Any]:
         names = ("position", "velocity", "mass", *(("radius", "color") if self.radius.any() else ()))
         return {name: getattr(self, name).tolist() for name in names}
+
+
+def rows_of(color: ColorLike | ArrayLike) -> ArrayLike:
+    """Red, green and blue of one color, or of one in each row. Raises ValueError, TypeError."""
+    if isinstance(color, np.ndarray):
+        return color
+    is_listed = isinstance(color, Sequence) and not isinstance(color, str) and not all(map(is_number, color))
+    return [rgba(each)[:3] for each in color] if is_listed else rgba(color)[:3]  # type: ignore[union-attr]

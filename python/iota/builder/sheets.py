@@ -12,15 +12,14 @@ import numpy as np
 from iota.builder.dressing import check, check_counts, place
 from iota.builder.points import Vector
 from iota.builder.structure import Structure
+from iota.colors import ColorLike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Color = tuple[float, float, float]
-
 
 def _grid(
-    made: Structure, corner: Vector, columns: int, rows: int, spacing: float, mass: float, color: Color
+    made: Structure, corner: Vector, columns: int, rows: int, spacing: float, mass: float, color: ColorLike
 ) -> NDArray[np.int64]:
     """Adds points from a corner along x and down; returns their numbers, (rows, columns)."""
     row, column = np.indices((rows, columns))
@@ -40,7 +39,7 @@ def net(
     corner: Vector = (-0.5, 2.0, 0),
     mass: float = 0.5,
     break_force: float = math.inf,
-    color: Color = (0.75, 0.6, 0.35),
+    color: ColorLike = (0.75, 0.6, 0.35),
 ) -> Structure:
     """Knots with ropes between them, inextensible and without compression; the upper two corners are nailed. spacing:
     m. mass: of all, kg. break_force: of a rope, N."""
@@ -64,7 +63,7 @@ def cloth(
     stiffness: float = 100.0,
     damping: float = 0.02,
     tear: float = math.inf,
-    color: Color = (0.75, 0.2, 0.2),
+    color: ColorLike = (0.75, 0.2, 0.2),
 ) -> Structure:
     """Knots with springs along threads, weaker ones across the cells against shear and over two cells against bending
     (Provot 1995). A spring breaks above `tear` N. spacing: m. mass: of all, kg. stiffness: of a
@@ -91,7 +90,7 @@ def leaf(
     stem: Vector = (0, 1.5, 0),
     mass: float = 0.01,
     stiffness: float = 20.0,
-    color: Color = (0.35, 0.6, 0.2),
+    color: ColorLike = (0.35, 0.6, 0.2),
 ) -> Structure:
     """A midrib along x with ribs to both sides, in the outline of a leaf, held by springs; a wind may act on its group
     "leaf". length, width: m. mass: of all, kg. stiffness: N/m."""

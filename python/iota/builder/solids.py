@@ -14,6 +14,7 @@ from iota._core import Box, Cylinder
 from iota.builder.dressing import Dress, check, check_counts, dress, place
 from iota.builder.points import Vector
 from iota.builder.structure import Structure
+from iota.colors import ColorLike
 
 
 def cuboid(
@@ -46,7 +47,7 @@ def bridge(
     check(length=length, width=width, thickness=thickness, density=density, sag=sag)
     check_counts(2, planks=planks)
     if sag > 0.9:
-        raise ValueError(f"sag must be at most 0.9, not {sag}")
+        raise ValueError(f"sag must be at most 0.9 of the length, by which the ends are nearer than it, not {sag:g}")
     step, low, high = length / planks, 1e-9, math.pi
     for _ in range(80):  # the corners are on a circle: half of its arc, by bisection
         half = (low + high) / 2
@@ -178,7 +179,7 @@ def soft_block(
     position: Vector = (0, 1, 0),
     density: float = 300.0,
     stiffness: float = 400.0,
-    color: tuple[float, float, float] = (0.3, 0.65, 0.6),
+    color: ColorLike = (0.3, 0.65, 0.6),
 ) -> Structure:
     """A block of cells, each cut into six tetrahedra (Kuhn 1960), springs along their edges. size: m. stiffness: of an edge,
     N/m. Its points, z fastest, are the group "block"."""

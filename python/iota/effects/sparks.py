@@ -8,6 +8,7 @@ from typing import Any
 
 from iota._core import Box, Cylinder, Emitter, Sphere, System, Vec3
 from iota.builder.points import Vector
+from iota.colors import ColorLike, rgba
 
 UPRIGHT = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))  # turns x to y
 
@@ -42,11 +43,12 @@ def waterfall(system: System, at: Vector = (0, 3, 0), width: float = 1.0, drop: 
 
 
 def burst(
-    system: System, at: Vector, color: tuple[float, float, float] = (1, 0.4, 0.2), count: int = 250, speed: float = 5.0,
+    system: System, at: Vector, color: ColorLike = (1, 0.4, 0.2), count: int = 250, speed: float = 5.0,
     seed: int = 1, **more: Any,
 ) -> Emitter:  # fmt: skip
     """The star of a firework: `count` sparks in all directions, born within a tenth of a second. Then switch it off:
     `world.after(0.1)(lambda: setattr(star, "active", False))`."""
+    color = rgba(color)[:3]
     pale = tuple((2 + c) / 3 for c in color)
     settings = {
         "rate": 10.0 * count, "source": Sphere(0.05), "velocity": (0, 0, 0), "velocity_spread": speed, "lifetime": 1.6,

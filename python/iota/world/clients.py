@@ -24,7 +24,7 @@ LONGEST_PULSE = 5.0  # s
 class Hold:
     """One grab of a client while it lasts. number: the page's own. taken: the body at its start. last: the body that the
     hand holds now or held last, which an edit may have made another one. listeners: its functions of drags. grip: None
-    if one of these replaces it."""
+    if one of these replaces it. pointer: the name of the hand."""
 
     client: int
     number: int
@@ -32,6 +32,7 @@ class Hold:
     last: Body
     listeners: list[Listener] = field(default_factory=list, repr=False, compare=False)
     grip: Grip | SimulatedGrip | None = None
+    pointer: str = ""
 
     @property
     def body(self) -> Body | None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from iota._core import Body
 from iota.arguments import SHORT
@@ -102,9 +103,11 @@ class Controls(Part):
         curves: Callable[[], float] | Mapping[str, Callable[[], float]] | Sequence[str] | None = None,
         unit: str = "",
         seconds: float = 10.0,
+        color: Any = None,
     ) -> Plot:
         """Curves over the last `seconds` of simulated time. curves: a function, or several by name, called once a
-        frame; or names of curves that the script feeds by `plot.add(time, value, ...)`.
+        frame; or names of curves that the script feeds by `plot.add(time, value, ...)`. color: that of the first curve, or
+        a list of colors, one for each; None: the page's.
 
         world.controls.plot("energy", {"kinetic": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J")
         """
@@ -116,4 +119,4 @@ class Controls(Part):
             if not all(isinstance(name, str) for name in curves):
                 raise TypeError(f"curves must be a function, several by name, or names, not {SHORT.repr(curves)}")
             named = dict.fromkeys(curves)
-        return Plot(self._things, label, named, unit, seconds)
+        return Plot(self._things, label, named, unit, seconds, color)

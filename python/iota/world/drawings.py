@@ -12,6 +12,7 @@ import numpy as np
 
 from iota._core import Mesh, Vec3
 from iota.arguments import SHORT, is_number
+from iota.colors import ColorLike
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
 from iota.sounds import sound_file
@@ -40,11 +41,11 @@ from iota.world.shown import (
 )
 from iota.world.skins import Skin
 from iota.world.stages import STAGES
-from iota.world.things import Attachable, Frame, Place, Thing, Things, place, vector
+from iota.world.things import Attachable, Frame, Place, Rotation, Thing, Things, place, vector
 
 EFFECTS = ("break", "join", "grab", "impact")
 
-Color = Any  # "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None
+Color = ColorLike | None  # None: that of the page or the material
 
 
 def _listed(points: tuple[Any, ...]) -> Any:
@@ -144,8 +145,8 @@ class Drawings(Part):
         `arrows`. Assigning an array changes all of them."""
         return Segments(self._things, starts=starts, ends=ends, radius=radius, color=color, at=at)
 
-    def axes(self, at: Place = None, length: float = 0.2, rotation: Sequence[float] = (0, 0, 0, 1)) -> Axes:
-        """x, y and z of a body or of the world as red, green and blue arrows. length: m. rotation: quaternion x y z w."""
+    def axes(self, at: Place = None, length: float = 0.2, rotation: Rotation = (0, 0, 0, 1)) -> Axes:
+        """x, y and z of a body or of the world as red, green and blue arrows. length: m. rotation: see `Drawings.shape`."""
         return Axes(self._things, at=at, length=length, rotation=rotation)
 
     def trace(
@@ -164,12 +165,12 @@ class Drawings(Part):
         self,
         look: Look,
         position: Sequence[float] = (0, 0, 0),
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Rotation = (0, 0, 0, 1),
         on: Attachable | SimulatedBody | None = None,
         color: Color = None,
     ) -> Marker:
-        """A look of `iota.looks` without physics, on a body or in the world. position: m and rotation: quaternion x y z
-        w, in the frame of the body or world."""
+        """A look of `iota.looks` without physics, on a body or in the world. position: m, in the frame of the body or world.
+        rotation: in that frame, an axis and an angle in degrees, as in ("z", 30) or ((1, 1, 0), 30), or a quaternion x y z w."""
         return Marker(
             self._things,
             look=look,
@@ -303,8 +304,8 @@ class Drawings(Part):
         """
         return Paint(self._things, bodies=bodies, color=color)
 
-    def frame(self, at: Place = None, rotation: Sequence[float] = (0, 0, 0, 1)) -> Frame:
-        """A frame for other things, like a body: they move, hide and end with it. rotation: quaternion x y z w.
+    def frame(self, at: Place = None, rotation: Rotation = (0, 0, 0, 1)) -> Frame:
+        """A frame for other things, like a body: they move, hide and end with it. rotation: see `Drawings.shape`.
 
         hand = world.drawings.frame((0, 1, 0))
         world.drawings.shape(looks.sphere(0.1), on=hand, position=(0.2, 0, 0))
@@ -385,12 +386,12 @@ class Drawings(Part):
         self,
         class_name: str,
         at: Place = None,
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Rotation = (0, 0, 0, 1),
         values: Mapping[str, Any] | None = None,
     ) -> Custom:
         """An object of a class of your own: a module of `Pages.client_module` defines how it is drawn, its bounds, what a ray or a
         hand meets, and what happens when it is selected; see web/README.md. On a body it stands for it: a hit holds
-        and selects the body. Recordings carry no code and show none of these. rotation: quaternion x y z w. values: the
+        and selects the body. Recordings carry no code and show none of these. rotation: see `Drawings.shape`. values: the
         object's data.
 
         world.pages.client_module("flower.js")  # has iota.define("flower", {...})

@@ -54,3 +54,9 @@ def relative_turn(frame: Quaternion, turned: Quaternion) -> Quaternion:
         w,
     )
     return q if w >= 0 else (-q[0], -q[1], -q[2], -w)
+
+
+def one_after_another(outer: Quaternion, inner: Quaternion) -> Quaternion:
+    """The rotation by `inner` and then by `outer`, as a quaternion x y z w."""
+    x, y, z, w = outer
+    return relative_turn((-x, -y, -z, w), inner)

@@ -166,7 +166,8 @@ class Inputs:
         if body is None or body.kind == "inactive":
             return
         clients.follow_grips()
-        hold = Hold(client.id, message.hold, body, body, list(self._state.listeners.of("drag", body)))
+        listeners = list(self._state.listeners.of("drag", body))
+        hold = Hold(client.id, message.hold, body, body, listeners, pointer=message.pointer)
         client.holds[hold.number] = hold
         if not any(listener.takes_over for listener in hold.listeners):
             with self._telling(client, "That cannot be held"):
@@ -308,9 +309,18 @@ class Inputs:
         body = alive(hold.last)
         # A destroyed body is still that for which a function was registered, and so is the one that was pressed.
         for listener in self._state.listeners.of_any(kind, {hold.taken, hold.last if body is None else body}):
-            self._tell(listener, hold.client, body, point=point, hold=hold.number, reason=reason)
+            self._tell(listener, hold.client, body, point=point, pointer=hold.pointer, hold=hold.number, reason=reason)
 
     def _tell_drag(self, phase: str, hold: Hold, point: Vec3 | None, reason: str = "") -> None:
         body = alive(hold.last)
         for listener in hold.listeners if body is not None or phase == "end" else ():
-            self._tell(listener, hold.client, body, point=point, phase=phase, hold=hold.number, reason=reason)
+            self._tell(
+                listener,
+                hold.client,
+                body,
+                point=point,
+                pointer=hold.pointer,
+                phase=phase,
+                hold=hold.number,
+                reason=reason,
+            )

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from iota._core import Body, Places, Shape, System, Vec3
 from iota.world.parts import Part
 from iota.world.scene import Scene
-from iota.world.things import unit_quaternion
+from iota.world.things import Rotation, unit_quaternion
 
 Place = Sequence[float] | Vec3
 
@@ -61,11 +61,11 @@ class Queries(Part):
         self,
         shape: Shape,
         position: Place,
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Rotation = (0, 0, 0, 1),
         bodies: Iterable[Body] | None = None,
     ) -> list[Body]:
         """The bodies that a shape at a place would touch. shape: a convex one, as Box, Sphere, Capsule, Cylinder, Cone or
-        Ellipsoid; ValueError for others. position: of its origin, m. rotation: quaternion x y z w. A torus among the bodies
+        Ellipsoid; ValueError for others. position: of its origin, m. rotation: see `Drawings.shape`. A torus among the bodies
         counts by triangles, within a hundredth of its wire.
 
         if not world.queries.overlap(iota.Box((0.6, 0.4, 0.4)), place): put_down(crate)

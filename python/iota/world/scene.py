@@ -12,10 +12,10 @@ from iota._core import Body, HalfSpace, Shape, System, Vec3
 from iota.arguments import SHORT
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody
-from iota.world.frames import turn_from_x
+from iota.world.frames import one_after_another, turn_from_x, turned
 from iota.world.ground import MATERIAL
 from iota.world.parts import Part
-from iota.world.things import unit_quaternion, vector
+from iota.world.things import Rotation, unit_quaternion, vector
 from iota.world.visuals import TIES, Visuals, radius_of
 
 GROUND = "ground"  # the name of its body
@@ -158,14 +158,17 @@ class Scene(Part):
             raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
         self._visuals.assign_ties(kind, by_style(look))
 
-    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> Body:
+    def add_static(self, look: Look, position: Sequence[float], rotation: Rotation = (0, 0, 0, 1)) -> Body:
         """Adds a static body with the shape of a look: a beam, a stand. Walks end at it, and `Queries` find it; nothing can be
-        tied to it, see `System.obstacle`. position: of the shape's origin, m. rotation: quaternion x y z w. For a room from a
-        file see `Drawings.model`. Raises TypeError for a World of another Simulator, which has static bodies of its own."""
+        tied to it, see `System.obstacle`. position: m, and rotation, see `Drawings.shape`: of the frame in which the look has
+        its own offset and rotation. For a room from a file see `Drawings.model`. Raises TypeError for a World of another
+        Simulator, which has static bodies of its own."""
         if not isinstance(look, Look) or look.shape is None:
             raise TypeError(f"add_static: look must be a Look with a shape, not {SHORT.repr(look)}")
+        turn = unit_quaternion(rotation)
+        place = vector(position) + turned(turn, Vec3(*look.offset))
         own = replace(look, shape=None, offset=(0, 0, 0), rotation=(0, 0, 0, 1))
-        return self._fix("add_static", look.shape, own, position, rotation)
+        return self._fix("add_static", look.shape, own, place, one_after_another(turn, look.rotation))
 
     def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> Body:
         """Adds a static body with the shape of a look from `start` to `end` (m): its local x runs along the line, and a cylinder or
@@ -183,7 +186,7 @@ class Scene(Part):
         shape: Shape,
         look: Drawn,
         position: Sequence[float] | Vec3,
-        rotation: Sequence[float] = (0, 0, 0, 1),
+        rotation: Rotation = (0, 0, 0, 1),
     ) -> Body:
         """An obstacle that is drawn with a look. caller: for the error of a World of another Simulator."""
         if not isinstance(self._system, System):

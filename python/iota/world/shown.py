@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Vec3
 from iota._protocol import ENTITIES, NO_BODY, NO_COLOR, LightKind
-from iota.arguments import SHORT
+from iota.arguments import SHORT, is_number
+from iota.colors import SLACK
 from iota.looks import Look
 from iota.simulator import SimulatedBody
 from iota.textures import Texture, lay_flat, material_name, texture_of
@@ -157,15 +158,24 @@ class Trace(Thing):
 
 
 def colors(value: Any) -> NDArray[np.uint32]:
-    """One color, or one for each."""
-    if isinstance(value, np.ndarray) and value.ndim == 2:
-        parts = np.round(255 * np.clip(value.astype(float), 0, 1)).astype(np.uint32)
-        return np.asarray(parts[:, 0] << 16 | parts[:, 1] << 8 | parts[:, 2], np.uint32)
+    """One color, or one for each. Raises ValueError, TypeError."""
+    if isinstance(value, np.ndarray) and value.ndim == 2 and value.dtype.kind in "fiu":
+        parts = value.astype(float)
+        if parts.shape[1] not in (3, 4) or not ((parts >= -SLACK) & (parts <= 1 + SLACK)).all():
+            raise ValueError(f"colors are an array (n, 3) of numbers from 0 to 1, not {SHORT.repr(value)}")
+        parts = np.round(255 * np.clip(parts, 0, 1)).astype(np.uint32)
+        clear = 255 - parts[:, 3] if parts.shape[1] == 4 else np.uint32(0)
+        return np.asarray(clear << 24 | parts[:, 0] << 16 | parts[:, 1] << 8 | parts[:, 2], np.uint32)
     if not (value is None or isinstance(value, str | int | Sequence | np.ndarray)):
         raise TypeError(f"must be a color or a list of them, not {SHORT.repr(value)}")
-    is_one = value is None or isinstance(value, str | int) or (len(value) == 3 and isinstance(value[0], float))
+    is_one = value is None or isinstance(value, str | int) or _are_parts(value)
     listed: Iterable[Any] = [value] if is_one else cast("Iterable[Any]", value)
     return np.array([any_color(each) for each in listed], np.uint32)
+
+
+def _are_parts(value: Any) -> bool:
+    """Whether these are the numbers of one color: 0xRRGGBB of several are larger."""
+    return len(value) in (3, 4) and all(is_number(part) and float(part) <= 1 for part in value)
 
 
 class Points(Thing):
@@ -212,7 +222,7 @@ def part_of_look(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, A
 
 class Marker(Thing):
     """A look on a body or frame, or in the world. position: of its origin, in that frame or the world, m. rotation:
-    quaternion x y z w. color: replaces the look's."""
+    in it, as of `Drawings.shape`. color: replaces the look's."""
 
     kind = "marker"
     position, color, rotation = Field(vector), Field(color), Field(unit_quaternion)

@@ -6,16 +6,17 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, TypeVar
 
 import numpy as np
 
+from iota import _core
 from iota._core import Body, Bond, Particle, Room, Vec3
 from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
-from iota.arguments import SHORT, is_number, refuse_reading, refuse_unknown
-from iota.looks import color_number
+from iota.arguments import SHORT, refuse_reading, refuse_unknown
+from iota.colors import color_number
 from iota.simulator import SimulatedBody, SimulatedParticle
 from iota.textures import Texture
 from iota.world.frames import into_frame
@@ -76,6 +77,11 @@ class Thing:
 
     visible = Field(lambda value: flag(value))
 
+    def __repr__(self) -> str:
+        own = {name: value for name, value in self._values.items() if name != "visible"} if self.alive else {}
+        told = [f" {name}={text}" for name, value in own.items() if (text := _in_short(name, value))]
+        return f"<{type(self).__name__}{''.join(told)}>" if self.alive else f"<{type(self).__name__}: destroyed>"
+
     @property
     def alive(self) -> bool:
         """False once it was destroyed."""
@@ -104,9 +110,18 @@ class Thing:
         return any(isinstance(value, Attachable) for value in self._values.values())
 
 
+def _in_short(name: str, value: Any) -> str:
+    """Nothing for None, empty texts and functions."""
+    if name == "color" and np.size(value) == 1:
+        return "" if int(value) == NO_COLOR else f"#{int(value) & 0xFFFFFF:06x}"
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}" if value.size != 1 else f"{value.item():g}"
+    return "" if value is None or value == "" or callable(value) else SHORT.repr(value)
+
+
 class Frame(Thing):
     """A frame for other things, like a body: they move, hide and end with it. at: its origin, on a body, on another
-    frame or in the world. rotation: quaternion x y z w. Things on it have places in its frame; `frame.point((x, y, z))`
+    frame or in the world. rotation: as of `Drawings.shape`. Things on it have places in its frame; `frame.point((x, y, z))`
     is a place in it for ends of lines and arrows."""
 
     kind = "frame"
@@ -154,6 +169,7 @@ class FramePoint:
 
 
 Attachable = Particle | Body | Bond | SimulatedBody | SimulatedParticle | Frame | FramePoint
+Rotation = Sequence[float] | tuple[str | Vec3 | Sequence[float], float]  # see `unit_quaternion`
 Place = Attachable | Vec3 | Sequence[float] | None
 
 
@@ -336,30 +352,13 @@ def place_of(value: Any) -> Vec3:
 
 
 def color(value: Any) -> int:
-    """From "#rrggbb", "#rrggbbaa" (aa: 00 is invisible), 0xRRGGBB, three or four numbers from 0 to 1, or None: the
-    page's own."""
-    if value is None:
-        return NO_COLOR
-    if isinstance(value, str):
-        return color_number(value)
-    if isinstance(value, int | np.integer):
-        if value == NO_COLOR or 0 <= value <= 0xFFFFFF:
-            return int(value)
-        raise ValueError(f"a color is from 0 to 0xFFFFFF, not {value:#x}")
-    parts = tuple(value) if isinstance(value, Iterable) else ()
-    if len(parts) not in (3, 4) or not all(is_number(part) and math.isfinite(part) for part in parts):
-        raise TypeError(f'must be "#rrggbb", 0xRRGGBB, or 3 or 4 numbers from 0 to 1, not {SHORT.repr(value)}')
-    red, green, blue, *alpha = (round(255 * min(max(float(part), 0.0), 1.0)) for part in parts)
-    return (255 - alpha[0] if alpha else 0) << 24 | red << 16 | green << 8 | blue
+    """As sent to pages. value: see `iota.colors.rgba`; None: the page's own."""
+    return NO_COLOR if value is None or (isinstance(value, int) and value == NO_COLOR) else color_number(value)
 
 
 def unit_quaternion(value: Any) -> tuple[float, ...]:
-    """x y z w, normalized."""
-    turn = numbers(value)
-    size = np.linalg.norm(turn)
-    if turn.shape != (4,) or not size > 1e-9 or not np.isfinite(size):
-        raise ValueError(f"a rotation is a quaternion x y z w that is not zero, not {value}")
-    return tuple((turn / size).tolist())
+    """x y z w, normalized, of these or of an axis and degrees, as in ("z", 30)."""
+    return tuple(_core.unit_quaternion(value))
 
 
 def points(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:

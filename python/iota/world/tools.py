@@ -283,11 +283,13 @@ def copy_body(body: Body) -> Body:
             orientation=solid.orientation,
             velocity=body.velocity,
             spin=body.angular_velocity,
+            material=body.material,
+            color=body.color,
         )
         for particle in body.attachments:
             made.attachment(particle.position + aside)
         return made
-    made = system.body()
+    made = system.body(material=body.material, color=body.color)
     for particle in body.particles:
         made.particle(particle.position + aside, particle.mass).velocity = particle.velocity
     made.radius = body.radius

@@ -16,6 +16,8 @@ from iota.world.notices import Notices
 from iota.world.parts import Part
 from iota.world.survey import Survey
 
+Call = Callable[[Callable[[], Body | None]], Body | None]
+
 
 class Users(Part):
     """People: their pages, what they hold and select, cards for them.
@@ -24,9 +26,17 @@ class Users(Part):
     """
 
     def __init__(
-        self, clients: Clients, notices: Notices, controls: Controls, events: Events, guard: Guard, title: str
+        self,
+        clients: Clients,
+        notices: Notices,
+        controls: Controls,
+        events: Events,
+        guard: Guard,
+        title: str,
+        call: Call,
     ) -> None:
-        self._clients, self._notices = clients, notices
+        """call: runs a function on the thread that runs the world."""
+        self._clients, self._notices, self._call = clients, notices, call
         self._controls, self._events, self._guard, self._title = controls, events, guard, title
 
     @property
@@ -35,12 +45,12 @@ class Users(Part):
         return list(self._clients.by_id.values())
 
     def held(self, client: int | None = None) -> Body | None:
-        """The body that a client holds, or that anyone holds."""
-        return self._clients.held(client)
+        """The body that a client holds, or that anyone holds. From any thread, as is `selected`."""
+        return self._call(lambda: self._clients.held(client))
 
     def selected(self, client: int) -> Body | None:
         """The body that a client has selected."""
-        return self._clients.selected(client)
+        return self._call(lambda: self._clients.selected(client))
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus
-from iota.looks import Look, Looks, color_number
+from iota.colors import color_number
+from iota.looks import Look, Looks
 from iota.simulator import SimulatedBody
 from iota.textures import Texture
 

@@ -8,10 +8,11 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from iota._protocol import WidgetKind
+from iota._protocol import NO_COLOR, WidgetKind
 from iota.arguments import is_number
 from iota.world.callbacks import Guard, Hook
 from iota.world.event import Event
+from iota.world.shown import colors
 from iota.world.things import Field, Thing, Things, color, flag, number, text
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
@@ -149,17 +150,23 @@ class Plot(Thing):
     """Curves over the last `seconds` of simulated time. With functions it samples automatically, otherwise by `add`."""
 
     kind = "plot"
-    label, unit, seconds = Field(text), Field(text), Field(number(1e-6, 1e6))
+    label, unit, seconds, color = Field(text), Field(text), Field(number(1e-6, 1e6)), Field(colors)
 
     def __init__(
-        self, things: Things, label: str, curves: Mapping[str, Callable[[], float] | None], unit: str, seconds: float
+        self,
+        things: Things,
+        label: str,
+        curves: Mapping[str, Callable[[], float] | None],
+        unit: str,
+        seconds: float,
+        color: Any = None,
     ) -> None:
         if not curves or len(curves) > len(CURVES):
             raise ValueError(f"a plot has 1 to {len(CURVES)} curves, not {len(curves)}")
         self._functions = dict(curves)
         self._samples: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=MOST_SAMPLES)
         self._off = False
-        super().__init__(things, label=label, unit=unit, seconds=seconds)
+        super().__init__(things, label=label, unit=unit, seconds=seconds, color=color)
 
     @property
     def curves(self) -> list[str]:
@@ -202,5 +209,12 @@ class Plot(Thing):
     def _record(self) -> dict[str, Any] | None:
         times = [time for time, _ in self._samples]
         values = [values[curve] for curve in range(len(self._functions)) for _, values in self._samples]
-        own = {"curves": self.curves, "colors": [color(CURVES[i]) for i in range(len(self._functions))]}
+        given = list(self.color)
+        if len(given) not in (1, len(self._functions)):
+            raise ValueError(
+                f"color must be one, or one for each of the {len(self._functions)} curves, not {len(given)}"
+            )
+        hues = [*given, *map(color, CURVES[len(given) :])][: len(self._functions)]
+        shown = [color(usual) if hue == NO_COLOR else hue & 0xFFFFFF for hue, usual in zip(hues, CURVES, strict=False)]
+        own = {"curves": self.curves, "colors": shown}
         return self._values | own | {"times": times, "values": values}

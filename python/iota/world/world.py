@@ -147,7 +147,9 @@ class World:
             self._guard,
         )
         self._queries = Queries(state.system, state.scene)
-        self._users = Users(state.clients, state.notices, self._controls, self._events, self._guard, title)
+        self._users = Users(
+            state.clients, state.notices, self._controls, self._events, self._guard, title, self.call
+        )
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
         self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
@@ -161,6 +163,9 @@ class World:
         """A misspelled attribute would change nothing."""
         refuse_unknown(self, name, ELSEWHERE)
         super().__setattr__(name, value)
+
+    def __repr__(self) -> str:
+        return f"<World {self._state.title!r}>"
 
     if not TYPE_CHECKING:  # checkers would take any name
 

@@ -103,6 +103,21 @@ TEST(Shape, or_rod_that_no_body_can_have_is_refused_before_anything_changes) {
   EXPECT_EQ(system.state_hash(), before);
 }
 
+TEST(BodyColor, is_kept_told_to_viewers_taken_back_and_refused_where_it_is_none) {
+  System system;
+  const BodyId box = system.bodies().create(Box{{1, 1, 1}}, {.density = 1000});
+  (void)system.viewer().take_scene_changes(true);
+  EXPECT_EQ(system.bodies().color(box), std::nullopt);
+  system.bodies().set_color(box, 0xff6347);
+  EXPECT_EQ(system.bodies().color(box), 0xff6347U);
+  const SceneChanges changes = system.viewer().take_scene_changes(false);
+  ASSERT_EQ(changes.bodies.set.size(), 1U);
+  EXPECT_EQ(changes.bodies.set[0].color, 0xff6347U);
+  expect_refused(system, [&] { system.bodies().set_color(box, 0x1000000); }, "color must be at most 0xffffff");
+  system.bodies().set_color(box, std::nullopt);
+  EXPECT_EQ(system.bodies().color(box), std::nullopt);
+}
+
 TEST(Body, that_is_destroyed_takes_its_momentum_and_energy_out_of_the_book) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId kept = system.bodies().create(), gone = system.bodies().create();

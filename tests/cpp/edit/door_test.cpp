@@ -14,7 +14,7 @@ namespace {
 TEST(Door, names_the_edits_that_may_be_asked_for_during_a_step) {
   EXPECT_EQ(
       System::queued_edits(),
-      "combine, destroy, nail, release, separate, set_active, set_compliance, set_coordinate, set_kind, set_length, set_material, "
+      "combine, destroy, nail, release, separate, set_active, set_color, set_compliance, set_coordinate, set_kind, set_length, set_material, "
       "set_radius");
 }
 

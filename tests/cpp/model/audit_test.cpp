@@ -53,6 +53,8 @@ const std::vector<Damage> damages{
     {"is nailed nowhere", [](Everything& e) { e.model.rings[ring_of(e, e.loner)].nailed = 1; }},
     // outlines
     {"has a radius", [](Everything& e) { e.model.radii.make(nowhere) = 1; }},
+    {"has a color", [](Everything& e) { e.model.colors.make(nowhere) = 1; }},
+    {"has color 16777216", [](Everything& e) { e.model.colors.make(e.corners_body) = 0x1000000; }},
     {"has radius -1", [](Everything& e) { e.model.radii.make(e.corners_body) = -1; }},
     {"the usual radius is -1", [](Everything& e) { e.model.usual_radius = -1; }},
     // side tables

@@ -76,7 +76,7 @@ export class EmbeddedWorld {
   /** Takes hold of a body; the returned functions move the hand, and let go. */
   grab({ body, localPoint, point }: Picked): { move(target: readonly [number, number, number]): void; end(): void } {
     const hold = this.grabs_++ % 32;
-    this.connection.send({ type: "grabStart", hold, body: this.idOf_(body), localPoint: [...localPoint], target: [...point] });
+    this.connection.send({ type: "grabStart", hold, body: this.idOf_(body), localPoint: [...localPoint], target: [...point], pointer: "" });
     return {
       move: (target) => void this.connection.send({ type: "grabMove", hold, target: [...target] }),
       end: () => void this.connection.send({ type: "grabEnd", hold }),

@@ -175,6 +175,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     else if (grab.body !== this.selected_ && !this.more_.has(grab.body)) this.select(grab.body);
     this.session_.send({
       type: "grabStart", hold: grab.hold, body: this.session_.idOf(grab.body), localPoint: vec3(grab.localPoint), target: vec3(grab.target),
+      pointer: grab.pointer.name,
     });
     grab.pointer.pulse(0.6, 30);
     this.events_.grab(grab, "start");

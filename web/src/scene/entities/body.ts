@@ -2,8 +2,8 @@
 // Draws all bodies: one instanced mesh for each part of each visual, tints that ease, outlines. It also has the packed
 // data for picking, so that a pick agrees with the picture. An edit touches only the instances of its bodies.
 
-import { Group, Matrix4, Quaternion, Vector3, type Color } from "three";
-import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
+import { Group, Matrix4, Quaternion, Vector3, Color } from "three";
+import { BodyKind, NO_COLOR, type BodyEntity, type Id } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { DrawnPart, Outline } from "../outline.ts";
@@ -156,6 +156,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   private readonly batches_ = new Map<number, Batch[]>();
   private readonly outlines_: Outline[] = [];
   private painted_: ReadonlyMap<number, Color> = new Map();
+  private readonly hue_ = new Color();
   private readonly matrix_ = new Matrix4();
   private frame_ = 0;
   /** Drawn slots, in order, and those of them that can be held: updated after a change. */
@@ -212,7 +213,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     const { kind, visual, odd, length } = body.entity;
     if (entity.kind === kind && entity.visual === visual && entity.odd === odd && entity.length === length) {
       if (entity.name !== body.entity.name) this.renamed++;
+      const isRecolored = entity.color !== body.entity.color;
       body.entity = entity;
+      if (isRecolored) this.color_(body);
       return;
     }
     this.removeInstances_(body);
@@ -407,7 +410,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     const before = this.painted_;
     this.painted_ = colors;
     for (const slot of new Set([...before.keys(), ...colors.keys()])) {
-      for (const { batch: { pool }, index } of this.bodies_.get(slot)?.instances ?? noInstances) pool.setHue(index, colors.get(slot) ?? null);
+      const body = this.bodies_.get(slot);
+      if (body !== undefined) this.color_(body);
     }
   }
 
@@ -436,9 +440,14 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     const batches = this.batchesOf_(visual, placed);
     body.shapes = placed;
     body.instances = placed.map((part, index) => new Instance(batches[index], batches[index].add(slot, part)));
-    const color = this.painted_.get(slot);
-    if (color !== undefined) for (const { batch: { pool }, index } of body.instances) pool.setHue(index, color);
+    if (body.entity.color !== NO_COLOR || this.painted_.has(slot)) this.color_(body);
     this.reach[slot] = bodyReach(placed);
+  }
+
+  /** Draws a body in the color that it was painted with, or its own; without one in those of its materials. */
+  private color_({ entity: { id: { slot }, color }, instances }: Body): void {
+    const hue = this.painted_.get(slot) ?? (color === NO_COLOR ? null : this.hue_.setHex(color & 0xffffff));
+    for (const { batch: { pool }, index } of instances) pool.setHue(index, hue);
   }
 
   private removeInstances_(body: Body): void {
