@@ -62,6 +62,13 @@ def element(symbol: str) -> Element | None:
 
 
 @cache
+def isotope(known: Element, number: int) -> Element:
+    """The element with the mass of its isotope with this mass number."""
+    mass = rdkit().GetPeriodicTable().GetMassForIsotope(known.symbol, number)
+    return known._replace(mass=mass or float(number))
+
+
+@cache
 def _symbols() -> frozenset[str]:
     table = rdkit().GetPeriodicTable()
     return frozenset(table.GetElementSymbol(number) for number in range(1, 119))

@@ -53,6 +53,7 @@ def read_gltf(path: PathLike, read_mesh: Callable[[bytes, str], Any]) -> list[Pa
         raise FileError(path, f"its meshes are compressed ({', '.join(packed)}), which is not read; export it without")
     try:
         _check_tree(head.get("nodes", []), path)
+        _check_buffers(head, binary, path)
         materials = _Materials(head, binary, path)
         bare = _without_materials(head)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -71,7 +72,7 @@ def read_gltf(path: PathLike, read_mesh: Callable[[bytes, str], Any]) -> list[Pa
     found = list(_surfaces(scene, materials, path))
     if not found:
         raise FileError(path, "has no triangles in its scene")
-    found[0].notes += materials.notes
+    found[0].notes += materials.notes + _left_out(head)
     return found
 
 
@@ -108,6 +109,37 @@ def _check_tree(nodes: list[dict[str, Any]], path: PathLike) -> None:
         found += nodes[at].get("children", [])
     if circle := sorted(set(range(len(nodes))) - set(found)):
         raise FileError(path, f"node {circle[0]} is below itself")
+
+
+def _check_buffers(head: dict[str, Any], binary: bytes | None, path: PathLike) -> None:
+    """Raises FileError for a buffer that is shorter than it says, and for a part of one beyond its end."""
+    sizes = []
+    for at, buffer in enumerate(head.get("buffers", [])):
+        promised = int(buffer["byteLength"])
+        if "uri" in buffer:
+            try:
+                data = _read_uri(buffer["uri"], path)
+            except ValueError as error:
+                raise FileError(path, f"buffer {at} cannot be read: {error}") from None
+        elif binary is not None and at == 0:
+            data = binary
+        else:
+            raise FileError(path, f"buffer {at} has no data")
+        if len(data) < promised:
+            raise FileError(path, f"buffer {at} has {len(data)} bytes, {promised} promised: it is truncated")
+        sizes.append(promised)
+    for at, view in enumerate(head.get("bufferViews", [])):
+        end, size = int(view.get("byteOffset", 0)) + int(view["byteLength"]), sizes[view["buffer"]]
+        if end > size:
+            raise FileError(path, f"buffer view {at} ends at byte {end} of buffer {view['buffer']}, which has {size}")
+
+
+def _left_out(head: dict[str, Any]) -> list[str]:
+    """A note for what is not read: the mesh is as it is without it."""
+    targets = sum("targets" in part for mesh in head.get("meshes", []) for part in mesh["primitives"])
+    count = {what: len(head.get(what, [])) for what in ("skins", "animations")} | {"morph targets": targets}
+    found = [f"{number} {what.removesuffix('s') if number == 1 else what}" for what, number in count.items() if number]
+    return [f"{', '.join(found)}: left out, the shape is the one at rest"] if found else []
 
 
 def _without_materials(head: dict[str, Any]) -> dict[str, Any]:

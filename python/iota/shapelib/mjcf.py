@@ -43,7 +43,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
     # Without this it writes them into MUJOCO_LOG.TXT, in the folder where the script was started.
     mujoco.set_mju_user_warning(lambda text: warnings.append(" ".join(str(text).split())))
     try:
-        model = mujoco.MjModel.from_xml_path(str(path))
+        model = compiled(mujoco, path)
         state = mujoco.MjData(model)
         mujoco.mj_kinematics(model, state)
     except ValueError as error:
@@ -61,10 +61,22 @@ def read_mjcf(path: PathLike) -> Mechanism:
     return reader.mechanism
 
 
+def compiled(mujoco: Any, path: PathLike) -> Any:
+    """The model. Actuators are not read, so that one whose range of lengths MuJoCo cannot find is no reason to refuse a model."""
+    try:
+        return mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        if "lengthrange" not in str(error).lower():
+            raise
+    spec = mujoco.MjSpec.from_file(str(path))
+    spec.compiler.LRopt.mode = int(mujoco.mjtLRMode.mjLRMODE_NONE)
+    return spec.compile()
+
+
 def wrong(path: PathLike, text: str, included: list[Element]) -> FileError:
     """Converts an error of MuJoCo. MuJoCo reports line 0 for an element of an included file; the element is then found by
     the tag and the attribute that the error names."""
-    reason = f"MuJoCo cannot read it: {text.split(chr(10))[0]}"
+    reason = f"MuJoCo cannot read it: {text.split(chr(10))[0].rstrip(': ')}"
     line = re.search(r"line(?: number=)? ?(\d+)", text)
     if line is None or line.group(1) != "0":
         return FileError(path, reason, line and int(line.group(1)))
@@ -100,6 +112,8 @@ def check(element: Element, folder: Path, seen: frozenset[Path], included: list[
         for file in dict.fromkeys(filter(Path.exists, places)) or places[:1]:
             if file in seen:
                 raise element.wrong(f"{file.name} includes itself")
+            if not file.exists():
+                raise element.wrong(f"<{element.tag}> names {element.attributes.get('file')!r}, which does not exist")
             included.append(read_tree(file))
             check(included[-1], folder, seen | {file}, included, copies)
     for child in element.children:

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 MOST_ATOMS = 100_000
 SLACK = 0.45  # angstrom, by which a bond may be longer than the sum of its radii
 COLLIDING = 0.4  # angstrom: less than the distance of any two nuclei
+DRAWN = 0.01  # angstrom: less than that of any two atoms in a drawing
 
 
 @dataclass
 class Molecule:
     """Atoms and bonds. position: (n, 3), angstrom. bonds: (k, 2). orders: (k,), 1.5 for aromatic ones, 1 if unknown.
-    names: for messages, such as "CA of ARG 27"."""
+    names: for messages, such as "CA of ARG 27". charge: of all atoms, elementary charges. is_plane: the coordinates are those of a
+    drawing."""
 
     title: str
     elements: list[Element]
@@ -34,6 +36,8 @@ class Molecule:
     names: list[str] = field(default_factory=list)
     residues: int = 0
     notes: list[str] = field(default_factory=list)
+    charge: int = 0
+    is_plane: bool = False
 
     def formula(self) -> str:
         """C and H first, then the others by name (Hill 1900)."""
@@ -50,13 +54,14 @@ def check_count(count: int, path: PathLike, line: int | None = None) -> None:
 
 
 def check_places(molecule: Molecule, path: PathLike) -> None:
-    """Raises FileError if two atoms coincide."""
+    """Raises FileError if two atoms coincide; in a drawing, atoms may be near each other."""
+    least = DRAWN if molecule.is_plane else COLLIDING
     if not len(molecule.elements):
         raise FileError(path, "has no atoms")
     try:
-        pairs, distances = near_pairs(molecule.position, COLLIDING)
+        pairs, distances = near_pairs(molecule.position, least)
     except TooManyPairsError:
-        raise FileError(path, f"nearly all of its atoms are within {COLLIDING} angstrom of many others") from None
+        raise FileError(path, f"nearly all of its atoms are within {least} angstrom of many others") from None
     except ValueError as error:
         raise FileError(path, str(error)) from None
     if len(pairs):

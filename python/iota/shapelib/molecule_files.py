@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+import time
+from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -12,10 +14,13 @@ from typing import Any
 import numpy as np
 
 from iota.shapelib import cif
-from iota.shapelib.chemistry import Element, complaints, element, rdkit
+from iota.shapelib.chemistry import Element, complaints, element, isotope, rdkit
 from iota.shapelib.files import FileError, PathLike, number, read_text, whole, with_progress
+from iota.shapelib.layout import lay_out
 from iota.shapelib.molecule_data import Molecule, check_count, check_places, perceive_bonds
 
+EMBED_SECONDS = 5  # for each of two ways to find a shape, which together with the rest take at most 20 s
+RELAX_SECONDS = 4.0
 GAP = 4.0  # angstrom, between parts of a SMILES that no bond connects
 
 
@@ -34,29 +39,73 @@ def read_molecule(path: PathLike) -> Molecule:
 
 def parse_smiles(text: str, seed: int = 1) -> Molecule:
     """A molecule in three dimensions from a SMILES string, hydrogens added: RDKit's distance geometry (ETKDG; Riniker and
-    Landrum 2015), relaxed in its force field. Raises ValueError that names the error in the text."""
+    Landrum 2015), relaxed in its force field. Where it finds no shape within some seconds, the atoms are laid out by their
+    bonds, with a note. Raises ValueError that names the error in the text."""
     chem = rdkit()
-    from rdkit.Chem import rdDistGeom as shapes
-    from rdkit.Chem import rdForceFieldHelpers as fields
-
+    shown = repr(text if len(text) <= 60 else text[:57] + "...")
     with complaints() as said:
         found = chem.MolFromSmiles(text) if text.strip() else None
         if found is None or found.GetNumAtoms() == 0:
-            raise ValueError(f"the SMILES {text[:60]!r} cannot be read{_reason(said)}")
+            raise ValueError(f"the SMILES {shown} cannot be read{_reason(said)}")
         if found.GetNumAtoms() > 1000:
             raise ValueError(f"the SMILES has {found.GetNumAtoms()} heavy atoms, more than 1000")
         found = chem.AddHs(found)
-        if shapes.EmbedMolecule(found, randomSeed=seed) != 0 and (
-            shapes.EmbedMolecule(found, randomSeed=seed, useRandomCoords=True) != 0
-        ):
-            raise ValueError(f"no shape in space was found for the SMILES {text[:60]!r}{_reason(said)}")
-        if fields.MMFFHasAllMoleculeParams(found):
-            fields.MMFFOptimizeMolecule(found)
+        is_embedded = _embed(found, seed)
+        if not is_embedded:
+            _lay_out(found)
+        _relax(found)
     molecule = _from_rdkit(found)
     _put_apart(molecule, chem.GetMolFrags(found))
     molecule.title = text
-    check_places(molecule, f"SMILES {text[:60]!r}")
+    if not is_embedded:
+        molecule.notes.append("its shape is laid out by its bonds: RDKit finds none")
+    check_places(molecule, f"SMILES {shown}")
     return molecule
+
+
+def _embed(found: Any, seed: int) -> bool:
+    """Whether RDKit finds a shape in time."""
+    from rdkit.Chem import rdDistGeom as shapes
+
+    for is_random in (False, True):
+        way: Any = shapes.ETKDGv3()
+        way.randomSeed, way.useRandomCoords, way.timeout = seed, is_random, EMBED_SECONDS
+        if shapes.EmbedMolecule(found, way) == 0:
+            return True
+    return False
+
+
+def _lay_out(found: Any) -> None:
+    from rdkit.Chem.rdchem import Conformer, HybridizationType
+    from rdkit.Geometry import Point3D
+
+    count = found.GetNumAtoms()
+    straight = {HybridizationType.SP: np.pi, HybridizationType.SP2: 2 * np.pi / 3}
+    bonds = np.array([(b.GetBeginAtomIdx(), b.GetEndAtomIdx()) for b in found.GetBonds()], np.int64).reshape(-1, 2)
+    radius = np.array([_known(atom.GetSymbol()).bond_radius for atom in found.GetAtoms()])
+    angles = np.array([straight.get(atom.GetHybridization(), np.arccos(-1 / 3)) for atom in found.GetAtoms()])
+    place = lay_out(count, bonds, radius[bonds].sum(axis=1), angles)
+    shape = Conformer(count)
+    for at, (x, y, z) in enumerate(place.tolist()):
+        shape.SetAtomPosition(at, Point3D(x, y, z))
+    found.RemoveAllConformers()
+    found.AddConformer(shape, assignId=True)
+
+
+def _relax(found: Any) -> None:
+    """In the force field, if it knows all atoms, and as long as time is left."""
+    from rdkit.Chem import rdForceFieldHelpers as fields
+
+    if not fields.MMFFHasAllMoleculeParams(found):
+        return
+    end = time.monotonic() + RELAX_SECONDS
+    field = fields.MMFFGetMoleculeForceField(found, fields.MMFFGetMoleculeProperties(found))
+    if field is None:
+        return
+    field.Initialize()
+    for _ in range(20):
+        if field.Minimize(maxIts=10) == 0 or time.monotonic() > end:
+            return
 
 
 def _put_apart(molecule: Molecule, parts: Sequence[Sequence[int]]) -> None:
@@ -78,12 +127,22 @@ def _reason(said: list[str]) -> str:
 
 def _from_rdkit(found: Any) -> Molecule:
     atoms = [_known(atom.GetSymbol()) for atom in found.GetAtoms()]
+    heavy = Counter[str]()
+    for at, atom in enumerate(found.GetAtoms()):
+        if atom.GetIsotope():
+            atoms[at] = isotope(atoms[at], atom.GetIsotope())
+            heavy[f"{atom.GetIsotope()}{atom.GetSymbol()}"] += 1
     bonds = [(bond.GetBeginAtomIdx(), bond.GetEndAtomIdx()) for bond in found.GetBonds()]
     orders = [bond.GetBondTypeAsDouble() or 1.0 for bond in found.GetBonds()]
-    return Molecule(
+    molecule = Molecule(
         "", atoms, np.array(found.GetConformer().GetPositions(), float).reshape(-1, 3),
         np.array(bonds, np.int64).reshape(-1, 2), np.array(orders, float),
     )  # fmt: skip
+    molecule.charge = sum(atom.GetFormalCharge() for atom in found.GetAtoms())
+    if heavy:
+        listed = ", ".join(f"{count} of {name}" for name, count in heavy.items())
+        molecule.notes.append(f"isotopes, with their masses: {listed}")
+    return molecule
 
 
 def _known(symbol: str) -> Element:
@@ -110,18 +169,30 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
     names: list[str] = []
     kind_of_residue: dict[str, str] = {}
     seen: set[tuple[str, str]] = set()
-    others = models = 0
+    others = models = after = 0
+    ended = False
     for at, line in enumerate(with_progress(text.splitlines(), "reading atoms"), 1):
         record = line[:6].strip()
         if record == "MODEL":
-            models += 1
-        if record not in ("ATOM", "HETATM"):
-            kept.append(line)
+            models, ended = models + 1, bool(names)
             continue
-        if models > 1:
+        if record not in ("ATOM", "HETATM"):
+            if record in ("END", "ENDMDL"):  # RDKit reads no further
+                ended = ended or bool(names)
+            else:
+                kept.append(line)
+            continue
+        if ended:
+            after += 1
             continue
         if len(line) < 54:
             raise FileError(path, "the line of this atom ends before its coordinates", at)
+        if shift := _shift(line):
+            columns = ", ".join(str(column + shift) for column in POINTS)
+            raise FileError(
+                path, f"the columns are shifted: the decimal points of x, y and z stand in columns {columns}, not in "
+                f"{', '.join(map(str, POINTS))}", at,
+            )  # fmt: skip
         for begin, what in ((30, "x"), (38, "y"), (46, "z")):
             number(line[begin : begin + 8], path, at, what)
         residue, kind, name = line[21:27], line[17:20].strip(), line[12:16].strip()
@@ -153,17 +224,34 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
         molecule.notes.append(f"{others} alternate places of atoms are left out")
     if models > 1:
         molecule.notes.append(f"only the first of {models} models is read")
+    elif after:
+        molecule.notes.append(f"{after} atoms after the first END are left out")
     serials = {line[6:11] for line in kept if line.startswith(("ATOM", "HETATM"))}
     dangling = sum(
         any(end.strip() and end not in serials for end in (line[place : place + 5] for place in range(6, 31, 5)))
         for line in kept
         if line.startswith("CONECT")
     )
-    if dangling and not others and models <= 1:
+    if dangling and not others and not after:
         molecule.notes.append(f"{dangling} CONECT lines name atoms that the file does not have")
-    if not any(line.startswith("END") for line in kept):
+    if not ended:
         molecule.notes.append("the file has no END line: it may be truncated")
     return molecule
+
+
+POINTS = (35, 43, 51)  # columns, from 1, of the decimal points of x, y and z in an ATOM line
+
+
+def _shift(line: str) -> int:
+    """By how many columns a line of the usual numbers with three decimals is shifted; 0 also for numbers of another form."""
+    for shift in (-1, 1, -2, 2):
+        ends = [column - 1 + shift for column in POINTS]
+        if all(line[at : at + 1] == "." and DECIMALS.match(line, at + 1) for at in ends):
+            return shift
+    return 0
+
+
+DECIMALS = re.compile(r"\d{3}(?!\d)")
 
 
 # --- MDL molfiles -----------------------------------------------------------------------------------------------------
@@ -210,10 +298,11 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
     check_count(found.GetNumAtoms(), path)
     molecule = _from_rdkit(found)
     molecule.title = lines[0].strip()
+    molecule.is_plane = not found.GetConformer().Is3D()
     molecules = sum(line.startswith("M  END") for line in lines)
     if molecules > 1:
         molecule.notes.append(f"only the first of {molecules} molecules is read")
-    if not found.GetConformer().Is3D():
+    if molecule.is_plane:
         molecule.notes.append("the file has plane coordinates of a drawing, not a shape in space")
     return molecule
 
@@ -259,6 +348,29 @@ def _check_v3000(lines: list[str], path: PathLike) -> None:
     if not atoms:
         raise FileError(path, "has no atoms")
     _check_bonds(bonds, atoms, path)
+
+
+# --- SMILES -----------------------------------------------------------------------------------------------------------
+
+
+def _read_smi(text: str, path: PathLike) -> Molecule:
+    """Reads the first line: a SMILES, and its title behind a space."""
+    lines = [
+        (at, line.split(None, 1)) for at, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"
+    ]
+    if lines and lines[0][1][0].lower() in ("smiles", "canonical_smiles"):  # a head
+        del lines[0]
+    if not lines:
+        raise FileError(path, "has no SMILES")
+    at, (smiles, *title) = lines[0]
+    try:
+        molecule = parse_smiles(smiles)
+    except ValueError as error:
+        raise FileError(path, str(error), at) from None
+    molecule.title = title[0].strip() if title else smiles
+    if len(lines) > 1:
+        molecule.notes.append(f"only the first of {len(lines)} molecules is read")
+    return molecule
 
 
 # --- XYZ --------------------------------------------------------------------------------------------------------------
@@ -328,7 +440,8 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
     kind_of_residue: dict[tuple[str, ...], str] = {}
     seen: set[tuple[str, ...]] = set()
     atoms, places, names = [], [], []
-    others = other_models = 0
+    others = other_models = charge = 0
+    charges = table.column("pdbx_formal_charge")
     for row, at in enumerate(with_progress(table.lines, "reading atoms")):
         if models and models[row] != models[0]:
             other_models += 1
@@ -342,12 +455,17 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
         seen.add(key)
         symbol = symbols[row] if elements else re.sub(r"[^A-Za-z].*", "", symbols[row])
         atoms.append(_element_at(re.sub(r"\d*[+-]?$", "", symbol), path, at))
+        told = re.fullmatch(r"[A-Za-z]+(\d*)([+-])", symbol)  # of an ion, as Fe3+
+        charge += int(f"{told[2]}{told[1] or 1}") if told else 0
+        if charges and re.fullmatch(r"[+-]?\d+", charges[row]):
+            charge += int(charges[row])
         check_count(len(atoms), path, at)
         # A number may have its uncertainty in parentheses: 0.1234(5).
         place = [number(column[row].split("(")[0], path, at, "a coordinate") for column in columns if column]
         places.append(cell @ place)
         names.append(f"{name} of {kind} {residue}" if is_protein else f"{atoms[-1].symbol}{len(atoms)}")
     molecule = _perceived("", atoms, np.array(places), path, names)
+    molecule.charge = charge
     if repeated := _symmetry(tables):
         molecule.notes.append(f"only the listed atoms are read, not their images in the crystal ({repeated})")
     molecule.residues = len(kind_of_residue) if is_protein else 0
@@ -391,5 +509,5 @@ def _cell(table: cif.Table | None, path: PathLike) -> Any:
 
 READERS: dict[str, Callable[[str, PathLike], Molecule]] = {
     ".pdb": _read_pdb, ".ent": _read_pdb, ".sdf": _read_sdf, ".mol": _read_sdf, ".xyz": _read_xyz, ".cif": _read_cif,
-    ".mmcif": _read_cif,
+    ".mmcif": _read_cif, ".smi": _read_smi, ".smiles": _read_smi,
 }  # fmt: skip

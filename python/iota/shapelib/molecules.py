@@ -14,6 +14,7 @@ import numpy as np
 from iota import looks
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
+from iota.colors import ColorLike, rgba
 from iota.shapelib.apart import apart
 from iota.shapelib.files import PathLike, check_reach
 from iota.shapelib.graphs import bridges, pieces
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Kind = Literal["rigid", "soft", "flexible"]
-AtomLook = Callable[[str], tuple[float, tuple[float, float, float]]]
+AtomLook = Callable[[str], tuple[float, ColorLike]]
 
 KINDS = ("rigid", "soft", "flexible")
 BALL = 0.45  # of the covalent radius: a ball-and-stick model
@@ -47,7 +48,7 @@ def molecule(
     atom_look: AtomLook | None = None,
     seed: int = 1,
 ) -> Imported:
-    """A molecule from a file that ends in .pdb, .ent, .sdf, .mol, .xyz, .cif or .mmcif, or from a SMILES string.
+    """A molecule from a file that ends in .pdb, .ent, .sdf, .mol, .xyz, .cif, .mmcif or .smi, or from a SMILES string.
 
     Its points are the atoms, in the order of the source. kind: "rigid", each connected piece is one body, its bonds are
     cosmetic; "soft", each atom is a body, bonds are springs, and weaker springs hold the angles between them; "flexible",
@@ -55,7 +56,7 @@ def molecule(
 
     scale: m for an angstrom; by default a nanometer is 1 m. mass_scale: kg for a dalton. at: place of the center of
     mass, m. stiffness: of a bond of kind "soft", N/m; None: the total weight stretches one bond by a tenth. damping:
-    damping ratio. atom_look: takes the symbol of an element, returns radius (m) and color (three numbers from 0 to 1).
+    damping ratio. atom_look: takes the symbol of an element, returns radius (m) and color.
     seed: for the shape of a SMILES. Raises `FileError` (a ValueError) that names file and line, ValueError for SMILES,
     ImportError without RDKit.
 
@@ -99,6 +100,8 @@ def _read(
         "atoms": len(mass), "bonds": len(data.bonds), "pieces": int(piece.max()) + 1, "residues": data.residues,
         "formula": data.formula(),
     }  # fmt: skip
+    if data.charge:
+        structure.counts["charge"] = data.charge
     if kind == "rigid":
         _add_bodies(structure, piece, data.bonds)
     elif kind == "flexible":
@@ -112,7 +115,7 @@ def _draw(structure: Imported, symbols: list[str], look: AtomLook) -> None:
     """The atoms, which are the first points."""
     drawn = {symbol: look(symbol) for symbol in set(symbols)}
     structure.points.radius[: len(symbols)] = [drawn[symbol][0] for symbol in symbols]
-    structure.points.color[: len(symbols)] = [drawn[symbol][1] for symbol in symbols]
+    structure.points.color[: len(symbols)] = [rgba(drawn[symbol][1])[:3] for symbol in symbols]
 
 
 def is_file(source: PathLike) -> bool:

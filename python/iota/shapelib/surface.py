@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     Numbers = NDArray[np.int64]
 
 MOST_FACES = 1_000_000
+TOUCHING = 1e-9  # share of its extent, by which a corner may miss the line that it is on
 
 
 @dataclass
@@ -160,22 +161,32 @@ def _cut(places: Array, face: list[int]) -> list[list[int]]:
     angles = np.arctan2(turns / (np.linalg.norm(normal) or 1.0), (sides * following).sum(axis=1))
     if (turns > 0).all() and angles.sum() < 3 * np.pi:  # 4 pi for one that goes round twice
         return [[face[0], b, c] for b, c in pairwise(face[1:])]
+    flat = normal / (np.linalg.norm(normal) or 1.0)
     left, found = np.arange(len(face)), []
     while len(left) > 3:
-        for at in range(len(left)):
-            # Starting at the second corner makes the fan of a convex polygon start at its first.
-            ear = left[[at, (at + 1) % len(left), (at + 2) % len(left)]]
-            a, b, c = corners = places[ear]
-            if np.dot(np.cross(b - a, c - b), normal) > 0:
-                others = places[left[~np.isin(left, ear)]]
-                inward = [
-                    (others - end) @ np.cross(normal, end - begin)
-                    for begin, end in zip(corners, (b, c, a), strict=True)
-                ]
-                if not (np.min(inward, axis=0) > 0).any():
-                    break
-        else:  # no ear: flat or crossing itself
-            ear = left[:3]
+        at = _ear(places[left], flat)
+        # Without an ear it is flat or crosses itself.
+        ear = left[:3] if at is None else left[[at, (at + 1) % len(left), (at + 2) % len(left)]]
         found.append([face[i] for i in ear])
         left = left[left != ear[1]]
     return [*found, [face[i] for i in left]]
+
+
+def _ear(places: Array, normal: Array) -> int | None:
+    """The first of three corners in a row that turn inward, and around which no other corner is. Corners on its sides count as
+    within, so that a straight corner stays one of the polygon's, except those at the same place, as at the bridge to a hole.
+    Starting at the second corner makes the fan of a convex polygon start at its first. normal: unit."""
+    following, after = np.roll(places, -1, axis=0), np.roll(places, -2, axis=0)
+    turns = np.cross(following - places, after - following) @ normal
+    slack = TOUCHING * float(np.ptp(places, axis=0).max()) ** 2
+    for tolerance in (slack, -slack):  # rather an ear with a corner on its side than none
+        for at in map(int, np.flatnonzero(turns > slack)):
+            corners = np.stack([places[at], following[at], after[at]])
+            others = np.delete(places, [at, (at + 1) % len(places), (at + 2) % len(places)], axis=0)
+            apart = (others[:, None] != corners).any(axis=2).all(axis=1)
+            ends = np.roll(corners, -1, axis=0)
+            sides = np.cross(normal, ends - corners)
+            inward = ((others[:, None] - ends) * sides).sum(axis=2).min(axis=1)
+            if not (apart & (inward > -tolerance)).any():
+                return at
+    return None

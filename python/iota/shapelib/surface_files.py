@@ -123,6 +123,9 @@ def _read_obj(path: PathLike) -> Surface:
                 face.append(vertex - 1 if vertex > 0 else len(places) + vertex)
                 if vertex == 0:
                     raise FileError(path, "a face uses vertex 0; the first one is 1", at)
+                if face[-1] < 0:
+                    before = f"there are {len(places)} vertices before it"
+                    raise FileError(path, f"a face uses vertex {vertex}, counted backwards; {before}", at)
             if len(face) < 3:
                 raise FileError(path, f"a face has {len(face)} corners", at)
             surface.faces.append(face)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from iota.shapelib.trees import Element, read_tree
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ONE_COORDINATE = ("revolute", "continuous", "prismatic")
+READ = ("link", "joint", "material")
 MOST_LINKS = 10_000
 # The axis of a cylinder is z in URDF, and x in iota.
 X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
@@ -70,19 +72,36 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
                 mechanism.joints.append(made)
         elif name != "world" and base != "free":
             mechanism.joints.append(LinkJoint("weld", f"{name} to the world", name, None, frames[name].place))
+    fixed = {"world"} if base == "free" else {"world", *(name for name in order if name not in joint_of)}
+    bare = [name for name in order if name not in fixed and links[name].first("inertial") is None]
+    if bare:
+        listed = ", ".join(bare[:5]) + (" ..." if len(bare) > 5 else "")
+        what = "1 link has" if len(bare) == 1 else f"{len(bare)} links have"
+        mechanism.notes.append(f"{what} no <inertial>, and {LIGHTEST} kg each: {listed}")
     if missing:
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
         what = "1 mesh is missing, and is" if len(missing) == 1 else f"{len(missing)} meshes are missing, and are"
         mechanism.notes.append(f"{what} not drawn: {listed}")
-    for tag in ("transmission", "gazebo", "sensor"):
-        if count := sum(1 for _ in robot.all(tag)):
-            mechanism.notes.append(f"{count} <{tag}> {'is' if count == 1 else 'are'} left out")
+    mechanism.notes += _left_out(robot)
     mechanism.counts = {
         "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
         "independent joints": moving - len(mimics),
         "mass": math.fsum(_mass(element) for element in links.values()), "missing meshes": len(missing),
     }  # fmt: skip
     return mechanism
+
+
+def _left_out(robot: Element) -> list[str]:
+    """What is not read: joints of other namespaces by their names, as their links hang on nothing, and the rest by its number."""
+    notes = []
+    joints = [element for element in robot.children if element.tag.endswith("joint") and element.tag != "joint"]
+    if joints:
+        named = ", ".join(f"{each.text('name', '')} (<{each.tag}>, line {each.line})" for each in joints[:9])
+        more = f" and {len(joints) - 9} more" if len(joints) > 9 else ""
+        count = "1 joint is" if len(joints) == 1 else f"{len(joints)} joints are"
+        notes.append(f"{count} not of URDF and left out, so that links hang on nothing: {named}{more}")
+    others = Counter(each.tag for each in robot.children if each.tag not in READ and each not in joints)
+    return notes + [f"{number} <{tag}> {'is' if number == 1 else 'are'} left out" for tag, number in others.items()]
 
 
 def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element], list[str], bool]:
@@ -146,7 +165,7 @@ def _link(
     if mass < 0 or (np.linalg.eigvalsh(inertia) < -1e-9).any():
         raise (inertial or element).wrong(f"the link {name} has a negative mass or inertia")
     if mass == 0:
-        if element.first("inertial") is not None:
+        if inertial is not None:
             notes.append(f"the link {name} has no mass; it is given {LIGHTEST} kg")
         mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
     try:
