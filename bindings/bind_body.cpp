@@ -35,8 +35,8 @@ constexpr const char* make_obstacle_doc =
     "can be tied to it, and `bodies`, masses, energies and articulates do not count it. `World.add_static` makes one with a\n"
     "look.\n\n"
     "shape: any; a Mesh need not be closed, and has then two sides and no inside. position: of its origin, m.\n"
-    "orientation: as of `System.body`. Assigning `Body.position` moves it. material: bodies with one touch it, None: nothing\n"
-    "does. color: see `Body.color`.\n\n"
+    "orientation: as of `System.body`. Assigning `Body.position` moves it. material: as of `Body.material`, None: the usual one\n"
+    "of the system. color: see `Body.color`.\n\n"
     "    wall = system.obstacle(iota.Box((4, 2, 0.1)), position=(0, 1, -2))\n"
     "    ground = system.obstacle(iota.HalfSpace((0, 1, 0)))";
 

@@ -606,22 +606,29 @@ void bind_stop(nb::module_& module) {
 // --- making -----------------------------------------------------------------------------------------------------------
 
 void bind_constraint_makers(nb::class_<SystemObject>& type) {
-  const auto simple = [&](const char* name, ConstraintKind kind, const char* text) {
-    type.def(
-        name,
-        [kind](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, double break_force,
-               double break_torque) {
-          JointSpec spec;
-          spec.kind = kind, spec.breaks = to_limits(break_force, break_torque);
-          return make_joint(self, spec, a, b, at);
-        },
-        "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "break_force"_a = infinity,
-        "break_torque"_a = infinity, text);
-  };
-  simple("ball", ConstraintKind::ball, "A point of a stays at a point of b (None: of the world). at: where, m.");
-  simple("weld", ConstraintKind::weld,
-         "b (None: the world) holds a in its present pose. at: point of its force and torque, m. Unlike `combine` it\n"
-         "keeps two bodies, reports its load, and can break.");
+  type.def(
+      "ball",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, double break_force,
+         double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::ball, spec.breaks = to_limits(break_force, break_torque);
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "break_force"_a = infinity, "break_torque"_a = infinity,
+      "A point of a stays at a point of b (None: of the world). at: where, m.");
+  type.def(
+      "weld",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, std::optional<VectorArgument> at,
+         double break_force, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::weld, spec.breaks = to_limits(break_force, break_torque);
+        spec.at = a.use().bodies().center_of_mass(a.id);
+        return make_joint(self, spec, a, b, at.value_or(VectorArgument{}));
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a.none() = nb::none(), "break_force"_a = infinity,
+      "break_torque"_a = infinity,
+      "b (None: the world) holds a in its present pose. at: point of its force and torque, m, None: a's center of mass. Unlike\n"
+      "`combine` it keeps two bodies, reports its load, and can break.");
 
   const auto with_coordinate = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(

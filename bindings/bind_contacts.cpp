@@ -151,7 +151,7 @@ void bind_use(nb::module_& module) {
           },
           nb::for_setter(nb::arg("material").none()),
           "Its own. With a material its outline touches others that have one: it rests, slides, rolls and stacks. None:\n"
-          "`System.usual_material` counts, but for static bodies, which then touch nothing.")
+          "`System.usual_material` counts; `iota.Material(touches='nothing')` is for what only looks.")
       .def_prop_ro(
           "contacts",
           [](const BodyHandle& self) {
@@ -179,7 +179,7 @@ void bind_use(nb::module_& module) {
             self.use_between_steps("usual_material = ...").set_usual_material(material);
           },
           nb::for_setter(nb::arg("material").none()),
-          "Of bodies that can move and have no material of their own; None at first: they touch nothing. A World sets it\n"
+          "Of bodies that have no material of their own, static ones too; None at first: they touch nothing. A World sets it\n"
           "where it has a ground, so that this holds all bodies.");
 }
 

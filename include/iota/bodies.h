@@ -119,7 +119,7 @@ class Bodies : public View {
   std::optional<std::uint32_t> color(BodyId) const;
   void set_color(BodyId, std::optional<std::uint32_t> rgb);
   /// Its own. With a material its outline touches the outlines of static bodies that have one: it rests, slides and rolls on them.
-  /// None: System::usual_material counts, but for static bodies, which touch nothing then.
+  /// None: System::usual_material counts.
   std::optional<Material> material(BodyId) const;
   void set_material(BodyId, const std::optional<Material>&);
   /// The places where it touched others in the last step. All of them: Contacts::points.

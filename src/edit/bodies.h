@@ -51,7 +51,7 @@ struct SetColor {
   bool has_one;
   std::uint32_t value;  ///< 0xRRGGBB
 };
-/// A body without a material touches nothing.
+/// A body without one has the usual material.
 struct SetMaterial {
   static constexpr std::string_view queued_as = "set_material";
   static constexpr bool keeps_energy = true;

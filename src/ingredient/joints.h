@@ -55,6 +55,8 @@ class Joints : public NoAnswers {
   /// Whether a joint, surfaces or a coupling hold a particle's body at another one, so that these may overlap. Distances
   /// do not.
   static bool join(const Model&, std::uint32_t particle, std::uint32_t other);
+  /// Whether a joint, surfaces or a coupling hold a particle's body in the world.
+  static bool hold_in_world(const Model&, std::uint32_t particle);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);

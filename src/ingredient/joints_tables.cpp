@@ -157,6 +157,14 @@ bool Joints::join(const Model& model, std::uint32_t particle, std::uint32_t othe
   return any;
 }
 
+bool Joints::hold_in_world(const Model& model, std::uint32_t particle) {
+  bool any = false;
+  for_each_side_at(model, particle, [&](const Constraint& c, int) {
+    any = any || (info(c.kind).form != Form::distance && body_of_side(model, c, 1) == none);
+  });
+  return any;
+}
+
 bool Joints::ties_to_world(const Model& model, std::uint32_t body) {
   bool tied = false;
   model.for_each_particle_of(body, [&](std::uint32_t p) {

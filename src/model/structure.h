@@ -181,8 +181,8 @@ class Structure {
   SideTable<double> radii;              ///< of bodies that have one of their own, m; see outline.h
   double usual_radius = 0;              ///< of all other bodies, m; 0: not chosen yet
   SideTable<std::uint32_t> colors;      ///< of bodies that have one instead of that of their material, 0xRRGGBB
-  SideTable<Material> materials;        ///< of bodies that touch others ...
-  Material usual_material;              ///< ... and of all other bodies that can move,
+  SideTable<Material> materials;        ///< of bodies that have one of their own ...
+  Material usual_material;              ///< ... and of all others,
   std::uint8_t has_usual_material = 0;  ///< if there is one
   Corrections corrections;              ///< of rings
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
@@ -331,8 +331,7 @@ class Structure {
   /// With which it touches others; null: nothing.
   const Material* material(std::uint32_t body) const {
     const Material* const own = materials.find(body);
-    const bool is_usual = !own && has_usual_material && bodies[body].kind != BodyKind::static_;
-    const Material* const material = is_usual ? &usual_material : own;
+    const Material* const material = !own && has_usual_material ? &usual_material : own;
     return material && material->touches != Touches::nothing ? material : nullptr;
   }
 

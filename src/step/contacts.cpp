@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/contacts.h"
 
+#include "model/outline.h"
 #include "model/solid.h"
 
 #include <algorithm>
@@ -60,8 +61,8 @@ double ContactFinder::Obstacle::distance(const Vec3& place) const {
 
 void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outlines) {
   obstacles_.clear();
-  model.materials.for_each([&](std::uint32_t body, const Material&) {
-    if (model.bodies[body].kind != BodyKind::static_ || !outlines.has(body) || !model.material(body)) return;
+  model.bodies.for_each([&](std::uint32_t body, const model::Body& record) {
+    if (record.kind != BodyKind::static_ || !outlines.has(body) || !model.material(body)) return;
     const contact::Outline& outline = outlines.placed(body);
     const bool is_sensor = model.material(body)->touches == Touches::sensor;
     Obstacle obstacle{body, contact::bounds(outline), false, is_sensor, {}, {}};
@@ -160,6 +161,22 @@ bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   return any;
 }
 
+/// Whether a nail or a joint of the world holds a body within something static: a chain on its beam, a wheel on the axle that a
+/// stand carries.
+bool is_held_within(model::Model& model, contact::Outlines& outlines, std::uint32_t body, std::uint32_t obstacle) {
+  constexpr double of_reach = 1e-3;  // a place on the surface counts
+  const double slack = std::max(model::radius_of(model, body), of_reach * outlines.reach(body));
+  const bool has_joints = ingredient::Joints::ties_any(model);
+  bool any = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    if (any || !(model.rings[particle.ring].nailed || (has_joints && ingredient::Joints::hold_in_world(model, p))))
+      return;
+    any = contact::near(outlines.placed(obstacle), model.position(p)).distance <= slack;
+  });
+  return any;
+}
+
 /// Two particles do not touch, unless they have materials of their own.
 bool are_plain(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   return !model.materials.has(a) || !model.materials.has(b);
@@ -172,7 +189,7 @@ bool is_sensor(const model::Model& model, const std::pair<std::uint32_t, std::ui
 }
 
 /// Whether two bodies that are near each other may touch: their materials and what joins them say it.
-bool touch_each_other(const model::Model& model, const contact::Outlines& outlines,
+bool touch_each_other(model::Model& model, contact::Outlines& outlines,
                       const std::pair<std::uint32_t, std::uint32_t>& pair) {
   const auto [first, second] = pair;
   const auto touches = [&](std::uint32_t body) { return model.material(body)->touches; };
@@ -184,7 +201,8 @@ bool touch_each_other(const model::Model& model, const contact::Outlines& outlin
     if (is_ball(first) && is_ball(second) && are_plain(model, first, second)) return false;
     if (!model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return false;
   }
-  return !ingredient::IgnoredContacts::include(model, first, second) && !are_joined(model, first, second);
+  if (ingredient::IgnoredContacts::include(model, first, second) || are_joined(model, first, second)) return false;
+  return model.bodies[second].kind != BodyKind::static_ || !is_held_within(model, outlines, first, second);
 }
 
 }  // namespace

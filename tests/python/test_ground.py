@@ -174,6 +174,61 @@ def test_the_ground_is_under_all_bodies_and_what_hangs_from_them() -> None:
     assert -1.5 < low < -1
 
 
+def test_the_ground_is_where_a_solid_stands_though_something_hangs_lower() -> None:
+    system = iota.System()
+    hung = system.body()
+    for x in (0.0, 2.0):
+        hung.particle((x, 1, 0))
+    hung.particles[0].nail()
+    box = system.body(shape=iota.Box((0.3, 0.4, 0.5)), position=(5, 0.2, 0), orientation=("y", 30))
+    world = iota.World(system)
+    run(world, 0.5)
+    assert world.scene.ground == 0.0 and box.position.y == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize("way", ["obstacle", "static", "look", "later"])
+def test_a_ramp_without_a_material_holds_what_slides_on_it(way: str) -> None:
+    system = iota.System()
+    world = iota.World(system, ground=0.0)
+    size, place, turn = (3, 0.1, 1), (0, 1.5, 0), ("z", -40)
+    if way == "obstacle":
+        system.obstacle(iota.Box(size), place, turn)
+    elif way == "static":
+        system.body("static", shape=iota.Box(size), position=place, orientation=turn)
+    elif way == "look":
+        world.add_static(iota.looks.box(size), place, turn)
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), position=(0, 1.75, 0), orientation=turn)
+    if way == "later":
+        world.advance(2)
+        system.obstacle(iota.Box(size), place, turn)
+    for _ in range(50):
+        world.advance(1)
+        assert box.position.y > 1.5 - box.position.x * math.tan(math.radians(40)), "above the ramp"
+    assert box.position.x > 0.1, "it slides"
+
+
+def test_what_only_looks_says_so() -> None:
+    system = iota.System()
+    world = iota.World(system, ground=0.0)
+    world.add_static(iota.looks.box((2, 0.1, 2)), (0, 1, 0)).material = iota.Material(touches="nothing")
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), position=(0, 2, 0))
+    world.advance(240)
+    assert box.position.y == pytest.approx(0.1, abs=1e-5)
+
+
+def test_a_pendulum_swings_through_the_beam_that_it_is_nailed_in() -> None:
+    system = iota.System()
+    rod = iota.builder.chain(links=3, length=1.2, top=(0, 2, 0), direction=(1, 0, 0)).realize(system)
+    world = iota.World(system)
+    world.add_strut((0, 2, -0.5), (0, 2, 0.5), iota.looks.cylinder(0.03, "wood"))
+    before, farthest = system.energy.total, 0.0
+    for _ in range(240):
+        report = world.step()
+        assert report is not None and report.worst_gap < 1e-8
+        farthest = min(farthest, rod.points[-1].position.x)
+    assert system.energy.total == pytest.approx(before, rel=1e-6) and farthest < -0.3
+
+
 def test_bodies_that_start_below_a_given_ground_are_left_there() -> None:
     system = iota.System(gravity=(0, -9.81, 0))
     below, above = system.body().particle((0, -1, 0)), system.body().particle((1, 1, 0))

@@ -40,10 +40,11 @@ def present(world: iota.World) -> None:
     """The crane and the post, beside the way of the ball."""
     steel, paint = looks.cylinder(0.03, "steel"), looks.cylinder(0.05, "paint", color="#d99a2b")
     top = HOOK + (0, 0.1, 0)
-    world.add_strut(tuple(HOOK), tuple(top), steel)
+    crane = [world.add_strut(tuple(HOOK), tuple(top), steel)]
     for z in (-1.5, 1.5):
-        world.add_strut((top.x - 0.25, 0, z), tuple(top), paint)
-        world.add_strut((top.x + 0.25, 0, z), tuple(top), paint)
+        crane += [world.add_strut((top.x + x, 0, z), tuple(top), paint) for x in (-0.25, 0.25)]
+    for each in crane:
+        each.material = iota.Material(touches="nothing")  # the links at the hook are within all of them
     for z in (-0.5, 0.5):
         world.add_strut((POST.x, 0, z), tuple(POST), paint)
     world.draw_ties("rope", looks.cylinder(0.012, "rope"))

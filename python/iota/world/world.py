@@ -529,12 +529,14 @@ class World:
         return report
 
     def advance(self, steps: int) -> None:
-        """Takes steps as fast as possible, then handles users' input and sends a frame: for films and tests, after
-        `serve`."""
+        """Takes steps as fast as possible, then handles users' input and, after `serve`, sends a frame: for films and tests."""
+        if not self._stepper.has_begun:
+            self._begin()
         for _ in range(steps):
             self._stepper.step()
         self._take_inputs()
-        self._send_frame()
+        if self._pages._publisher is not None:
+            self._send_frame()
 
     def close(self) -> None:
         """Ends serving; open pages show this and wait for a new server."""
