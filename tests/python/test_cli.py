@@ -127,7 +127,13 @@ LONG = "n" * 300  # no file system takes such a name
             1,
         ),
         (["run"], "the following arguments are required: NAME|FILE.py", 2),
-        (["fly"], "invalid choice: 'fly'", 2),
+        (["fly"], "there is no command 'fly'; there are list, run, ", 2),
+        (["recrod"], "there is no command 'recrod'; did you mean 'record'? Try: iota --help", 2),
+        (
+            ["export"],
+            "there is no command 'export'; a page of its own is made by: iota record NAME|FILE.py -o FILE.html",
+            2,
+        ),
         ([], "the following arguments are required: COMMAND", 2),
     ],
 )

@@ -16,7 +16,7 @@ import pytest
 
 import iota
 from iota.cli.record import Bar
-from iota.film import browser
+from iota.film import browser, unpack
 
 av = pytest.importorskip("av")
 pytest.importorskip("playwright")
@@ -171,6 +171,19 @@ def test_bad_requests_are_reported_in_one_line(
     assert done.returncode == 1 and done.stderr.count("\n") == 1
     assert words.format(tmp_path) in done.stderr
     assert not list(tmp_path.glob("*.mp4"))
+
+
+def test_a_page_is_made_without_a_browser_and_without_packages_for_films(script: Path, tmp_path: Path) -> None:
+    hidden = tmp_path / "without"
+    hidden.mkdir()
+    for package in ("av", "playwright", "PIL"):
+        (hidden / f"{package}.py").write_text("raise ImportError")
+    for name in ("page.html", "stream.iota"):
+        done = record(script, "-o", tmp_path / name, "--seconds", "0.5", PYTHONPATH=str(hidden), CHROMIUM="none")
+        assert done.returncode == 0, done.stderr
+    assert "<html" in (tmp_path / "page.html").read_text()
+    messages, is_complete = unpack((tmp_path / "stream.iota").read_bytes())
+    assert is_complete and len({time for time, _ in messages}) == 15
 
 
 def test_a_missing_browser_or_package_is_named_with_advice(script: Path, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import signal
 import sys
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
+from iota.arguments import suggestion
 from iota.cli import bench, bench_forces, gallery, imports, info, play, profile, record, run, sweep, verify, watch
 from iota.cli.failure import Failure
 
@@ -23,7 +25,33 @@ class Parser(argparse.ArgumentParser):
     """Prints an error in one line, without the usage text before it."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}. Try: {self.prog} --help\n")
+        text = instead_of(message) or message
+        self.exit(2, f"{self.prog}: {text}{'' if text.endswith('?') else '.'} Try: {self.prog} --help\n")
+
+
+# What people look for under other names.
+MEANT = {
+    "export": "a page of its own is made by: iota record NAME|FILE.py -o FILE.html",
+    "film": "a film is made by: iota record NAME|FILE.py -o FILE.mp4",
+    "render": "a film is made by: iota record NAME|FILE.py -o FILE.mp4",
+    "serve": "a world is served by: iota run NAME|FILE.py",
+    "start": "a world is served by: iota run NAME|FILE.py",
+    "show": "a world is shown by: iota run NAME|FILE.py; a file by: iota import FILE --show",
+    "open": "a file is shown by: iota import FILE --show; a recording by: iota play FILE.iota",
+    "studies": "the studies are listed by: iota list",
+    "convert": "a file is read by: iota import FILE; a page is made by: iota record FILE.py -o FILE.html",
+}
+
+
+def instead_of(message: str) -> str | None:
+    """For a command that does not exist: what to use, or a near one."""
+    found = re.match(r"argument COMMAND: invalid choice: '([^']*)' \(choose from (.*)\)", message)
+    if found is None:
+        return None
+    word, known = found[1], re.findall(r"\w+", found[2])
+    if word in MEANT:
+        return f"there is no command {word!r}; {MEANT[word]}"
+    return f"there is no command {word!r}{suggestion(word, known) or '; there are ' + ', '.join(known)}"
 
 
 def positive(text: str) -> float:

@@ -57,8 +57,13 @@ def is_repeated(system: System, log: Log, piece: Commands) -> bool:
 
 
 def frame_of(world: World, recording: RoomRecording) -> list[bytes]:
-    """The messages to viewers about the present state. The server sends them on its own thread."""
+    """The messages to viewers about the present state."""
     world.advance(0)
+    return messages_to_viewers(recording)
+
+
+def messages_to_viewers(recording: RoomRecording) -> list[bytes]:
+    """Of the frame that was sent last. The server sends them on its own thread."""
     end = time.monotonic() + PATIENCE
     while not (taken := recording.take()) and time.monotonic() < end:
         time.sleep(0.0005)

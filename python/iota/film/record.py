@@ -10,6 +10,7 @@ from pathlib import Path
 
 from iota.film.browser import FilmPage, film_page
 from iota.film.files import Failed, FilmFile, check_name, video_library, write_sheet
+from iota.film.journal import messages_to_viewers
 from iota.film.stream import write_stream
 from iota.saving import replacing
 from iota.world import World
@@ -66,6 +67,8 @@ class Film:
 def record(world: World, film: Film, progress: Callable[[int, int], None] = lambda done, all: None) -> None:
     """Runs a world and makes its film. progress: called after each frame. Raises Failed; no incomplete file is left."""
     film.check()
+    if film.film is not None and not film.is_drawn and film.sheet is None:
+        return record_messages(world, film, film.film, progress)
     with plain_errors(), ExitStack() as stack:
         sheet = stack.enter_context(replacing(film.sheet)) if film.sheet is not None else None
         file = stack.enter_context(replacing(film.film)) if film.film is not None else None
@@ -75,7 +78,7 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
             stack.callback(movie.close)
         page = stack.enter_context(film_page(world.serve(port=0), film.width, film.height))
         shown, wanted = [], film.on_sheet()
-        told: list[tuple[float, bytes]] = []
+        told: list[tuple[float, bytes]] = []  # for a file of messages beside a sheet
 
         def keep(number: int, picture: bytes) -> None:
             if movie is not None:
@@ -105,6 +108,28 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
             write_stream(file, told, world.title)
 
 
+def record_messages(world: World, film: Film, path: Path, progress: Callable[[int, int], None]) -> None:
+    """A file of what pages are told, for which no browser is needed."""
+    with plain_errors(), replacing(path) as file:
+        world.serve(port=0)
+        publisher = world.pages._publisher
+        assert publisher is not None
+        recording = publisher.room.record(1e-6)
+        told: list[tuple[float, bytes]] = []
+        for number in range(film.frames):
+            world.advance(steps_before(number, film, world) if number else 0)
+            told += [(number / film.rate, data) for data in messages_to_viewers(recording)]
+            progress(number + 1, film.frames)
+        recording.end()
+        write_stream(file, told, world.title)
+
+
+def steps_before(number: int, film: Film, world: World) -> int:
+    """The number of steps from the frame before to this one."""
+    steps = 1 / film.rate / world.dt
+    return round(number * steps) - round((number - 1) * steps)
+
+
 @contextmanager
 def plain_errors() -> Iterator[None]:
     """For a full disk, or a folder that cannot be written."""
@@ -122,6 +147,5 @@ def advance(world: World, page: FilmPage, film: Film, number: int) -> None:
             page.next_picture(1 / film.rate, film.plots)
         page.last_picture()
     else:
-        steps = 1 / film.rate / world.dt
-        world.advance(round(number * steps) - round((number - 1) * steps))
+        world.advance(steps_before(number, film, world))
         page.wait_for(world.system.step_count)
