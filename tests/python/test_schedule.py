@@ -166,6 +166,18 @@ def test_the_clock_takes_as_many_steps_as_time_has_passed(watch: Watch) -> None:
     assert 59 <= frames <= 61
 
 
+def test_short_steps_are_taken_two_at_a_time_and_long_ones_alone(watch: Watch) -> None:
+    for per_second, wakes in ((30, 30), (60, 60), (120, 60), (1000, 500)):
+        pace = RealTime(iota.World(iota.System(), dt=1 / per_second).clock)
+        taken, woken, begin = 0, 0, watch.now
+        while watch.now < begin + 1:
+            steps = pace.due()
+            taken, woken = taken + steps, woken + (steps > 0)
+            pace.frame_due()
+            pace.sleep()
+        assert taken == pytest.approx(per_second, abs=4) and woken == pytest.approx(wakes, rel=0.1)
+
+
 def test_the_clock_lets_time_go_that_cannot_be_caught_up(watch: Watch) -> None:
     clock = iota.World(iota.System(), dt=0.001).clock
     pace = RealTime(clock)

@@ -8,8 +8,8 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -128,14 +128,24 @@ def is_terminal() -> bool:
     return sys.stdout is not None and not sys.stdout.closed and sys.stdout.isatty()
 
 
-@dataclass(frozen=True, eq=False)
 class Running:
-    """A call that the world waits for: since when, the longest time before users are told, s, and a remedy."""
+    """A with block that the world waits for: since when, the longest time before users are told, s, and a remedy."""
 
-    what: str
-    since: float
-    longest: float
-    hint: str
+    __slots__ = ("_before", "_guard", "hint", "longest", "since", "what")
+
+    def __init__(self, guard: Guard, what: str, longest: float, hint: str) -> None:
+        self._guard, self.what, self.longest, self.hint = guard, what, longest, hint
+        self.since = time.monotonic()
+
+    def __enter__(self) -> None:
+        self._before, self._guard._running = self._guard._running, self
+
+    def __exit__(self, *_: object) -> None:
+        self._guard._running = self._before
+        seconds = time.monotonic() - self.since
+        if seconds > self.longest:
+            print_on_terminal(f"iota: {self.what} took {seconds:.1f} s; the world was stopped meanwhile\n")
+            self._guard._over(slow_title(self.what))
 
 
 class Guard:
@@ -181,19 +191,9 @@ class Guard:
             return False
         return True
 
-    @contextmanager
-    def watching(self, what: str, longest: float, hint: str) -> Iterator[None]:
+    def watching(self, what: str, longest: float, hint: str) -> Running:
         """A with block that is reported if it takes longer, s."""
-        running = Running(what, time.monotonic(), longest, hint)
-        before, self._running = self._running, running
-        try:
-            yield
-        finally:
-            self._running = before
-            seconds = time.monotonic() - running.since
-            if seconds > longest:
-                print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world was stopped meanwhile\n")
-                self._over(slow_title(what))
+        return Running(self, what, longest, hint)
 
     def failed(self, what: str, error: Exception, hint: str = GO_ON) -> None:
         print_error(error)

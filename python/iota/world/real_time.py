@@ -8,6 +8,7 @@ import time
 from iota.world.clock import Clock
 
 MAX_CATCH_UP = 4  # steps
+MOST_TOGETHER = 2  # steps, so that a late one leaves time to catch up
 
 
 class RealTime:
@@ -46,11 +47,15 @@ class RealTime:
         return True
 
     def sleep(self) -> None:
-        """Sleeps until the next step or frame is due."""
+        """Sleeps until the next step is due, or the next frame if steps are rarer. Of steps that are shorter than a frame a few are
+        taken together, since each time the thread wakes up costs more than a step of a small world."""
         now = time.perf_counter()
         until = self._next_frame
         if self._runs():
-            until = min(until, self._last + (1 - self._owed) * self._clock.dt / self._clock.speed)
+            interval = self._clock.dt / self._clock.speed
+            together = min(MOST_TOGETHER, int(self.frame / interval * (1 + 1e-9)))
+            steps = self._last + (max(together, 1) - self._owed) * interval
+            until = steps if together else min(until, steps)
         if until > now:
             time.sleep(until - now)
 

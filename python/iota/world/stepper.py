@@ -154,6 +154,8 @@ class Stepper:
     def _tell_impact(self, report: StepReport, dt: float) -> None:
         """The sound of what falls on the ground, as loud as it is fast; as many as ears tell apart."""
         system, impact = self._state.system, report.impact
+        if not impact.speed > 0:
+            return
         gravity = abs(system.gravity)
         # A body that only settles by the fall of a few steps makes no impact.
         if not (impact.speed > 4 * gravity * dt and gravity > 0) or not self._state.scene.shows_edits:
