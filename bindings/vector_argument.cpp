@@ -61,7 +61,9 @@ bool try_vec3(nb::handle value, Vec3& out) {
 Vec3 to_vec3(VectorArgument argument, const char* name) {
   Vec3 vector;
   if (!try_vec3(argument.value, vector)) {
-    const std::string text = std::string(name) + " must be 2 or 3 numbers, not " + describe(argument.value);
+    const std::string example = std::string(name) == "gravity" ? ", as in (0, -9.81, 0)" : "";
+    const std::string text =
+        std::string(name) + " must be 2 or 3 numbers" + example + ", not " + describe(argument.value);
     throw nb::type_error(text.c_str());
   }
   if (!is_finite(vector)) raise_value(std::string(name) + " must be finite, not " + describe(vector));

@@ -203,7 +203,10 @@ class Signature:
             return None
         if isinstance(value, int) and fits(argument.annotation, 0):
             return f"{label} must be {in_words(argument.annotation)} of usual size, not {SHORT.repr(value)}"
-        return f"{label} must be {in_words(argument.annotation)}, not {SHORT.repr(value)}"
+        text = f"{label} must be {in_words(argument.annotation)}, not {SHORT.repr(value)}"
+        if isinstance(value, _core.Body) and class_of(argument.annotation) is _core.Particle:
+            text += "; a particle of a body is made by body.attachment(place) or body.particle(place)"
+        return text
 
     def place_for(self, value: Any, free: Sequence[ast.arg]) -> str:
         """The only free argument that takes objects of this class."""
@@ -223,6 +226,8 @@ class Signature:
 
     def unknown(self, word: str, words: Sequence[str]) -> str:
         text = f"{called(self.name)} has no argument '{word}'"
+        if (self.name, word) in ELSEWHERE:
+            return f"{text}: it is {ELSEWHERE[self.name, word]}"
         result = self.result_class()
         near = suggestion(word, words)
         if not near and result and is_settable(result, word):
@@ -548,8 +553,22 @@ def one_of(words: Iterable[str]) -> str:
     return f"{', '.join(most)} or {last}" if most else last
 
 
+# For functions and arguments that they do not have, what to use instead.
+ELSEWHERE = {
+    ("World.__init__", "gravity"): "that of the system, as in iota.System(gravity=(0, -9.81, 0))",
+    ("System.__init__", "dt"): "that of the world, iota.World(system, dt=...), or of system.step(dt)",
+    ("Scene.draw", "color"): "body.color = ..., or that of the look",
+    ("System.body", "friction"): "material=iota.Material(friction=...)",
+    ("System.body", "restitution"): "material=iota.Material(restitution=...)",
+    ("System.body", "size"): "shape=iota.Box(size)",
+    ("System.body", "radius"): "shape=iota.Sphere(radius)",
+    ("System.obstacle", "friction"): "material=iota.Material(friction=...)",
+}
 # For each argument of ours, its names in other libraries.
+NEAR = 0.64  # of a misspelled word: less is another one, as "gravity" and "ray"
 MEANT = {
+    "restitution": ("bounce", "bounciness", "elasticity"),
+    "friction": ("mu", "static_friction"),
     "position": ("eye", "location", "place", "center", "centre", "origin", "xyz", "translation"),
     "at": ("position", "eye", "location", "place", "center", "centre", "origin", "xyz"),
     "target": ("look_at", "lookat", "focus", "aim", "to", "center", "centre"),
@@ -570,9 +589,9 @@ MEANT = {
 def suggestion(word: str, words: Sequence[str], elsewhere: Mapping[str, str] = MappingProxyType({})) -> str:
     """For a misspelled word, another library's, or the beginning of one. elsewhere: more words, and where they are."""
     words = [*words, *elsewhere]
-    near = difflib.get_close_matches(word, words, n=1)
-    near += [
+    near = [
         meant for meant, others in MEANT.items() if meant in words and difflib.get_close_matches(word, others, 1, 0.8)
     ]
+    near = difflib.get_close_matches(word, words, 1, 0.8) + near + difflib.get_close_matches(word, words, 1, NEAR)
     near += [each for each in words if len(word) > 2 and each.startswith(word)]
     return f"; did you mean '{elsewhere.get(near[0], near[0])}'?" if near else ""

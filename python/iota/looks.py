@@ -31,7 +31,7 @@ import numpy as np
 from iota import shapes
 from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus, unit_quaternion
 from iota.arguments import SHORT, is_number, of_type
-from iota.colors import color_text
+from iota.colors import NAMES, color_text
 from iota.textures import Texture, check_image, material_name, texture_of
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
@@ -107,7 +107,8 @@ class Look:
 def material_of(name: str) -> str:
     """Returns the name. Raises ValueError unless it is a material."""
     if name not in MATERIALS:
-        raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {name!r}")
+        hint = f"; did you mean color={name!r}?" if isinstance(name, str) and name.lower() in NAMES else ""
+        raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {name!r}{hint}")
     return name
 
 

@@ -428,7 +428,22 @@ DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     "a wall without a shape": (lambda w: w.add_static(looks.solid("wood"), V), "look must be a Look with a shape"),
     "a slider beyond its end": (lambda w: w.controls.slider("a", 0, 1, 5), "value: must be from 0 to 1, not 5"),
     "a function that is none": (lambda w: w.on_step(None), "a callback is a function, not None"),
-    "a key that is none": (lambda w: w.on_key(5), "a key needs a name"),
+    "a key by another name": (lambda w: w.action("go", key="spcae"), "a key is one character.* did you mean 'space'"),
+    "a function in place of a key": (lambda w: w.action("go", lambda: 1), r"is a decorator: write @world.action\('go'\) above"),
+    "a function in place of a start": (lambda w: w.every(1, lambda: 1), r"world.every\(1\) is a decorator"),
+    "a function in place of a help": (lambda w: w.controls.button("go", lambda: 1), "is a decorator"),
+    "a plot without a label": (lambda w: w.controls.plot(lambda: 1), "label: must be a text, not the function"),
+    "a ground that is true": (lambda w: iota.World(w.system, ground=True), "a height or None, not True"),
+    "a color in place of a material": (lambda w: looks.solid("red"), r"not 'red'; did you mean color='red'\?"),
+    "a shape in place of a look": (lambda w: w.add_static(iota.Sphere(1), V), r"as in looks.box.* system.obstacle\(shape\)"),
+    "the gravity of a world": (lambda w: iota.World(w.system, gravity=V), r"it is that of the system, as in iota.System\(gravity="),  # type: ignore[call-arg]
+    "the gravity of a running world": (lambda w: setattr(w, "gravity", V), "it is world.system.gravity"),
+    "a gravity along nothing": (lambda w: setattr(w.system, "gravity", -9.81), r"2 or 3 numbers, as in \(0, -9.81, 0\)"),
+    "a body at the end of a rope": (
+        lambda w: w.system.rope(w.system.body(), w.system.body()), r"is made by body.attachment\(place\)"
+    ),
+    "a bounce": (lambda w: iota.Material(bounce=1), "did you mean 'restitution'"),  # type: ignore[call-arg]
+    "a key that is none": (lambda w: w.on_key(5), "a key is one character"),
     "a world of a number": (lambda w: iota.World(5), "a System or another Simulator, not 5"),  # type: ignore[arg-type]
     "a ground of a word": (lambda w: iota.World(iota.System(), ground="floor"), "ground must be"),  # type: ignore[arg-type]
 }  # fmt: skip
@@ -437,7 +452,7 @@ DEGENERATE: dict[str, tuple[Callable[[iota.World], Any], str]] = {
 @pytest.mark.parametrize("name", DEGENERATE)
 def test_impossible_arguments_are_refused_where_they_are_written(name: str) -> None:
     use, text = DEGENERATE[name]
-    with pytest.raises((TypeError, ValueError), match=text):
+    with pytest.raises((TypeError, ValueError, AttributeError), match=text):
         use(iota.World(iota.System()))
 
 

@@ -180,3 +180,15 @@ def test_the_input_of_a_client_that_is_gone_is_left_out() -> None:
     assert not world.users.clients
     inputs.take([(5, protocol.Join("", protocol.Role.ACTOR)), (5, protocol.Leave())], lambda ids: [])
     assert not world.users.clients
+
+
+def test_keys_have_their_usual_names_and_those_of_browsers() -> None:
+    world = iota.World(iota.System())
+    for number, (given, name) in enumerate(
+        (("space", " "), (" ", " "), ("up", "ArrowUp"), ("enter", "Enter"), ("k", "k"))
+    ):
+        if given != " ":
+            world.action(f"action {number}", key=given)(lambda: None)
+            assert world.controls.actions[-1].key == name
+        world.on_key(given)(lambda: None)
+    assert {" ", "ArrowUp", "Enter", "k"} == set(world._state.listeners.keys)

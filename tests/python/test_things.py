@@ -229,7 +229,7 @@ def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota
         (lambda w: w.controls.choice("c", []), "at least one option"),
         (lambda w: w.controls.choice("c", ["a"], "b"), "value must be one of a"),
         (lambda w: w.controls.plot("p", ["a", "b"]).add(0, 1), "has 2 curves, not 1"),
-        (lambda w: w.on_key(""), "a key needs a name"),
+        (lambda w: w.on_key(""), "a key is one character"),
     ],
 )
 def test_bad_values_are_refused_by_name(make: Callable[[iota.World], Any], said: str) -> None:

@@ -128,6 +128,12 @@ def is_terminal() -> bool:
     return sys.stdout is not None and not sys.stdout.closed and sys.stdout.isatty()
 
 
+def is_decorator(use: str, *arguments: object) -> None:
+    """Raises TypeError for a function among the arguments of a decorator: it would never be called. use: the decorator's call."""
+    if any(callable(argument) for argument in arguments):
+        raise TypeError(f"{use} is a decorator: write @{use} above the function, or {use}(function)")
+
+
 class Running:
     """A with block that the world waits for: since when, the longest time before users are told, s, and a remedy."""
 

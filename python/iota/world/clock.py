@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from iota._core import System
-from iota.world.callbacks import Hook
+from iota.world.callbacks import Hook, is_decorator
 from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.schedule import Schedule
@@ -85,6 +85,7 @@ class Clock(Part):
 
     def every(self, period: float, start: float | None = None) -> Callable[[Callback], Callback]:
         """Decorator: calls a function every `period` simulated seconds, first at `start` (default: one period from now)."""
+        is_decorator(f"world.every({period:g})", start)
         return self._timer(self._system.time + period if start is None else start, period)
 
     def _timer(self, time: float, period: float | None) -> Callable[[Callback], Callback]:

@@ -9,7 +9,8 @@ from typing import Any
 from iota._core import Body
 from iota.arguments import SHORT
 from iota.world.actions import Action, Actions
-from iota.world.callbacks import Hook
+from iota.world.callbacks import Hook, is_decorator
+from iota.world.keys import key_name
 from iota.world.parts import Part
 from iota.world.things import Things
 from iota.world.widgets import Button, Callback, Checkbox, Choice, Plot, Slider, TextField
@@ -35,8 +36,10 @@ class Controls(Part):
     ) -> Callable[[Callback], Callback]:
         """Decorator: lets users call a function by a key, a controller's face button ("a" or "b") or the page's panel.
 
-        on: "body" (the event has the held or selected body; without one the user is told so) or "world".
+        key: as of `Events.on_key`. on: "body" (the event has the held or selected body; without one the user is told so) or "world".
         """
+        is_decorator(f"world.action({name!r})", key, help, button, label)
+        key = None if key is None else key_name(key)
         self._actions.check(name, key, button, on)
 
         def register(function: Callback) -> Callback:
@@ -57,6 +60,7 @@ class Controls(Part):
 
     def button(self, label: str, help: str = "") -> Callable[[Callback], Button]:
         """Decorator: a button that calls a function. Returns its handle."""
+        is_decorator(f"world.controls.button({label!r})", help)
 
         def register(function: Callback) -> Button:
             made = Button(self._things, label, help=help)

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from iota._core import System
 from iota.world.callbacks import Hook, add_once
+from iota.world.keys import key_name
 from iota.world.listeners import Listener, Listeners, bodies_of, parties_of, things_of
 from iota.world.parts import Part
 
@@ -81,11 +82,9 @@ class Events(Part):
         return self._add("pointer")(function)
 
     def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
-        """Decorator: a key is pressed, or released; the page then does not use this key. key: by its name in browsers:
-        "k", " ", "ArrowUp", "Enter". Actions also have a button and a line in the help: see `Controls.action`."""
-        if not isinstance(key, str) or not key:
-            raise ValueError(f"a key needs a name, as 'k' or 'ArrowUp', not {key!r}")
-        return self._add("key", key=key, on_release=release)
+        """Decorator: a key is pressed, or released; the page then does not use this key. key: "k", "space",
+        "ArrowUp" or "up", "Enter"; event.key has its name in browsers, as " ". Actions also have a button and a line in the help: see `Controls.action`."""
+        return self._add("key", key=key_name(key), on_release=release)
 
     def on_join(self, function: Callback) -> Callback:
         """Decorator: a page was opened; event.client is its number."""

@@ -164,7 +164,10 @@ class Scene(Part):
         its own offset and rotation. For a room from a file see `Drawings.model`. Raises TypeError for a World of another
         Simulator, which has static bodies of its own."""
         if not isinstance(look, Look) or look.shape is None:
-            raise TypeError(f"add_static: look must be a Look with a shape, not {SHORT.repr(look)}")
+            raise TypeError(
+                "add_static: look must be a Look with a shape, as in looks.box((1, 1, 1), 'wood'), not "
+                f"{SHORT.repr(look)}; a shape alone is for system.obstacle(shape)"
+            )
         turn = unit_quaternion(rotation)
         place = vector(position) + turned(turn, Vec3(*look.offset))
         own = replace(look, shape=None, offset=(0, 0, 0), rotation=(0, 0, 0, 1))

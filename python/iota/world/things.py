@@ -113,7 +113,8 @@ class Thing:
 def _in_short(name: str, value: Any) -> str:
     """Nothing for None, empty texts and functions."""
     if name == "color" and np.size(value) == 1:
-        return "" if int(value) == NO_COLOR else f"#{int(value) & 0xFFFFFF:06x}"
+        number = int(np.ravel(value)[0])
+        return "" if number == NO_COLOR else f"#{number & 0xFFFFFF:06x}"
     if isinstance(value, np.ndarray):
         return f"array of shape {value.shape}" if value.size != 1 else f"{value.item():g}"
     return "" if value is None or value == "" or callable(value) else SHORT.repr(value)
@@ -301,6 +302,8 @@ length = number(0, FARTHEST)
 
 
 def text(value: Any) -> str:
+    if callable(value) and not isinstance(value, type):
+        raise TypeError(f"must be a text, not the function {getattr(value, '__name__', value)}")
     return str(value)
 
 

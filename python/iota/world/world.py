@@ -71,6 +71,17 @@ ELSEWHERE = (
         "lines": "world.drawings.segments(starts, ends, radius=...)",
         "curve": "world.drawings.tube(points, radius=...)",
         "mesh": "world.surface(points, triangles)",
+        "gravity": "world.system.gravity",
+        "time": "world.system.time",
+        "bodies": "world.system.bodies",
+        "body": "world.system.body(...)",
+        "add": "world.system.body(...), which a World shows by itself",
+        "add_body": "world.system.body(...)",
+        "background": "world.drawings.stage(sky=...)",
+        "fps": "world.clock.dt, the length of a step",
+        "screenshot": "world.users.clients[0].screenshot(file), of an open page",
+        "show": "world.run()",
+        "start_recording": "world.pages.record(file)",
     }
 )
 PAUSED = "The world is paused. A reset begins it anew."
@@ -113,7 +124,9 @@ class World:
             raise TypeError(f"title must be a text, not {SHORT.repr(title)}")
         if not (style is None or isinstance(style, str)):
             raise TypeError(f"style must be a text or None, not {SHORT.repr(style)}")
-        if ground not in ("auto", None) and not (is_number(ground) and math.isfinite(float(ground))):
+        height: Any = ground
+        is_height = is_number(height) and not isinstance(height, bool) and math.isfinite(float(height))
+        if ground not in ("auto", None) and not is_height:
             raise ValueError(f'ground must be "auto", a height or None, not {SHORT.repr(ground)}')
         # Typed as System for scripts; this class uses only the interface of Simulator.
         self._state = state = State.of(cast(System, system), title, dt, style, None if ground == "auto" else ground)
