@@ -113,6 +113,7 @@ describe("what a script draws", () => {
     ["a skin, between the places that it is around", "surface", [0.98, 0.2, 0.98], [76, 154, 82]],
     ["and beside one of them", "surface", [0.84, 0.2, 0.95], [76, 154, 82]],
     ["a painted body of wood", "body", [-1.0, 0.2, 1.0], [138, 79, 176]],
+    ["a body that has its color by name", "body", [-1.3, 0.2, 1.0], [46, 139, 87]],
   ])("%s is where it belongs, in its color", async (_, kind, place, color) => {
     const { shown, hidden } = await colorAt(kind, place, color);
     expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.3);

@@ -30,6 +30,8 @@ def build() -> iota.World:
     draw(world)
     draw_more(world)
     follow(world)
+    colored = world.system.body(shape=iota.Box((0.2, 0.2, 0.2)), position=(-1.3, 0.2, 0.9), color="seagreen")
+    colored.particles[0].nail()
     ask(world)
     listen(world, ball)
     night = world.drawings.stage(sky="#05070d", horizon="#101a2e", ground="#20242c", light=0.4)
