@@ -196,8 +196,8 @@ BRITISH = re.compile(
     r"|(cance|labe|leve|mode|signa|trave)ll(ed|ing)\b"
 )
 TEXTS = {".cpp", ".css", ".h", ".html", ".json", ".md", ".py", ".sh", ".toml", ".ts", ".txt"}
-OTHERS_WORDS = {  # words of other libraries, which errors translate; tests of that; licenses; this list
-    "python/iota/arguments.py", "tests/python/test_errors_in_words.py", "tests/python/test_scene.py",
+OTHERS_WORDS = {  # words of other libraries, which errors translate, and of CSS; tests of that; licenses; this list
+    "python/iota/arguments.py", "python/iota/colors.py", "tests/python/test_errors_in_words.py", "tests/python/test_scene.py",
     "tests/packaging/test_sources.py",
 }  # fmt: skip
 

@@ -111,7 +111,7 @@ def test_wrong_numbers_are_refused_with_their_name() -> None:
         (lambda: builder.cloth(columns=2000, rows=2000), "at most 1000000 parts"),
         (lambda: builder.cuboid(size=(1, math.nan, 1)), "size must be finite"),
         (lambda: builder.tree(levels=10, branches=9), "too many"),
-        (lambda: builder.net(spacing=math.inf), "spacing must be above 0 and finite"),
+        (lambda: builder.net(spacing=math.inf), "spacing must be above 0 m and finite"),
     ):
         with pytest.raises(ValueError, match=text):
             call()

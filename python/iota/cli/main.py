@@ -29,7 +29,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {text}{'' if text.endswith('?') else '.'} Try: {self.prog} --help\n")
 
 
-# What people look for under other names.
+# Commands that people look for under other names.
 MEANT = {
     "export": "a page of its own is made by: iota record NAME|FILE.py -o FILE.html",
     "film": "a film is made by: iota record NAME|FILE.py -o FILE.mp4",

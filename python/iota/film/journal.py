@@ -63,7 +63,7 @@ def frame_of(world: World, recording: RoomRecording) -> list[bytes]:
 
 
 def messages_to_viewers(recording: RoomRecording) -> list[bytes]:
-    """Of the frame that was sent last. The server sends them on its own thread."""
+    """The messages of the frame that was sent last. The server sends them on its own thread."""
     end = time.monotonic() + PATIENCE
     while not (taken := recording.take()) and time.monotonic() < end:
         time.sleep(0.0005)

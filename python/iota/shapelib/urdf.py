@@ -92,7 +92,7 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
 
 
 def _left_out(robot: Element) -> list[str]:
-    """What is not read: joints of other namespaces by their names, as their links hang on nothing, and the rest by its number."""
+    """Notes about elements that are not read: joints of other namespaces by name, as their links hang on nothing, the rest by number."""
     notes = []
     joints = [element for element in robot.children if element.tag.endswith("joint") and element.tag != "joint"]
     if joints:
