@@ -27,7 +27,9 @@ constexpr const char* server_doc =
     "A World makes one for itself; use `World.serve(server=...)` for worlds that share one. page_folder: the\n"
     "built page. token: of the host; every page needs it, or one of the others: guest_token for users who may touch,\n"
     "viewer_token for those who may only watch, host_tokens for hosts. hello_time: s, from the upgrade of a connection to its first frame.\n"
-    "certificate, key: in PEM; with them other machines use https on the same port.\n"
+    "certificate, key: in PEM; with them other machines use https on the same port. listener: a socket that listens\n"
+    "already, which is taken over; -1: none. public_origin: of a proxy that serves this page to others, such as\n"
+    "https://worlds.example.org.\n"
     "Raises OSError if the port is in use.";
 
 [[noreturn]] void raise_os_error(const std::error_code& code, const char* text) {
@@ -58,8 +60,11 @@ std::pair<std::string, std::string> kept_certificate(const std::vector<std::stri
 std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port, const std::string& page_folder,
                                     const std::string& token, const std::string& guest_token,
                                     const std::string& viewer_token, const std::vector<std::string>& host_tokens,
-                                    double hello_time, const std::string& certificate, const std::string& key) {
+                                    double hello_time, const std::string& certificate, const std::string& key,
+                                    int listener, const std::string& public_origin) {
   ServerOptions options;
+  options.listener = listener;
+  options.public_origin = public_origin;
   options.certificate = {certificate, key};
   options.host = host;
   options.port = port;
@@ -89,8 +94,24 @@ void bind_statistics(nb::module_& module) {
 
 }  // namespace
 
+void bind_request(nb::module_& module) {
+  nb::class_<net::Request>(module, "Request",
+                           "A request of HTTP that waits for an answer, see `Server.serve_requests`.")
+      .def_ro("path", &net::Request::path)
+      .def_ro("query", &net::Request::query, "With its escapes.")
+      .def_ro("is_post", &net::Request::is_post, "It asks for a change.")
+      .def_prop_ro(
+          "role",
+          [](const net::Request& self) {
+            constexpr std::array names{"guest", "viewer", "host"};  // in the order of protocol::Role
+            return names.at(static_cast<std::size_t>(self.role));
+          },
+          "Of its token: host, guest or viewer.");
+}
+
 void bind_server(nb::module_& module) {
   bind_statistics(module);
+  bind_request(module);
   module.def("make_token", &net::make_token, "A new secret for a page's address: 32 hexadecimal digits.");
   module.def(
       "kept_token", [] { return token_of_state_folder(&net::load_or_make_token); },
@@ -111,13 +132,13 @@ void bind_server(nb::module_& module) {
           [](ServerObject* self, const std::string& host, std::uint16_t port, const std::string& page_folder,
              const std::string& token, const std::string& guest_token, const std::string& viewer_token,
              const std::vector<std::string>& host_tokens, double hello_time, const std::string& certificate,
-             const std::string& key) {
+             const std::string& key, int listener, const std::string& public_origin) {
             new (self) ServerObject{make_server(host, port, page_folder, token, guest_token, viewer_token, host_tokens,
-                                                hello_time, certificate, key)};
+                                                hello_time, certificate, key, listener, public_origin)};
           },
           nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a, "guest_token"_a = "",
           "viewer_token"_a = "", "host_tokens"_a = std::vector<std::string>(), "hello_time"_a = 10.0,
-          "certificate"_a = "", "key"_a = "")
+          "certificate"_a = "", "key"_a = "", "listener"_a = -1, "public_origin"_a = "")
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
           "world"_a,
@@ -155,6 +176,22 @@ void bind_server(nb::module_& module) {
       .def(
           "visitors", [](ServerObject& self, const std::string& world) { return self.use().visitors(world); },
           "world"_a, "Clients that are passed on to such a world, or wait for it.")
+      .def(
+          "serve_requests",
+          [](ServerObject& self, std::vector<std::string> paths) { self.use().serve_requests(std::move(paths)); },
+          "paths"_a,
+          "Requests of HTTP for these paths wait for `take_requests` from now on, up to 5 s, if they have a token.")
+      .def(
+          "take_requests", [](ServerObject& self) { return self.use().take_requests(); },
+          "The requests since the last call. Each waits for its `answer`.")
+      .def(
+          "answer",
+          [](ServerObject& self, const net::Request& request, const nb::bytes& body, const std::string& type,
+             unsigned status) {
+            self.use().answer(request.number, {status, type, std::string(body.c_str(), body.size())});
+          },
+          "request"_a, "body"_a, "type"_a = "text/plain; charset=utf-8", "status"_a = 200,
+          "Answers a request. type: a Content-Type. Too late, it has no effect.")
       .def_prop_ro("statistics", [](ServerObject& self) { return self.use().statistics(); });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <stdexcept>
 
 namespace iota::net {
 namespace {
@@ -89,6 +90,7 @@ std::string query_value(std::string_view query, std::string_view name) {
 std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint) {
   const auto found = split_host(host, endpoint.scheme);
   if (!found) return "the Host header is missing or malformed";
+  if (is_public_host(host, endpoint.public_origin)) return std::nullopt;
   const std::array<std::string, 5> allowed{"localhost", "127.0.0.1", "[::1]", in_header(endpoint.bound_host),
                                            in_header(endpoint.local_address)};
   if (found->port != endpoint.port || std::find(allowed.begin(), allowed.end(), found->host) == allowed.end()) {
@@ -98,8 +100,30 @@ std::optional<std::string> refuse_host(std::string_view host, const Endpoint& en
   return std::nullopt;
 }
 
-std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host) {
+bool is_public_host(std::string_view host, std::string_view public_origin) {
+  if (public_origin.empty()) return false;
+  return lower(host) == public_origin.substr(public_origin.find("://") + 3);
+}
+
+std::string checked_origin(std::string_view origin) {
   const std::string given = lower(origin);
+  for (const Scheme scheme : {Scheme::http, Scheme::https}) {
+    const std::string start = prefix(scheme);
+    if (!given.starts_with(start)) continue;
+    const std::string host = given.substr(start.size());
+    const bool is_plain = std::ranges::all_of(host, [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+             std::string_view(".-:[]").find(c) != std::string_view::npos;
+    });
+    if (is_plain && split_host(host, scheme)) return given;
+  }
+  throw std::invalid_argument("a public address is like https://worlds.example.org, not '" + std::string(origin) + "'");
+}
+
+std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host,
+                                         std::string_view public_origin) {
+  const std::string given = lower(origin);
+  if (is_public_host(host, public_origin) && given == public_origin) return std::nullopt;
   if (const std::string start = prefix(scheme); given.compare(0, start.size(), start) == 0) {
     const auto page = split_host(std::string_view(given).substr(start.size()), scheme);
     const auto server = split_host(host, scheme);

@@ -32,13 +32,23 @@ struct Endpoint {
   std::string local_address;  ///< address literal of this connection on our side
   std::uint16_t port = 0;
   Scheme scheme = Scheme::http;
+  std::string public_origin = {};  ///< of a proxy in front of this server, such as https://worlds.example.org
 };
 
+/// Whether a Host header is that of a public origin.
+bool is_public_host(std::string_view host, std::string_view public_origin);
+
+/// A public origin in small letters: http:// or https://, a name, perhaps a port. Throws std::invalid_argument for others.
+std::string checked_origin(std::string_view origin);
+
 /// The reason to refuse a Host header, or nothing. Allowed: localhost, 127.0.0.1, [::1], the bound host, and the
-/// address of the connection, each with our port. (An address literal is safe: rebinding needs a name.)
+/// address of the connection, each with our port (an address literal is safe: rebinding needs a name); and that of the
+/// public origin.
 std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint);
 
-/// The reason to refuse an Origin header, or nothing: it must be our own page's, "http://" or "https://" and the Host.
-std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host);
+/// The reason to refuse an Origin header, or nothing: it must be our own page's, "http://" or "https://" and the Host, or
+/// the public origin if the Host is.
+std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host,
+                                         std::string_view public_origin = {});
 
 }  // namespace iota::net

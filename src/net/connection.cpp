@@ -2,6 +2,7 @@
 #include "net/connection.h"
 
 #include "net/relay.h"
+#include "net/requests.h"
 #include "net/static_files.h"
 #include "net/stream.h"
 #include "net/token.h"
@@ -42,6 +43,7 @@ constexpr auto header_time = 5s;    // for a request, on a new connection or aft
 constexpr auto answer_time = 20s;   // for the client to receive an answer
 constexpr auto silence_time = 30s;  // without even an answer to a ping
 constexpr auto close_time = 1s;     // for the client's part of a close
+constexpr const char* wrong_token = "the token is wrong: open the URL that the server printed";
 constexpr std::size_t max_connections = 512;
 constexpr std::size_t max_strangers = 128;  // of connections that are not welcomed; a client with the token needs few
 
@@ -266,7 +268,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
 
 class HttpSession final : public std::enable_shared_from_this<HttpSession>, public OpenConnection {
  public:
-  HttpSession(tcp::socket socket, ConnectionContext& context) : context_(context), stream_(std::move(socket)) {
+  HttpSession(tcp::socket socket, ConnectionContext& context)
+      : context_(context), stream_(std::move(socket)), timer_(stream_.get_executor()) {
     context_.opened(*this);
   }
   ~HttpSession() { context_.closed(*this); }
@@ -285,7 +288,10 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     });
   }
 
-  void finish() override { stream_.close(); }
+  void finish() override {
+    timer_.cancel();
+    stream_.close();
+  }
   void evict() override { finish(); }
   Standing standing() const override { return is_served_ ? Standing::served : Standing::idle; }
 
@@ -346,6 +352,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
       return send_text(http::status::bad_request, "no request here has a body");
     }
     if (target->path == "/ws") return upgrade();
+    if (context_.requests.serves(target->path)) return ask_program(*target);
     if (websocket::is_upgrade(request)) return send_text(http::status::not_found, "the WebSocket is at /ws");
     if (request.method() != http::verb::get && !is_head_) {
       return send_text(http::status::method_not_allowed, "only GET and HEAD");
@@ -358,7 +365,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     error_code error;
     const auto local = stream_.socket().local_endpoint(error);
     const Endpoint endpoint{context_.options.host, error ? std::string() : local.address().to_string(), context_.port,
-                            stream_.scheme()};
+                            stream_.scheme(), context_.options.public_origin};
     if (request.count(http::field::host) != 1) return "exactly one Host header is needed";
     return refuse_host(to_view(request[http::field::host]), endpoint);
   }
@@ -373,20 +380,52 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     return found;
   }
 
+  std::optional<std::string> refuse_by_origin(const Request& request) const {
+    if (request.count(http::field::origin) > 1) return "more than one Origin header";
+    if (request.count(http::field::origin) == 0) return std::nullopt;
+    return refuse_origin(to_view(request[http::field::origin]), stream_.scheme(), to_view(request[http::field::host]),
+                         context_.options.public_origin);
+  }
+
+  /// Waits for the program's answer.
+  void ask_program(const RequestTarget& target) {
+    const Request& request = parser_->get();
+    const bool is_post = request.method() == http::verb::post;
+    if (!is_post && request.method() != http::verb::get && !is_head_)
+      return send_text(http::status::method_not_allowed, "only GET, HEAD and POST");
+    if (const auto reason = refuse_by_origin(request)) return refuse(*reason);
+    if (!role_) return refuse(wrong_token);
+    is_served_ = true;
+    stream_.expires_never();
+    const std::uint64_t number = context_.requests.add({0, target.path, target.query, *role_, is_post},
+                                                       [weak = weak_from_this()](Answer answer) {
+                                                         if (const auto self = weak.lock())
+                                                           self->pass_on(std::move(answer));
+                                                       });
+    timer_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(context_.options.answer_time)));
+    timer_.async_wait([self = shared_from_this(), number](error_code error) {  // keeps the session
+      self->context_.requests.remove(number);
+      if (!error) self->send_text(http::status::gateway_timeout, "the program does not answer");
+    });
+  }
+
+  void pass_on(Answer answer) {
+    if (timer_.cancel() == 0) return;  // too late
+    Response response = make_response(static_cast<http::status>(answer.status));
+    response.set(http::field::content_type, answer.type);
+    response.set(http::field::cache_control, "no-store");
+    response.body() = std::move(answer.body);
+    send(std::move(response));
+  }
+
   void upgrade() {
     const Request& request = parser_->get();
     if (!websocket::is_upgrade(request)) {
       return send_text(http::status::upgrade_required, "this is the WebSocket's address");
     }
-    if (request.count(http::field::origin) > 1) return refuse("more than one Origin header");
-    if (request.count(http::field::origin) == 1) {
-      const auto reason =
-          refuse_origin(to_view(request[http::field::origin]), stream_.scheme(), to_view(request[http::field::host]));
-      if (reason) return refuse(*reason);
-    }
-    if (!role_) {
-      return refuse("the token is wrong: open the URL that the server printed");
-    }
+    if (const auto reason = refuse_by_origin(request)) return refuse(*reason);
+    if (!role_) return refuse(wrong_token);
     const auto target = parse_target(to_view(request.target()));
     const std::string world = target ? query_value(target->query, "world") : std::string();
     if (context_.relays.find(world)) return start_relay(std::move(stream_), request, world, *role_, context_);
@@ -449,12 +488,18 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     send(std::move(response));
   }
 
+  /// As the browser sees it.
+  Scheme page_scheme() const {
+    const bool is_public = is_public_host(to_view(parser_->get()[http::field::host]), context_.options.public_origin);
+    return is_public && context_.options.public_origin.starts_with("https:") ? Scheme::https : stream_.scheme();
+  }
+
   Response make_response(http::status status) const {
     const Request& request = parser_->get();
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
     response.set("Content-Security-Policy",
-                 content_security_policy(stream_.scheme(), to_view(request[http::field::host]), role_.has_value()));
+                 content_security_policy(page_scheme(), to_view(request[http::field::host]), role_.has_value()));
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");  // the page's URL contains the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
@@ -493,6 +538,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
 
   ConnectionContext& context_;
   Stream stream_;
+  asio::steady_timer timer_;  // for the program's answer
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::optional<Response> response_;

@@ -42,6 +42,7 @@ class OpenConnection {
 };
 
 class Relays;
+class Requests;
 
 /// Shared by all connections. Outlives them; used on the server's thread only.
 struct ConnectionContext {
@@ -50,7 +51,8 @@ struct ConnectionContext {
   boost::asio::ssl::context* tls;  ///< null: plain http for all
   /// The hub for a hello, or none and the reason.
   std::function<std::pair<std::shared_ptr<Hub>, std::string>(const std::string& world)> find_world;
-  Relays& relays;  ///< worlds of other processes
+  Relays& relays;      ///< worlds of other processes
+  Requests& requests;  ///< that the program answers
   std::uint16_t port = 0;
   std::vector<OpenConnection*> open;  ///< the oldest first
   bool is_finishing = false;

@@ -5,6 +5,7 @@
 #include "net/hub.h"
 #include "net/recorder.h"
 #include "net/relay.h"
+#include "net/requests.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -21,6 +22,12 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+
+#ifndef _WIN32
+#include <sys/socket.h>
+
+#include <cerrno>
+#endif
 
 namespace iota::net {
 namespace {
@@ -40,6 +47,7 @@ std::string place_of(const ServerOptions& options) { return options.host + " por
 
 ServerOptions checked(ServerOptions options) {
   if (options.token.empty()) throw std::invalid_argument("the server needs a token");
+  if (!options.public_origin.empty()) options.public_origin = checked_origin(options.public_origin);
   return options;
 }
 
@@ -87,8 +95,27 @@ error_code try_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   return error;
 }
 
+/// Takes over a socket that listens already.
+tcp::acceptor take_over(asio::io_context& io, int listener) {
+  error_code error;
+  tcp::acceptor acceptor(io);
+#ifdef _WIN32
+  error = asio::error::operation_not_supported;
+#else
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) != 0)
+    error = error_code(errno, boost::system::system_category());
+  else
+    acceptor.assign(address.ss_family == AF_INET6 ? tcp::v6() : tcp::v4(), listener, error);
+#endif
+  if (error) fail(error, "the socket " + std::to_string(listener) + " cannot be taken over");
+  return acceptor;
+}
+
 /// A listening socket, on the first possible address of the host. Throws std::system_error.
 tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
+  if (options.listener >= 0) return take_over(io, options.listener);
   error_code error;
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(options.host, std::to_string(options.port), tcp::resolver::passive, error);
@@ -168,7 +195,7 @@ struct Server::Implementation {
         link(std::make_shared<Room::Link>(io)),
         tls(make_tls(options.certificate)),
         context{options, counters, tls.get(), [this](const std::string& world) { return link->worlds.ask(world); },
-                relays},
+                relays,  requests},
         acceptor(listen(io, options)),
         timer(io),
         frame_timer(io) {
@@ -241,6 +268,7 @@ struct Server::Implementation {
   Counters counters;
   std::shared_ptr<Room::Link> link;
   Relays relays;
+  Requests requests;
   const std::unique_ptr<asio::ssl::context> tls;
   ConnectionContext context;
   asio::io_context io{1};  // destroyed first: handlers own connections, which refer to the members above
@@ -287,6 +315,14 @@ void Server::relay(const std::string& world, std::uint16_t port, const std::arra
 }
 void Server::end_relay(const std::string& world) { implementation_->relays.remove(world); }
 int Server::visitors(const std::string& world) const { return implementation_->relays.visitors(world); }
+
+void Server::serve_requests(std::vector<std::string> paths) { implementation_->requests.serve(std::move(paths)); }
+std::vector<Request> Server::take_requests() { return implementation_->requests.take(); }
+void Server::answer(std::uint64_t number, Answer answer) {
+  asio::post(implementation_->io, [&requests = implementation_->requests, number, answer = std::move(answer)] {
+    requests.answer(number, answer);
+  });
+}
 
 // ------------------------------------------------------------------------------------------------------------ a room
 

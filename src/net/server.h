@@ -38,6 +38,25 @@ struct ServerOptions {
   std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client
   std::size_t max_clients = 64;           ///< of each world
   double hello_time = 10;                 ///< s, from the upgrade of a connection to its first frame
+  /// A listening socket, which the server takes over instead of listening itself; -1: none. Not on Windows.
+  int listener = -1;
+  /// The address under which a proxy serves this server's page, such as https://worlds.example.org; empty: none.
+  std::string public_origin = {};
+  double answer_time = 5;  ///< s, in which the program has to answer a request
+};
+
+/// A request for one of the paths that the program answers. Its token was right.
+struct Request {
+  std::uint64_t number = 0;
+  std::string path, query;  ///< the path without escapes, the query with them
+  protocol::Role role = protocol::Role::viewer;
+  bool is_post = false;  ///< asks for a change
+};
+
+/// type: of the body, as a Content-Type. A body is empty or complete.
+struct Answer {
+  unsigned status = 200;
+  std::string type, body;
 };
 
 /// A message of a client that was welcomed, or an event of the server: the client joined or left.
@@ -168,6 +187,13 @@ class Server {
   void end_relay(const std::string& world);
   /// Clients that are passed on to it, or wait.
   int visitors(const std::string& world) const;
+
+  /// Requests for these paths wait for the program, if their token is right. A POST comes from the server's own page and
+  /// has no body.
+  void serve_requests(std::vector<std::string> paths);
+  /// Those since the last call. Each has to be answered within `ServerOptions::answer_time`.
+  std::vector<Request> take_requests();
+  void answer(std::uint64_t number, Answer answer);
 
  private:
   struct Implementation;

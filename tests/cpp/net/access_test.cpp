@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 namespace iota::net {
 namespace {
 
@@ -61,6 +63,30 @@ TEST(Access, over_https_the_page_and_its_port_are_those_of_https) {
   EXPECT_TRUE(refuse_origin("https://192.168.0.2:8080", Scheme::http, "192.168.0.2:8080"));
   EXPECT_FALSE(refuse_host("192.168.0.2", {"0.0.0.0", "192.168.0.2", 443, Scheme::https}));
   EXPECT_TRUE(refuse_host("192.168.0.2", {"0.0.0.0", "192.168.0.2", 443}));
+}
+
+TEST(Access, a_proxy_in_front_may_pass_on_its_own_name_and_no_other) {
+  const Endpoint behind{"127.0.0.1", "127.0.0.1", 8080, Scheme::http, "https://worlds.example.org"};
+  EXPECT_FALSE(refuse_host("worlds.example.org", behind));
+  EXPECT_FALSE(refuse_host("WORLDS.example.org", behind));
+  EXPECT_FALSE(refuse_host("localhost:8080", behind));
+  EXPECT_TRUE(refuse_host("worlds.example.org:444", behind));
+  EXPECT_TRUE(refuse_host("evil.example", behind));
+  const auto refuse = [&](const char* origin, const char* host) {
+    return refuse_origin(origin, Scheme::http, host, behind.public_origin).has_value();
+  };
+  EXPECT_FALSE(refuse("https://worlds.example.org", "worlds.example.org"));
+  EXPECT_FALSE(refuse("http://localhost:8080", "localhost:8080"));
+  EXPECT_TRUE(refuse("https://evil.example", "worlds.example.org"));
+  EXPECT_TRUE(refuse("https://worlds.example.org", "localhost:8080")) << "a page of the proxy asks this machine itself";
+}
+
+TEST(Access, a_public_address_is_a_scheme_and_a_name) {
+  EXPECT_EQ(checked_origin("HTTPS://Worlds.example.org"), "https://worlds.example.org");
+  EXPECT_EQ(checked_origin("http://10.0.0.1:8000"), "http://10.0.0.1:8000");
+  for (const char* wrong : {"", "worlds.example.org", "https://", "https://a/b", "https://a/", "https://a b", "ftp://a",
+                            "https://a;b", "https://a:port"})
+    EXPECT_THROW(checked_origin(wrong), std::invalid_argument) << wrong;
 }
 
 }  // namespace

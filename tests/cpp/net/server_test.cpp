@@ -10,6 +10,7 @@
 #include <iota_protocol.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <map>
@@ -17,6 +18,12 @@
 #include <random>
 #include <system_error>
 #include <thread>
+
+#ifndef _WIN32
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#endif
 
 namespace iota::net {
 namespace {
@@ -923,6 +930,103 @@ TEST_F(ServerTest, a_client_over_its_queue_is_dropped_with_a_reason) {
   EXPECT_TRUE(soon([&] { return server_->statistics().clients == 1; }));
   EXPECT_TRUE(is_alive(*other));
 }
+
+/// Answers each request that the program gets with its role, path and query, until it is destroyed.
+class AnsweringProgram {
+ public:
+  explicit AnsweringProgram(Server& server) : server_(server), thread_([this] { run(); }) {}
+  ~AnsweringProgram() {
+    is_over_ = true;
+    thread_.join();
+  }
+  AnsweringProgram(const AnsweringProgram&) = delete;
+  AnsweringProgram& operator=(const AnsweringProgram&) = delete;
+
+ private:
+  void run() {
+    while (!is_over_) {
+      for (const Request& each : server_.take_requests()) {
+        const std::string role = each.role == protocol::Role::viewer ? "viewer" : "host";
+        server_.answer(each.number, {each.is_post ? 202U : 200U, "text/x-test", role + each.path + each.query});
+      }
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+  Server& server_;
+  std::atomic<bool> is_over_ = false;
+  std::thread thread_;
+};
+
+TEST_F(ServerTest, the_program_answers_requests_for_its_paths_by_the_role_of_their_token) {
+  auto with_viewer = options(0);
+  with_viewer.other_tokens.emplace_back("watcher", protocol::Role::viewer);
+  start(with_viewer);
+  server_->serve_requests({"/metrics"});
+  const AnsweringProgram program(*server_);
+  const auto answer = test::http_request(server_->port(), "GET", std::string("/metrics?x=1&token=") + token);
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.headers.at("Content-Type"), "text/x-test");
+  EXPECT_EQ(answer.headers.at("Cache-Control"), "no-store");
+  EXPECT_EQ(answer.body, std::string("host/metricsx=1&token=") + token);
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/metrics?token=watcher").body, "viewer/metricstoken=watcher");
+  EXPECT_EQ(test::http_request(server_->port(), "POST", "/metrics?token=watcher").status, 202U);
+  EXPECT_EQ(test::http_request(server_->port(), "HEAD", "/metrics?token=watcher").status, 200U);
+  EXPECT_EQ(test::http_request(server_->port(), "PUT", "/metrics?token=watcher").status, 405U);
+  EXPECT_EQ(test::http_request(server_->port(), "POST", "/other?token=watcher").status, 405U);
+}
+
+TEST_F(ServerTest, a_request_without_the_token_or_from_another_page_does_not_reach_the_program) {
+  server_->serve_requests({"/metrics"});
+  const std::string path = std::string("/metrics?token=") + token;
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/metrics").status, 403U);
+  EXPECT_EQ(test::http_request(server_->port(), "POST", path, {{"Origin", "http://evil.example"}}).status, 403U);
+  EXPECT_EQ(test::http_request(server_->port(), "GET", path, {{"Host", "evil.example"}}).status, 403U);
+  EXPECT_TRUE(server_->take_requests().empty());
+}
+
+TEST_F(ServerTest, a_program_that_does_not_answer_is_told_and_one_that_ends_lets_its_requests_go) {
+  auto impatient = options(0);
+  impatient.answer_time = 0.1;
+  start(impatient);
+  server_->serve_requests({"/metrics"});
+  const std::string path = std::string("/metrics?token=") + token;
+  EXPECT_EQ(test::http_request(server_->port(), "GET", path).status, 504U);
+  for (const Request& late : server_->take_requests()) server_->answer(late.number, {});
+  start(options(0));
+  server_->serve_requests({"/metrics"});
+  unsigned status = 200;
+  std::thread waiting([&, port = server_->port()] { status = test::http_request(port, "GET", path).status; });
+  EXPECT_TRUE(soon([&] { return !server_->take_requests().empty(); }));
+  room_.reset();
+  server_.reset();
+  waiting.join();
+  EXPECT_EQ(status, 0U);
+}
+
+#ifndef _WIN32
+TEST_F(ServerTest, a_server_takes_over_a_socket_on_which_a_client_waits_already) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(listener, 8), 0);
+  socklen_t size = sizeof address;
+  ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::uint16_t port = ntohs(address.sin_port);
+  unsigned status = 0;
+  std::thread early([&] { status = test::http_request(port, "GET", "/healthz").status; });
+  std::this_thread::sleep_for(20ms);
+  auto taken = options(0);
+  taken.listener = listener;
+  start(taken);
+  early.join();
+  EXPECT_EQ(status, 200U);
+  EXPECT_EQ(server_->port(), port);
+  taken.listener = 9999;
+  EXPECT_THROW(Server{taken}, std::system_error);
+}
+#endif
 
 }  // namespace
 }  // namespace iota::net
