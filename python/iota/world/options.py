@@ -11,15 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from iota.world.lan import Lan
+    from iota.world.server import Server
     from iota.world.summary import RunSummary
     from iota.world.view import View
+    from iota.world.world import World
 
 
 @dataclass
 class RunOptions:
     """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`.
     record: a file for what pages show, see `Pages.record`. kept: a file for the state in which a world ends and the next
-    one begins, see `iota.world.keeping`. keep, fresh: of `World.keep`. names: of the module whose build() made the World. `ran`, `summary`: set by the
+    one begins, see `iota.world.keeping`. keep, fresh: of `World.keep`. make_server: called as `Server`. on_serve: is told the World that is served. names: of the module whose build() made the World. `ran`, `summary`: set by the
     World that ran."""
 
     port: int | None = None
@@ -33,6 +35,8 @@ class RunOptions:
     kept: Path | None = None
     keep: Path | None = None
     fresh: bool = False
+    make_server: Callable[..., Server] | None = None
+    on_serve: Callable[[World], None] | None = None
     names: dict[str, Any] | None = None
     ran: bool = False
     summary: RunSummary | None = None

@@ -11,8 +11,11 @@ from typing import Any
 
 from iota._core import Room, Vec3
 from iota._protocol import Id
+from iota.metrics import CONTENT_TYPE, of_process, text_of
+from iota.world import options as run_options
 from iota.world.client_modules import page_with
 from iota.world.lan import Lan, announcement
+from iota.world.metrics import of_world
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.source import source_of
@@ -47,7 +50,10 @@ class Publisher:
             modules: list[str] = []
             if files:
                 folder, modules = stack.enter_context(page_with(files))
-            server = Server(host, port, folder=folder, lan=lan)
+            options = run_options.current()
+            make_server, options.make_server = options.make_server or Server, None  # of the first world
+            server = make_server(host, port, folder=folder, lan=lan)
+            server.serve_requests(["/metrics"])
             publisher = cls(state, server, server.open("default"), is_alone=True, modules=modules)
             publisher._folder = stack.pop_all()
         return publisher
@@ -93,6 +99,13 @@ class Publisher:
         self._source.publish(self.room, state.scene.shows_edits)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
+        self.answer_requests()
+
+    def answer_requests(self) -> None:
+        """For figures of the world; only those who have a token come this far."""
+        for request in self._server.take_requests() if self._is_alone else ():
+            figures = of_world(self._state, self._server.statistics) + of_process()
+            self._server.answer(request, text_of(figures).encode(), CONTENT_TYPE)
 
     def bodies_of(self, ids: Sequence[Id]) -> list[Any]:
         """The bodies with these ids that still exist, each once."""

@@ -512,6 +512,8 @@ class World:
             try:
                 self._pages._frame()
                 self._pages._begin_recordings()
+                if (on_serve := run_options.current().on_serve) is not None:
+                    on_serve(self)
             except BaseException:
                 self.close()
                 raise
