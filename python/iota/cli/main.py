@@ -15,7 +15,21 @@ from typing import NoReturn
 
 import iota
 from iota.arguments import suggestion
-from iota.cli import bench, bench_forces, gallery, imports, info, play, profile, record, run, sweep, verify, watch
+from iota.cli import (
+    bench,
+    bench_forces,
+    gallery,
+    imports,
+    info,
+    play,
+    profile,
+    record,
+    rooms,
+    run,
+    sweep,
+    verify,
+    watch,
+)
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -126,6 +140,7 @@ def make_parser() -> Parser:
     )
     running.add_argument("--fresh", action="store_true", help="with --keep: begin anew, and put the kept world aside")
     running.add_argument("--handover", type=Path, help=argparse.SUPPRESS)  # from --watch
+    running.add_argument("--room", help=argparse.SUPPRESS)  # from iota rooms
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 
     showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, which a click starts")
@@ -133,6 +148,29 @@ def make_parser() -> Parser:
     showing.add_argument("--seconds", type=positive, help="stop after this time")
     showing.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
     showing.set_defaults(function=gallery.run)
+
+    hosting = commands.add_parser("rooms", help="serves a page of worlds for several people, each kept in a folder")
+    hosting.add_argument(
+        "directory", type=Path, nargs="?", default=Path("rooms"), metavar="DIR", help="(default: rooms)"
+    )
+    hosting.add_argument("--scripts", type=Path, metavar="FOLDER", help="its scripts can be rooms, beside the studies")
+    hosting.add_argument("--port", type=port, help="of the page; rooms take the next ones (default: 8080)")
+    hosting.add_argument(
+        "--empty",
+        type=positive,
+        default=10.0,
+        metavar="MINUTES",
+        help="a room sleeps after so long without visitors (10)",
+    )
+    hosting.add_argument("--lan", action="store_true", help="let other computers in, by https; shows a QR code")
+    hosting.add_argument("--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan")
+    hosting.add_argument("--key", type=Path, metavar="FILE.pem", help="the key of --cert")
+    hosting.add_argument(
+        "--public", metavar="https://NAME", help="the address of a proxy in front, which passes /PORT/ on to that port"
+    )
+    hosting.add_argument("--seconds", type=positive, help="stop after this time")
+    hosting.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
+    hosting.set_defaults(function=rooms.run)
 
     recording = commands.add_parser("record", help="makes a film, or a contact sheet, of a study or a script")
     recording.add_argument("what", metavar="NAME|FILE.py")

@@ -13,7 +13,7 @@ import os
 import runpy
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from types import FunctionType
 
@@ -24,6 +24,7 @@ from iota.cli.failure import Failure
 from iota.errors import PageMissingError
 from iota.film.files import Failed, check_name
 from iota.journal.folder import BusyError
+from iota.rooms.room import RoomHere, RoomOptions
 from iota.terminal import TerminalView
 from iota.world import World
 from iota.world.callbacks import is_terminal, print_error
@@ -65,10 +66,13 @@ def run(arguments: argparse.Namespace) -> None:
             check_name(arguments.record, [".iota"])
         except Failed as failed:
             raise Failure(str(failed)) from None
-    if arguments.fresh and arguments.keep is None:
+    if arguments.fresh and arguments.keep is None and arguments.room is None:
         raise Failure("--fresh begins a kept world anew, so it needs --keep DIR")
+    room = None if arguments.room is None else RoomHere(RoomOptions.from_text(arguments.room))
+    if room is not None:
+        options.keep, options.make_server, options.on_serve = room.folder.journal, room.make_server, room.begin
     start = find(arguments.what)
-    with use(options), plain_failures(arguments.port):
+    with use(options), plain_failures(arguments.port), nullcontext() if room is None else room.ending_in_order():
         start(arguments.links)
         if not options.ran:
             raise Failure(

@@ -20,6 +20,7 @@ from tempfile import TemporaryDirectory
 
 from iota.cli import run
 from iota.cli.failure import Failure
+from iota.processes import wait_or_kill
 
 EVERY = 0.2  # s, between two checks of the files
 PATIENCE = 5.0  # s, within which a world has to end
@@ -89,11 +90,7 @@ def end(child: subprocess.Popen[bytes] | None) -> None:
     if child is None or child.poll() is not None:
         return
     child.send_signal(signal.SIGTERM)
-    try:
-        child.wait(PATIENCE)
-    except subprocess.TimeoutExpired:  # a callback that hangs
-        child.kill()
-        child.wait()
+    wait_or_kill(child, PATIENCE)  # a callback may hang
 
 
 def stamps(path: Path) -> dict[Path, tuple[int, int]]:

@@ -18,9 +18,10 @@ from typing import Any
 
 from iota import studies
 from iota._core import Room
+from iota.processes import wait_or_kill
 from iota.world import Server
 from iota.world.callbacks import print_error
-from iota.world.page import page_folder
+from iota.world.page import page_copy
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
 FIRST = (  # on the page
@@ -72,11 +73,7 @@ class Study:
         """A study that hangs is killed: its visitors have left, or the gallery ends."""
         assert self._process.stdout is not None
         self.ask_to_end()
-        try:
-            self._process.wait(PATIENCE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        wait_or_kill(self._process, PATIENCE)
         self._process.stdout.close()
 
 
@@ -152,29 +149,20 @@ class Gallery(Server):
 
     def _tell_of_failure(self, name: str, text: str, now: float) -> None:
         """Visitors come back to a room that only has a card."""
-        room = self.open(name)
-        room.set_settings(title=name, styles=[], style="", camera=None, ground=None, modules=[])
-        room.notice(0, 2, f"{name} cannot be shown", text, "", True)
-        self._failed[name] = room, now
+        self._failed[name] = self.open_card(name, f"{name} cannot be shown", text), now
         self.end_relay(name)
+
+
+def in_order() -> list[str]:
+    """All studies, as the page has them."""
+    return sorted(studies.names(), key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
 
 
 def make_folder() -> tempfile.TemporaryDirectory[str]:
     """The page's folder with the gallery as index.html, and the page itself as world.html."""
-    folder = tempfile.TemporaryDirectory(prefix="iota-gallery-")
+    folder = page_copy("gallery.html")
     target = Path(folder.name)
-    for file in page_folder().rglob("*"):
-        place = target / file.relative_to(page_folder())
-        if file.is_dir():
-            place.mkdir()
-            continue
-        for name, other in (("index.html", "world.html"), ("gallery.html", "index.html")):
-            if file.name.startswith(name):
-                place = target / file.name.replace(name, other)
-                break
-        shutil.copyfile(file, place)
     shutil.copytree(studies.PICTURES, target / "studies")
-    names = sorted(studies.names(), key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
-    described = [{"name": name, "text": studies.description(name)} for name in names]
+    described = [{"name": name, "text": studies.description(name)} for name in in_order()]
     (target / "studies.json").write_text(json.dumps(described))
     return folder

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import shutil
+import tempfile
 from pathlib import Path
 
 from iota._core import kept_token, make_token
@@ -19,6 +21,23 @@ def page_folder() -> Path:
         if (folder / "index.html").is_file():
             return folder
     raise PageMissingError(f"the page is not built: there is no {candidates[0] / 'index.html'}. Try: make build")
+
+
+def page_copy(index: str) -> tempfile.TemporaryDirectory[str]:
+    """A copy of the page's folder with another of its pages as index.html, and the page of a world as world.html."""
+    folder = tempfile.TemporaryDirectory(prefix="iota-page-")
+    target = Path(folder.name)
+    for file in page_folder().rglob("*"):
+        place = target / file.relative_to(page_folder())
+        if file.is_dir():
+            place.mkdir()
+            continue
+        for name, other in (("index.html", "world.html"), (index, "index.html")):
+            if file.name.startswith(name):
+                place = target / file.name.replace(name, other)
+                break
+        shutil.copyfile(file, place)
+    return folder
 
 
 def token() -> str:

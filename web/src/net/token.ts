@@ -2,7 +2,9 @@
 // The secret of the page's address. It is removed from the address bar, where others may read it on a shared screen,
 // and kept for this tab only, so that a reload still has it.
 
-const key = "iota token";
+// Behind a proxy several worlds have one origin, each a folder.
+const folder = new URL(".", location.href).pathname;
+const key = folder === "/" ? "iota token" : `iota token ${folder}`;
 
 /** The token that this page was opened with, or null. */
 export function takeToken(): string | null {

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Child processes that end in time."""
+
+from __future__ import annotations
+
+import subprocess
+
+
+def wait_or_kill(process: subprocess.Popen[bytes], seconds: float) -> None:
+    """After a process was asked to end: one that hangs is killed."""
+    try:
+        process.wait(seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

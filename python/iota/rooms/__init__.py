@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Worlds that are kept, each in a process of its own, with a page that lists them: `iota rooms`.
+
+folder: the files of a room. room: what its process does. process: how `iota rooms` starts and watches one. serving: all of
+them, and their page.
+"""
+
+from iota.rooms.serving import Rooms
+
+__all__ = ["Rooms"]

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The process of a room, which is `iota run` with the hidden option --room.
+
+It serves on a socket that `iota rooms` opened, and goes on if that ends. It tells who is there, and ends when nobody
+has been there for long.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from iota.rooms.folder import RoomFolder, Told
+from iota.saving import replacing
+from iota.world import Server, World
+from iota.world.callbacks import print_error
+
+LOOK = 0.2  # s, between two looks at who is there
+TELL = 2.0  # s, after which everything is told anew
+FIRST_PICTURE, PICTURE = 5.0, 300.0  # s, from the first visitor to a picture, and from one to the next
+LATE = 30.0  # s, after which a picture does not come any more
+PATIENCE = 5.0  # s, to end in an orderly way
+
+
+@dataclass
+class RoomOptions:
+    """What `iota rooms` tells the process, as JSON. listener: a socket. leave: s without a visitor, after which it ends.
+    public_origin: as of `Server`, with /PORT for the room."""
+
+    folder: str
+    listener: int
+    leave: float
+    public_origin: str = ""
+
+    def to_text(self) -> str:
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_text(cls, text: str) -> RoomOptions:
+        return cls(**json.loads(text))
+
+
+class RoomHere:
+    """The room of this process. what: a study or the path of a script."""
+
+    def __init__(self, options: RoomOptions) -> None:
+        self.folder = RoomFolder(Path(options.folder))
+        self._options, self._settings = options, self.folder.read()
+        self._server: Server | None = None
+        self._told = Told(os.getpid())
+        self._is_over = threading.Event()
+        self._watcher = threading.Thread(target=self._watch, name="iota-room", daemon=True)
+
+    @property
+    def what(self) -> str:
+        return self._settings.what
+
+    def make_server(self, host: str, port: int, **more: Any) -> Server:
+        options = self._options
+        self._server = Server(
+            host,
+            self._settings.port,
+            **more,
+            token=self._settings.token,
+            listener=options.listener,
+            public_origin=options.public_origin,
+        )
+        return self._server
+
+    def begin(self, world: World) -> None:
+        """The world is served."""
+        if self._server is not None and not self._watcher.is_alive():
+            self._world = world
+            self._told.title = world.title
+            self._told.time = world.system.time
+            self._tell()
+            self._watcher.start()
+
+    @contextmanager
+    def ending_in_order(self) -> Iterator[None]:
+        """Unless there is an error, nobody has to start the room again."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self._end()
+            raise
+        self._end()
+
+    def _end(self) -> None:
+        self._is_over.set()
+        if self._watcher.is_alive():
+            self._watcher.join(PATIENCE)
+        self._told.is_over, self._told.people = True, []
+        self._tell()
+
+    def _watch(self) -> None:
+        try:
+            self._watch_until_over()
+        except Exception as error:  # the world goes on, and nobody knows of its people
+            print_error(error)
+
+    def _watch_until_over(self) -> None:
+        assert self._server is not None
+        looked, empty_since = 0.0, time.monotonic()
+        count, picture_at = 0, float("inf")
+        while not self._is_over.wait(LOOK):
+            now, clients = time.monotonic(), self._server.statistics.clients
+            if clients:
+                empty_since = now
+                picture_at = min(picture_at, now + FIRST_PICTURE)
+            else:
+                picture_at = float("inf")
+            if clients != count or now - looked > TELL:
+                count, looked = clients, now
+                self._world._inputs.call(self._look)
+            if now > picture_at:
+                picture_at = now + PICTURE
+                self._world._inputs.call(self._ask_picture)
+            if now - empty_since > self._options.leave:
+                os.kill(os.getpid(), signal.SIGTERM)
+                if not self._is_over.wait(PATIENCE):  # a callback hangs; the journal has all until then
+                    os._exit(1)
+
+    def _look(self) -> None:
+        """On the thread of the world."""
+        state = self._world._state
+        told = self._told
+        told.time, told.title = state.system.time, state.title
+        told.people = [(client.name, client.role) for client in state.clients.by_id.values()]
+        told.step_seconds, told.reached_speed = state.step_ms / 1e3, state.clock.reached_speed
+        self._tell()
+
+    def _tell(self) -> None:
+        with suppress(OSError):  # a full disk: the journal tells of it
+            self.folder.tell(self._told)
+
+    def _ask_picture(self) -> None:
+        """On the thread of the world; a picture comes later."""
+        publisher, state = self._world.pages._publisher, self._world._state
+        client = next(iter(state.clients.by_id), None)
+        if publisher is None or client is None:
+            return
+        number = state.pictures.ask()
+        publisher.room.ask_picture(client, number)
+        threading.Thread(target=self._wait_for_picture, args=(number,), daemon=True).start()
+
+    def _wait_for_picture(self, number: int) -> None:
+        pictures = self._world._state.pictures
+        end = time.monotonic() + LATE
+        while time.monotonic() < end:
+            if (picture := pictures.ready(number)) is not None:
+                with suppress(OSError):
+                    if picture:
+                        with replacing(self.folder.picture) as fresh:
+                            fresh.write_bytes(picture)
+                return
+            time.sleep(LOOK)
+        pictures.forget(number)
