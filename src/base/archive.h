@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Writer {
     append(v.data(), v.size() * sizeof(T));
   }
   void fail() {}
+  /// Of the items that follow; only a schema has names.
+  void name(std::string_view) {}
 
  private:
   void append(const void* data, std::size_t size) {
@@ -64,6 +67,7 @@ class Reader {
     return 0;
   }
   void fail() { ok_ = false; }
+  void name(std::string_view) {}
   bool ok() const { return ok_; }
   bool at_end() const { return position_ == bytes_.size(); }
   std::size_t remaining() const { return bytes_.size() - position_; }

@@ -3,16 +3,50 @@
 
 #include "base/seal.h"
 #include "base/text.h"
+#include "edit/table_schema.h"
 #include "ingredient/tables.h"
+
+#include <cstring>
+#include <string_view>
 
 namespace iota::edit {
 
 namespace {
 
-// The tables of a snapshot are in the order of the list of ingredients: its length is a part of the version, so that one
-// more is another format. Change the letter before it if a table changes.
-constexpr auto ingredients = static_cast<char>(std::tuple_size_v<ingredient::Ingredients>);
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'J', ingredients}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'J', 0}, "snapshot"};
+constexpr Seal letter_i_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'I', 21}, "snapshot"};  // 21 ingredients, without a schema
+
+std::uint64_t hash_of_own_schema() {
+  static const std::uint64_t hash = [] {
+    Hasher hasher;
+    hasher.bytes(own_schema_text().data(), own_schema_text().size());
+    return hasher.result();
+  }();
+  return hash;
+}
+
+bool is_of_letter_i(std::span<const std::byte> bytes) {
+  const auto& mark = letter_i_seal.mark;
+  return bytes.size() >= mark.size() && std::memcmp(bytes.data(), mark.data(), mark.size()) == 0;
+}
+
+/// The tables of a snapshot as this program writes them. room: for those that had to be translated.
+std::span<const std::byte> tables_of(std::span<const std::byte> bytes, std::vector<std::byte>& room) {
+  if (is_of_letter_i(bytes)) return room = in_own_schema(schema_of_letter_i(), unseal(letter_i_seal, bytes));
+  const auto content = unseal(snapshot_seal, bytes);
+  Reader reader(content);
+  std::uint64_t hash = 0;
+  reader.value(hash);
+  const std::size_t length = reader.count(1);
+  if (!reader.ok()) throw std::invalid_argument("restore: this snapshot is damaged");
+  const auto rest = content.last(reader.remaining());
+  const std::string_view schema(reinterpret_cast<const char*>(rest.data()), length);
+  const auto tables = rest.subspan(length);
+  if (hash == hash_of_own_schema()) return tables;
+  if (schema.empty())
+    throw std::invalid_argument("restore: this state of undo is of another version of Iota, which only it can read");
+  return room = in_own_schema(schema, tables);
+}
 
 }  // namespace
 
@@ -20,9 +54,12 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
-Snapshot Editor::pack() {
+Snapshot Editor::pack(Origin origin) {
   std::vector<std::byte> content;
   Writer writer(content);
+  writer.value(hash_of_own_schema());
+  const std::string_view schema = origin == Origin::anywhere ? own_schema_text() : std::string_view();
+  writer.vector(std::vector<char>(schema.begin(), schema.end()));
   model.archive(writer);
   return {seal(snapshot_seal, content)};
 }
@@ -30,15 +67,15 @@ Snapshot Editor::pack() {
 Snapshot Editor::snapshot(Origin origin) {
   if (origin == Origin::anywhere) islands.renew();
   keys_saved_below_ = held.functions.next_key;
-  return pack();
+  return pack(origin);
 }
 
 model::Model Editor::unpack(const Snapshot& snapshot, Origin origin) {
-  Reader reader(unseal(snapshot_seal, snapshot.bytes));
+  std::vector<std::byte> room;
+  Reader reader(tables_of(snapshot.bytes, room));
   model::Model restored;
   restored.archive(reader);
-  if (!reader.ok() || !reader.at_end())
-    throw std::invalid_argument("restore: the tables of this snapshot are damaged, or of another build of Iota");
+  if (!reader.ok() || !reader.at_end()) throw std::invalid_argument("restore: the tables of this snapshot are damaged");
   if (origin == Origin::anywhere)
     if (const std::vector<std::string> complaints = ingredient::validate(restored); !complaints.empty())
       throw std::invalid_argument(text("restore: the tables of this snapshot do not fit together: ", complaints.front(),

@@ -80,8 +80,9 @@ struct Editor {
   /// A system that is restored from it builds its islands from saved data. So that this one continues to the same bits
   /// as another one, it does that, too; not for a snapshot of its own, to which it returns itself.
   Snapshot snapshot(Origin = Origin::anywhere);
-  /// The tables as a snapshot, and nothing else.
-  Snapshot pack();
+  /// The tables as a snapshot, and nothing else. With their schema, so that later versions can read it, unless it is for
+  /// this program itself.
+  Snapshot pack(Origin = Origin::anywhere);
   /// The tables of a snapshot. Throws as `restore`.
   static model::Model unpack(const Snapshot&, Origin);
   /// Throws std::invalid_argument for bytes that are not a snapshot, before any change. Bytes from outside are checked,

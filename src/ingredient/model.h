@@ -16,6 +16,15 @@
 
 namespace iota::ingredient {
 
+/// The name of a type without its namespaces, the same from all compilers that Iota is built with.
+template <class T>
+constexpr std::string_view type_name() {
+  std::string_view text = __PRETTY_FUNCTION__;  // "... [with T = iota::ingredient::Bonds; ...]", clang: "... [T = ...]"
+  text.remove_prefix(text.find("T = ") + 4);
+  text = text.substr(0, text.find_first_of(";]"));
+  return text.substr(text.rfind(':') + 1);
+}
+
 /// The tables of one ingredient; a distinct type, since many ingredients have none.
 template <class I>
 struct OwnTables : I::Tables {};
@@ -93,15 +102,19 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
 template <class Archive>
 void Model::archive(Archive& ar) {
   Structure::archive(ar);
-  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget_iterations), ar.value(budget_seconds),
-      ar.value(budget_contacts);
-  ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
-  ar.value(time), ar.value(last_dt), ar.value(step);
-  ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy),
-      ar.value(booked_energy), ar.value(has_edits);
-  ar.value(held_energy);
-  ingredient::for_each_type<ingredient::Ingredients>(
-      [&]<class I>() { static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this); });
+  const auto value = [&](std::string_view name, auto& each) { ar.name(name), ar.value(each); };
+  value("gravity", gravity), value("mode", mode), value("tolerance", tolerance);
+  value("budget_iterations", budget_iterations), value("budget_seconds", budget_seconds);
+  value("budget_contacts", budget_contacts);
+  value("damping", damping), value("solver", solver), value("rest_after", rest_after), value("rest_speed", rest_speed);
+  value("time", time), value("last_dt", last_dt), value("step", step);
+  value("dissipated", dissipated), value("lost", lost), value("made", made), value("external_work", external_work);
+  value("edit_energy", edit_energy), value("booked_energy", booked_energy), value("has_edits", has_edits);
+  value("held_energy", held_energy);
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
+    ar.name(ingredient::type_name<I>());
+    static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this);
+  });
 }
 
 /// The table of the objects that an id names: each ingredient knows that of its own.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/meshes.h"
 
+#include "base/schema.h"
 #include "base/text.h"
 #include "shape/mesh.h"
 
@@ -30,15 +31,23 @@ bool Meshes::is_open(std::uint64_t key) const {
   return found != by_key_.end() && found->second.is_open;
 }
 
-void Meshes::archive(Writer& writer) {
+void Meshes::archive(Writer& outer) {
+  std::vector<std::byte> bytes;
+  Writer writer(bytes);
   writer.value(static_cast<std::uint64_t>(by_key_.size()));
   for (const auto& [key, used] : by_key_) {
     writer.value(key), writer.value(used.uses), writer.value(used.is_open);
     writer.vector(used.mesh->vertices), writer.vector(used.mesh->triangles);
   }
+  outer.vector(bytes);
 }
 
-void Meshes::archive(Reader& reader) {
+void Meshes::archive(SchemaWriter& writer) { writer.vector(std::vector<std::byte>()); }
+
+void Meshes::archive(Reader& outer) {
+  std::vector<std::byte> bytes;
+  outer.vector(bytes);
+  Reader reader(bytes);
   by_key_.clear();
   constexpr std::size_t least = 2 * sizeof(std::uint64_t);
   for (std::size_t left = reader.count(least); left > 0 && reader.ok(); --left) {
@@ -50,6 +59,7 @@ void Meshes::archive(Reader& reader) {
     used.mesh = std::make_shared<const Mesh>(std::move(mesh));
     if (!by_key_.emplace(key, std::move(used)).second) reader.fail();
   }
+  if (!reader.ok() || !reader.at_end()) outer.fail();
 }
 
 std::string complaint_about(std::uint64_t key, const Mesh& mesh, bool is_open) {

@@ -9,8 +9,9 @@
 #include <string>
 
 namespace iota {
+class SchemaWriter;
 struct Mesh;
-}
+}  // namespace iota
 
 namespace iota::model {
 
@@ -33,6 +34,7 @@ class Meshes {
 
   void archive(Writer&);
   void archive(Reader&);
+  void archive(SchemaWriter&);
 
  private:
   struct Used {

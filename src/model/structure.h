@@ -512,19 +512,25 @@ void Structure::Survivors<IdType>::archive(Archive& ar) {
 
 template <class Archive>
 void Structure::archive(Archive& ar) {
-  particles.archive(ar), rings.archive(ar), bodies.archive(ar), solids.archive(ar), twins.archive(ar);
-  articulates.archive(ar), groups.archive(ar), inertia_pairs.archive(ar), attributes.archive(ar);
-  ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
-  first_twin.archive(ar, particles.slot_count());
-  more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
-  obstacles.archive(ar, bodies.slot_count());
-  radii.archive(ar, bodies.slot_count()), ar.value(usual_radius);
-  colors.archive(ar, bodies.slot_count());
-  materials.archive(ar, bodies.slot_count()), ar.value(usual_material), ar.value(has_usual_material);
-  corrections.archive(ar, rings.slot_count());
-  ar.value(structure_version), ar.value(spark_changes);
-  particle_survivors_.archive(ar), body_survivors_.archive(ar);
-  meshes.archive(ar);
+  const auto table = [&](std::string_view name, auto& each, auto... slots) {
+    ar.name(name), each.archive(ar, slots...);
+  };
+  const auto value = [&](std::string_view name, auto& each) { ar.name(name), ar.value(each); };
+  table("particles", particles), table("rings", rings), table("bodies", bodies), table("solids", solids);
+  table("twins", twins), table("articulates", articulates), table("groups", groups);
+  table("inertia_pairs", inertia_pairs), table("attributes", attributes);
+  table("ties", ties, particles.slot_count()), table("fuses", fuses, particles.slot_count());
+  table("first_twin", first_twin, particles.slot_count());
+  table("more_rows", more_rows, bodies.slot_count()), table("body_damping", body_damping, bodies.slot_count());
+  table("obstacles", obstacles, bodies.slot_count());
+  table("radii", radii, bodies.slot_count()), value("usual_radius", usual_radius);
+  table("colors", colors, bodies.slot_count());
+  table("materials", materials, bodies.slot_count()), value("usual_material", usual_material);
+  value("has_usual_material", has_usual_material);
+  table("corrections", corrections, rings.slot_count());
+  value("structure_version", structure_version), value("spark_changes", spark_changes);
+  table("particle_survivors", particle_survivors_), table("body_survivors", body_survivors_);
+  table("meshes", meshes);
 }
 
 }  // namespace iota::model

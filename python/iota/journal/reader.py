@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import struct
 from collections.abc import Callable, Iterator
@@ -11,7 +12,7 @@ from typing import Any
 
 from iota._core import Log, System
 from iota.journal.folder import File, Folder
-from iota.journal.records import ANY_MAGIC, MAGIC, Commands, Record, unpack
+from iota.journal.records import ANY_MAGIC, MAGIC, Commands, Record, schema_of, unpack, with_schema
 
 USUAL_LOSS = 0.2  # s: two hand-overs of what the world does, see iota.world.journal
 
@@ -83,6 +84,11 @@ def find_all(folder: Folder) -> list[Found]:
     return []
 
 
+@functools.cache
+def own_schema() -> str:
+    return schema_of(System().snapshot())
+
+
 @dataclass
 class _Cursor:
     """The latest content of each kind on the way: states of undo, the world."""
@@ -103,6 +109,11 @@ class _Cursor:
         elif kind == "Y":
             marks = json.loads(content)
             self.undo, self.redo = list(marks["undo"]), list(marks["redo"])
+
+    def whole(self, snapshot: bytes) -> bytes:
+        """A snapshot with the schema of its file; with that of this program if the header is damaged."""
+        schema = self.header.get("schema")
+        return with_schema(snapshot, schema if isinstance(schema, str) else own_schema())
 
     def history(self) -> tuple[list[bytes], list[bytes]]:
         """The newest states of each; none that is older than one that is damaged."""
@@ -134,7 +145,7 @@ def find_in(files: list[File], damage: list[str]) -> list[Found]:
         try:
             cursor.take(kind, content)
             if kind == "S":
-                found, is_whole, end = Found([], cursor.header, content, *cursor.history()), True, 0.0
+                found, is_whole, end = Found([], cursor.header, cursor.whole(content), *cursor.history()), True, 0.0
                 all_found.append(found)
             elif kind == "C":
                 piece = Commands.from_bytes(content)
@@ -142,7 +153,7 @@ def find_in(files: list[File], damage: list[str]) -> list[Found]:
                 if found is not None and is_whole:
                     found.pieces.append(piece)
             elif kind == "Q" and found is not None and is_whole:
-                found.quick = Quick(len(found.pieces), content, *cursor.history())
+                found.quick = Quick(len(found.pieces), cursor.whole(content), *cursor.history())
         except (ValueError, KeyError, TypeError, struct.error) as error:  # a correct checksum over what nobody writes
             damage.append(f"record {record.number}: {error}")
             is_whole = False

@@ -4,7 +4,7 @@
 A file is the line "iota journal 1" and records. A record is a head of 24 bytes, little-endian, and its content:
 mark "ij", kind (a letter), 0, length of the content (u32), number (u64), CRC-32 of the content, CRC-32 of the head before
 it. Nothing is packed, since a snapshot is written faster than it is packed. Numbers rise by one over the files of one process; after records that were not
-written a number is left out.
+written a number is left out. The schema of snapshots is in the header, and left out of each of them.
 
     H  JSON: about the file              W  JSON: controls, people, clock, state of the script
     U  mark (u64), a state of undo       Y  JSON: the marks of the states of undo and redo
@@ -27,6 +27,33 @@ KINDS = b"HWUYSQCE"
 MARK = b"ij"
 HEAD = struct.Struct("<2sBBIQII")
 COMMANDS = struct.Struct("<dQf")
+
+
+SCHEMA_LENGTH = struct.Struct("<8xQ8xQ")  # of a snapshot: the length of its content, that of its schema
+SCHEMA_AT = 32
+
+
+def schema_of(snapshot: bytes) -> str:
+    """The schema that a snapshot contains, see src/edit/editor.cpp."""
+    _, length = SCHEMA_LENGTH.unpack_from(snapshot)
+    return snapshot[SCHEMA_AT : SCHEMA_AT + length].decode("ascii")
+
+
+def without_schema(snapshot: bytes, schema: str) -> bytes:
+    """All of a snapshot but its schema, if that is this one."""
+    text = schema.encode("ascii")
+    has_it = bool(text) and snapshot.startswith(text, SCHEMA_AT)
+    return snapshot[:SCHEMA_AT] + snapshot[SCHEMA_AT + len(text) :] if has_it else snapshot
+
+
+def with_schema(stored: bytes, schema: str) -> bytes:
+    """The snapshot of which `without_schema` was made; others stay as they are."""
+    if len(stored) < SCHEMA_AT or not schema:
+        return stored
+    length, of_schema = SCHEMA_LENGTH.unpack_from(stored)
+    text = schema.encode("utf-8")
+    is_short = len(stored) + len(text) == length + 24 and of_schema == len(text)
+    return stored[:SCHEMA_AT] + text + stored[SCHEMA_AT:] if is_short else stored
 
 
 class Record(NamedTuple):

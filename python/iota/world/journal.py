@@ -20,7 +20,7 @@ from iota.arguments import SHORT
 from iota.errors import WrongThreadError
 from iota.journal.folder import Folder
 from iota.journal.reader import Found, JournalError, find, recover
-from iota.journal.records import FORMAT, Commands
+from iota.journal.records import FORMAT, Commands, schema_of, without_schema
 from iota.journal.writer import Content, Writer
 from iota.world.callbacks import one_line, print_on_terminal
 from iota.world.state import State
@@ -60,6 +60,7 @@ class Journal:
         self._structure: int | None = None  # of which the functions are known
         self._marks: set[int] = set()  # of the states of undo in the present file
         self._marks_told: tuple[list[int], list[int]] = ([], [])
+        self._schema = ""  # of the snapshots of this file
         self._owed = 0.0  # s of steps since the last snapshot
         self._checked_at = self._next = self._began_at = self._quick_at = 0.0
         self._read()
@@ -304,9 +305,11 @@ class Journal:
     def _begin_file(self, writer: Writer, now: float, snapshot: bytes) -> None:
         self._began_at = now
         self._marks.clear()
+        self._schema = schema_of(snapshot)
         header = {
             "format": FORMAT,
             "iota": version,
+            "schema": self._schema,
             "title": self._state.title,
             "start": self._start,
             "written": time.strftime("%Y-%m-%d %H:%M:%S"),
@@ -322,13 +325,13 @@ class Journal:
     def _checkpoint(self, snapshot: bytes) -> list[Content]:
         """A snapshot from which the commands after it lead to the same bits."""
         self._owed = 0.0
-        return [*self._history(), ("S", snapshot)]
+        return [*self._history(), ("S", without_schema(snapshot, self._schema))]
 
     def _quick(self, now: float) -> list[Content]:
         """For worlds with functions of the script, whose results may depend on what the script alone knows."""
         began = time.perf_counter()
         records = self._history()
-        snapshot = self._log.quick_snapshot()
+        snapshot = without_schema(self._log.quick_snapshot(), self._schema)
         records.append(("Q", snapshot))
         took = time.perf_counter() - began
         self._quick_at = now + max(HAND_OVER, took / SHARE, len(snapshot) / QUICK_RATE)

@@ -7,17 +7,22 @@
 #include <iota/system.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
 namespace iota::model {
 
-/// The tables of a system, as a snapshot has them: between mark and length, and the checksum (base/seal.h).
+/// The tables of a system, as a snapshot has them: after mark and length (base/seal.h) and the schema with its hash and length,
+/// before the checksum.
 inline Model model_of(System& system) {
   const Snapshot snapshot = system.snapshot();
   const std::span<const std::byte> bytes(snapshot.bytes);
-  Reader reader(bytes.subspan(16, bytes.size() - 24));
+  std::uint64_t schema = 0;
+  std::memcpy(&schema, bytes.data() + 24, sizeof schema);
+  Reader reader(bytes.subspan(32 + schema, bytes.size() - 40 - schema));
   Model model;
   model.archive(reader);
   if (!reader.ok() || !reader.at_end()) throw std::logic_error("the tables of a snapshot are laid out otherwise");
