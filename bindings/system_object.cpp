@@ -167,19 +167,33 @@ double SystemObject::call_surface(const std::shared_ptr<ScriptFunction>& functio
 }
 
 StepReport SystemObject::step(double dt, int count) {
-  System& system = use_between_steps("step");
+  prepare_step(dt, count);
+  StepReport report;
+  {
+    const nb::gil_scoped_release unlocked;
+    report = advance(dt, count);
+  }
+  finish_step(report);
+  return report;
+}
+
+void SystemObject::prepare_step(double dt, int count) {
+  (void)use_between_steps("step");
   finite_positive(dt, "dt", "s");
   if (count < 1) throw nb::value_error(("count must be at least 1, not " + std::to_string(count)).c_str());
   std::erase_if(failures, [](const ForceFailure& failure) { return !failure.source->constraint; });
-  StepReport report;
-  {
-    nb::gil_scoped_release unlocked;
-    report = system.step(dt);
-    const auto has_failed = [&] {
-      return !failures.empty() || !report.switched_off.empty() || !report.switched_off_constraints.empty();
-    };
-    for (int i = 1; i < count && !has_failed(); ++i) add_step(report, system.step(dt));
-  }
+}
+
+StepReport SystemObject::advance(double dt, int count) {
+  StepReport report = engine.step(dt);
+  const auto has_failed = [&] {
+    return !failures.empty() || !report.switched_off.empty() || !report.switched_off_constraints.empty();
+  };
+  for (int i = 1; i < count && !has_failed(); ++i) add_step(report, engine.step(dt));
+  return report;
+}
+
+void SystemObject::finish_step(StepReport& report) {
   stops = report.stops;
   contacts = report.contacts;
   step_edits = report.edits;
@@ -193,7 +207,6 @@ StepReport SystemObject::step(double dt, int count) {
   }
   if (!failures.empty() || !report.switched_off.empty() || !report.switched_off_constraints.empty())
     tell_failures(report);
-  return report;
 }
 
 void SystemObject::raise_first_failure() {

@@ -71,6 +71,10 @@ class SystemObject {
 
   void adopt();
   StepReport step(double dt, int count);
+  /// The parts of `step`: checks, with the interpreter lock; the engine's steps, without it; what follows, with it.
+  void prepare_step(double dt, int count);
+  StepReport advance(double dt, int count);
+  void finish_step(StepReport& report);
   /// phi of a surface of the script, m; throws std::runtime_error unless it is a finite number. Called on any thread.
   double call_surface(const std::shared_ptr<ScriptFunction>& function, const Vec3& r);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);

@@ -67,7 +67,7 @@ from iota.errors import (
 )
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, solve, solver, solver_names
-from iota.sweeping import sweep
+from iota.sweeping import step_all, sweep
 from iota.world import Camera, Event, Server, View, World
 
 if TYPE_CHECKING:
@@ -137,6 +137,7 @@ __all__ = [
     "solve",
     "solver",
     "solver_names",
+    "step_all",
     "sweep",
     "types",
 ]

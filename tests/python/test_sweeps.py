@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 import iota
+from iota.cli import plot
 from iota.cli.failure import Failure
 from iota.cli.main import main
 from iota.cli.sweep import varied
@@ -156,3 +157,48 @@ def test_the_command_line_tells_what_failed(tmp_path: Path, capsys: pytest.Captu
     assert main([*words, "--vary", "b=0"]) == 1 and "does not take these arguments" in capsys.readouterr().err
     words[1] += ":other"
     assert main([*words, "--vary", "b=0..1:3"]) == 1 and "of another sweep" in capsys.readouterr().err
+
+
+def test_a_table_in_parquet_has_the_rows_and_types_of_the_sweep(tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "swing.parquet"
+    rows = iota.sweep(swing, GRID, path, processes=0)
+    table = parquet.read_table(path)
+    assert table.to_pylist() == rows and str(table.schema.field("seed").type) == "int64"
+    assert len(cells(tmp_path / "swing.csv")) == 7, "the table that goes on where it was stopped"
+    path.unlink()
+    calls: list[int] = []
+    assert iota.sweep(swing, GRID, path, 0, lambda done, all, failed: calls.append(done)) == rows and calls == [6]
+    mixed = iota.sweep(lambda a: {"b": a if a < 2 else "many"}, {"a": [1, 2]}, tmp_path / "m.parquet", processes=0)
+    assert [row["b"] for row in mixed] == [1, "many"]
+    assert parquet.read_table(tmp_path / "m.parquet").to_pydict()["b"] == ["1", "many"]
+
+
+def test_without_pyarrow_a_sweep_in_parquet_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"need pyarrow. Try: .* or name a file that ends in .csv"):
+        iota.sweep(lambda a: 1 / 0, {"a": [1]}, "t.parquet", processes=0)
+
+
+def test_a_sweep_is_drawn_over_the_argument_with_the_most_values(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = tmp_path / "s.py"
+    script.write_text("def run(k, d, seed):\n    return {'y': k * d + seed, 'kind': 'x', 'z': -k}\n")
+    words = ["sweep", str(script), "-o", str(tmp_path / "s.csv"), "--processes", "0", "--plot"]
+    varied = ["--vary", "k=1e0..1e3:log:7", "--vary", "d=1,2", "--vary", "seed=1..20"]
+    file = tmp_path / "s.svg"
+    assert main([*words, str(file), *varied]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(file)
+    drawn = file.read_text()
+    assert drawn.count('<g id="axes_') == 2 and drawn.count('<g id="FillBetweenPolyCollection_') == 4
+    assert main([*words, str(tmp_path / "s.gif"), *varied]) == 1
+    assert "a plot ends in .png, .svg or .pdf" in capsys.readouterr().err
+
+
+def test_what_a_plot_shows_is_the_mean_and_the_range_of_runs_that_differ_in_their_seeds() -> None:
+    rows = [{"k": k, "d": d, "seed": seed, "y": k + seed} for k in (1, 2) for d in "ab" for seed in (0, 4)]
+    found = plot.lines(rows, "k", "d", "y")
+    assert found["a"] == found["b"] == {"x": [1, 2], "mean": [3.0, 4.0], "least": [1, 2], "most": [5, 6]}
+    assert plot.is_logarithmic([1, 10, 100]) and not plot.is_logarithmic([1, 2, 3])
+    assert plot.most_varied(["seed", "k"], rows) == "k" and plot.line_argument(["d", "seed"], rows) == "d"

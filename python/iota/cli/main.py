@@ -208,7 +208,10 @@ def make_parser() -> Parser:
         metavar="NAME=VALUES",
         help="1,2,5 or 1..50 or 0..1:11 or 1e2..1e5:log:20; once for each argument",
     )
-    sweeping.add_argument("-o", "--output", type=Path, metavar="FILE.csv", help="the table (default: FILE.csv here)")
+    sweeping.add_argument(
+        "-o", "--output", type=Path, metavar="FILE.csv|parquet", help="the table (default: FILE.csv here)"
+    )
+    sweeping.add_argument("--plot", type=Path, metavar="FILE.png|svg|pdf", help="draw the results over what was varied")
     sweeping.add_argument("--processes", type=not_negative, help="0: in this one (default: one for each core)")
     sweeping.set_defaults(function=sweep.run)
 

@@ -12,19 +12,19 @@ from typing import Any
 from iota._core import System
 from iota.cli import run
 from iota.cli.failure import Failure
-from iota.extras import how_to_get
-from iota.saving import replacing
+from iota.cli.plot import COLORS, check, save
 from iota.world import World
 from iota.world.options import RunOptions, use
 
 FRAMES = 60  # for pages, per simulated second
-COLORS = ("#2f9d92", "#e8452c", "#3f7fd0", "#f2a324", "#8d6fd1", "#4c9a52")
 
 
 def profile(arguments: argparse.Namespace) -> None:
     """Runs a study or a script as fast as possible, with frames for pages, and prints the time of each part."""
     rows: list[dict[str, Any]] = []
     forces: list[str] = []
+    if arguments.plot is not None:
+        check(arguments.plot)
 
     def drive(world: World) -> None:
         world.serve()
@@ -66,10 +66,8 @@ def rows_of(costs: dict[str, float], wall: float, steps: int) -> list[dict[str, 
 
 def plot(rows: list[dict[str, Any]], title: str, file: Path) -> None:
     """A pie chart, as in the thesis."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise Failure(f"plots need Matplotlib. {how_to_get('verify')}") from None
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     shown = [row for row in rows if row["share"] > 0.005]
@@ -79,8 +77,4 @@ def plot(rows: list[dict[str, Any]], title: str, file: Path) -> None:
     )
     axes.legend(labels, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     axes.set_title(f"{title}: {sum(row['ms'] for row in rows):.2f} ms a step")
-    try:
-        with replacing(file) as fresh:
-            figure.savefig(fresh, dpi=150)
-    except OSError as error:
-        raise Failure(str(error)) from None
+    save(figure, file)

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from iota.cli import plot
 from iota.cli.failure import Failure
 from iota.cli.run import parse, plain_failures
 from iota.sweeping import ERROR, SCRIPT, sweep
@@ -35,8 +36,10 @@ def run(arguments: argparse.Namespace) -> None:
     path, _, name = arguments.what.partition(":")
     grid = dict(varied(text) for text in arguments.vary)
     table: Path = arguments.output or Path(Path(path).stem + ".csv")
-    if table.suffix.lower() != ".csv":
-        raise Failure(f"{table} must end in .csv")
+    if table.suffix.lower() not in (".csv", ".parquet"):
+        raise Failure(f"{table} must end in .csv or .parquet")
+    if arguments.plot is not None:
+        plot.check(arguments.plot)
     parse(Path(path))
     bar = Bar(Path(path).stem)
     with plain_failures(None):
@@ -58,6 +61,9 @@ def run(arguments: argparse.Namespace) -> None:
     if failures[MOST_TOLD:]:
         print(f"iota: and {len(failures) - MOST_TOLD} more, see the column {ERROR} of {table}", file=sys.stderr)
     print(f"{table}  {len(rows) - len(failures)} of {len(rows)} runs")
+    if arguments.plot is not None:
+        plot.draw(rows, list(grid), Path(path).stem, arguments.plot)
+        print(arguments.plot)
     if failures:
         raise Failure(f"{len(failures)} of {len(rows)} runs failed; the same command tries them again")
 
