@@ -41,7 +41,9 @@ def main() -> None:
             best[name] = min(best.get(name, took), took)  # type: ignore[type-var]
     assert all(a.state_hash() == b.state_hash() for a, b in zip(alone, together, strict=True))
     for name, (wall, thread, process) in best.items():
-        print(f"{name:9} {1e3 * wall:8.1f} ms, of the calling thread {1e3 * thread:8.1f} ms, of all {1e3 * process:8.1f} ms")
+        print(
+            f"{name:9} {1e3 * wall:8.1f} ms, of the calling thread {1e3 * thread:8.1f} ms, of all {1e3 * process:8.1f} ms"
+        )
     print(f"ratio {best['loop'][0] / best['step_all'][0]:.2f} on {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}")
 
 
