@@ -45,6 +45,10 @@ RUNS = {
         *("env", "IOTA_KILLS=1000", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q", "-s"),
         *(str(ROOT / "tests" / "python" / "test_journal.py"), "-k", "no_kill"),
     ],
+    "rooms": [
+        *("env", "IOTA_KILLS=1000", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q", "-s"),
+        *(str(ROOT / "tests" / "python" / "test_rooms.py"), "-k", "is_killed"),
+    ],
     "page": [str(ROOT / ".venv" / "bin" / "node"), str(ROOT / "web" / "e2e" / "page_soak.ts")],
 }
 

@@ -39,6 +39,7 @@ using namespace std::chrono_literals;
 
 constexpr auto farewell_time = 250ms;
 constexpr auto accept_pause = 100ms;
+constexpr auto accept_look = 2ms;
 constexpr auto frame_time = 16ms;
 
 [[noreturn]] void fail(const error_code& error, const std::string& what) { throw std::system_error(error, what); }
@@ -201,7 +202,7 @@ struct Server::Implementation {
         frame_timer(io) {
     context.port = acceptor.local_endpoint().port();
     context.on_all_closed = [this] { io.stop(); };
-    accept();
+    options.listener < 0 ? accept() : accept_once_open();
     thread = std::thread([this] { run(); });
   }
 
@@ -223,6 +224,15 @@ struct Server::Implementation {
         // Out of memory in one client's handler: that client is lost, the others continue.
       }
     }
+  }
+
+  /// Who waits in the queue of a socket that was taken over finds a world: without one, it would be refused.
+  void accept_once_open() {
+    if (!link->worlds.all().empty()) return accept();
+    timer.expires_after(accept_look);
+    timer.async_wait([this](error_code) {
+      if (!context.is_finishing) accept_once_open();
+    });
   }
 
   void accept() {

@@ -38,7 +38,8 @@ struct ServerOptions {
   std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client
   std::size_t max_clients = 64;           ///< of each world
   double hello_time = 10;                 ///< s, from the upgrade of a connection to its first frame
-  /// A listening socket, which the server takes over instead of listening itself; -1: none. Not on Windows.
+  /// A listening socket, which the server takes over instead of listening itself; -1: none. It accepts from its first world
+  /// on. Not on Windows.
   int listener = -1;
   /// The address under which a proxy serves this server's page, such as https://worlds.example.org; empty: none.
   std::string public_origin = {};

@@ -149,9 +149,10 @@ class RoomProcess:
         self._deaths.clear()
 
     def begin_anew(self) -> None:
-        """With the start of its script. The world before is put aside."""
+        """With the start of its script, at the next visit. The world before is put aside. Raises OSError."""
         self.begins_anew = True
-        self.open()
+        if not self.settings.is_closed:
+            self.open()
         self.ask_to_end()
 
     def ask_to_end(self) -> None:

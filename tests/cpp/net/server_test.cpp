@@ -1023,6 +1023,16 @@ TEST_F(ServerTest, a_server_takes_over_a_socket_on_which_a_client_waits_already)
   early.join();
   EXPECT_EQ(status, 200U);
   EXPECT_EQ(server_->port(), port);
+  taken.listener = ::dup(listener);
+  room_.reset();
+  server_ = std::make_unique<Server>(taken);
+  PageClient hasty;
+  std::thread joining([&] { hasty.connect(port, target()); });
+  std::this_thread::sleep_for(30ms);
+  room_ = server_->open("default");
+  joining.join();
+  say(hasty, protocol::Hello{protocol::protocol_magic, protocol::protocol_version, "", protocol::Role::actor, "hasty"});
+  EXPECT_TRUE(hear<protocol::Welcome>(hasty)) << "its world was opened after it had come";
   taken.listener = 9999;
   EXPECT_THROW(Server{taken}, std::system_error);
 }
