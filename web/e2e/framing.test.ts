@@ -87,6 +87,57 @@ it("shadows on a ground far below what falls are in the first picture, and in no
   }
 });
 
+describe("the camera keeps the subject", () => {
+  /** With an arrow to what has gone, and the share of the window that is filled at least, to its longer side. */
+  const scenes = { rolling: [true, 0.5], thrown: [true, 0.5], planets: [false, 0.3], button: [false, 0.4], tower: [false, 0.5], label: [false, 0.2], 0.001: [false, 0.5], 30: [false, 0.5] } as const;
+  const names = Object.keys(scenes).filter((name) => runsAll || name === "rolling");
+
+  it.each(names)("of %s for a minute, and after a reset", async (name) => {
+    const [hasArrow, filled] = scenes[name as keyof typeof scenes];
+    const server = await WorldServer.start(["web/e2e/subjects_probe.py"], await freePort(), undefined, { IOTA_SCENE: name, IOTA_SPEED: name === "planets" ? "6" : "10" });
+    try {
+      const tab = await open(server.url);
+      const look = async (when: string) => {
+        const eye = await tab.eyeAtRest();
+        const seen = await drawn(tab);
+        const what = `${name} ${when}: ${JSON.stringify(seen)}`;
+        expect(Math.max(seen.wide, seen.high), what).toBeGreaterThan(filled);
+        if (!hasArrow) expect(seen.cut, what).toBe(false);
+        return eye;
+      };
+      // A planet has gone around.
+      await tab.until("some looks have passed", () => iota.time > 25);
+      const early = await look("early");
+      await tab.until("a minute has passed", () => iota.time > 60);
+      const late = await look("after a minute");
+      const distance = Math.hypot(...early.map((value, axis) => value - late[axis]));
+      expect(distance, "the camera stays").toBeLessThan(0.05 * (await tab.page.evaluate(() => iota.page.navigation.distance)));
+      expect(await tab.page.locator("#away button:visible").count()).toBe(hasArrow ? 1 : 0);
+      await tab.reset();
+      const again = await look("after a reset");
+      expect(Math.hypot(...again.map((value, axis) => value - late[axis]))).toBeLessThan(0.05 * (await tab.page.evaluate(() => iota.page.navigation.distance)));
+      expect(tab.complaints).toEqual([]);
+      await tab.page.goto("about:blank");
+    } finally {
+      await server.stop();
+    }
+  }, 60_000);
+
+  it("follows what is alone", async () => {
+    const server = await WorldServer.start(["web/e2e/subjects_probe.py"], await freePort(), undefined, { IOTA_SCENE: "lone" });
+    try {
+      const tab = await open(server.url);
+      await tab.until("it has gone far", () => iota.bodyPosition(iota.bodies()[0])[0] > 4);
+      await expect.poll(() => tab.page.evaluate(() => {
+        const [x, y] = iota.screenPosition(iota.bodies()[0]) ?? [-1, -1];
+        return x > 0.1 * innerWidth && x < 0.9 * innerWidth && y > 0 && y < innerHeight;
+      })).toBe(true);
+    } finally {
+      await server.stop();
+    }
+  });
+});
+
 it("a part that comes off has a marker at the edge of the picture, and a press of the marker shows everything", async () => {
   const server = await WorldServer.start(["web/e2e/leaving_probe.py"], await freePort());
   try {

@@ -156,7 +156,7 @@ describe("another scene on the same page", () => {
     let size = 1;
     const viewer = {
       camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
-      renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
+      renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
     };
     const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
     let left = navigation.goal;
@@ -180,7 +180,7 @@ describe("another scene on the same page", () => {
     vi.stubGlobal("innerHeight", 720);
     const test = new TestWorld();
     const viewer = {
-      camera, size: 1, stage: { setScene: vi.fn() }, invalidate: () => {}, renderer: { domElement: { height: 720 } }, presenting: false, filming: false,
+      camera, size: 1, stage: { setScene: vi.fn() }, invalidate: () => {}, renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
       resting: false,
     };
     const framing = new Framing(test.world, viewer as unknown as Viewer, new Navigation(camera));
@@ -211,5 +211,60 @@ describe("another scene on the same page", () => {
   it("of a script that was changed a little and began again is seen as the user left it", () => {
     const { view, left } = show("lost", ["one", 0.5, [0, 10]], ["one", 0.6, [1, 9]]);
     expect(view).toEqual(left);
+  });
+});
+
+describe("the view of a running scene", () => {
+  afterEach(() => void vi.unstubAllGlobals());
+
+  /** The views, one a look, of four balls, the last of which goes along a way; x in m. */
+  function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3]): FittedView[] {
+    vi.stubGlobal("innerWidth", 1280);
+    vi.stubGlobal("innerHeight", 720);
+    const camera = new PerspectiveCamera(42, 16 / 9);
+    const test = new TestWorld();
+    const navigation = new Navigation(camera);
+    let size = 1;
+    const viewer = {
+      camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
+      renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
+    };
+    const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+    test.join();
+    test.world.take({
+      type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
+      ground: 0, modules: [],
+    });
+    framing.changed("settings");
+    test.set("visual", visual(0, "ball", part("sphere", [0.1])));
+    const all = [...others.keys(), others.length];
+    test.set("body", ...all.map((slot) => bodyEntity(slot)));
+    const views: FittedView[] = [];
+    for (let time = 0; time < 9; time += 0.3) {
+      test.poses(all.map((slot) => body(slot, others[slot] ?? way(time))));
+      test.poses(all.map((slot) => body(slot, others[slot] ?? way(time))));
+      framing.update(0.3);
+      navigation.update(0.3);
+      views.push(navigation.goal);
+    }
+    return views;
+  }
+
+  it("stays where it is while one of four things goes away", () => {
+    const [first, ...later] = watch((time) => Math.min(3.5 + 0.7 * time, 9.9));
+    for (const view of later) expect(view).toEqual(first);
+  });
+
+  it("is widened once for one that swings out of it", () => {
+    const views = watch((time) => 4 + 1.6 * Math.sin(2 * time));
+    const seen = new Set(views.map(({ distance }) => distance.toFixed(6)));
+    expect(views.at(-1)!.distance).toBeGreaterThan(views[0].distance);
+    expect(seen.size).toBeLessThan(5);
+    expect(views.at(-1)).toEqual(views[18]);
+  });
+
+  it("follows the only thing", () => {
+    const views = watch((time) => 0.5 + time, []);
+    expect(views.at(-1)!.pivot[0]).toBeGreaterThan(8);
   });
 });

@@ -34,7 +34,7 @@ def build(count: int = COUNT, budget_ms: float | None = BUDGET) -> iota.World:
     system.usual_material = iota.Material(touches="obstacles")  # their own legs do not matter from afar
     length = APART * math.ceil(count / ROWS)
     world = iota.World(system, title=f"crowd: the valley is {length:.0f} m long", ground=0.0)
-    world.camera = iota.Camera(position=(-10.5, 3.4, 4.2), target=(9, 1.2, -0.6))
+    world.camera = iota.Camera(position=(-4.2, 2.3, 4.9), target=(4, 1.9, -0.5))
     crowd = Crowd(world, count)
     world.levels.viewers = lambda: [crowd.eye()]
     world.levels.budget_ms = budget_ms

@@ -1,40 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames the scene: calculates its place and size and the first view of it, again for a new scene or a changed window.
-// Light, ground and fog depend on it. A camera that the user has moved is not changed.
+// Light, ground and fog depend on it. The view stays with what most of the scene is: it is widened for what swings out of it, and does
+// not follow single things that go away. A camera that the user has moved is not changed.
 
 import { MathUtils } from "three";
-import { addOutermost, fitView, shareOutside, standBack, type FittedView, type Frame } from "../navigate/framing.ts";
+import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import type { LinkState } from "../net/connection.ts";
+import { BodyKind } from "../protocol/generated.ts";
 import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import type { World } from "../world/world.ts";
 import type { PageListener } from "./events.ts";
+import { apart, boxOf, circleThrough, makeItem, settingOf, settingSize, withoutFar, type Item } from "./subject.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
 /** The first view without a camera of the script: a little from the side and above. */
 const usualYaw = 0.4;
 const usualPitch = 0.24;
-/** Fixed things count if they are near movable ones: up to this many times their size. */
-const settingSize = 2.6;
 const lookEverySeconds = 0.3;
 /** Surroundings that are so many sizes of the scene away are not walked to. */
 const farthestWalk = 40;
 /** Largest number of sampled bodies. */
 const mostBodies = 1500;
-/** A change of size by this factor, or of place by this many sizes, is a new scene. */
+/** After a lost connection, a change of size by this factor, or of place by this many sizes, is a new scene. */
 const otherSize = 2.5;
 const otherPlace = 3;
+/** Labels and moving things count up to so many sizes of the scene from its middle. */
+const labelSize = 24;
+const nearSize = 2.5;
+/** What leaves the view widens it, up to so many times its size; a circle that a thing goes along may be larger. */
+const widest = 2;
+const widestCircle = 3;
+/** Of the things, so many may leave the view before it is widened at once: a single one may be on its way to far away. */
+const few = 0.1;
+/** What rests outside the view widens it up to so many sizes from its middle. */
+const restSize = 1.6;
+const mostWays = 100;
+/** A followed scene has room to move in. */
+const followDistance = 1.6;
+/** In s: from then on a thing that is far away has gone there. */
+const goneAfter = 5;
 /** A scene is at least so large, in distances from the script's camera to its target: a single rocket that flies has another size. */
 const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
 /** Places that widened the view of a narrow window; enough for a motion's reach. */
 const mostKept = 200;
-/** In css px. */
-const barHeight = 84;
-const tallBarHeight = 150;
-const narrowWidth = 560;
 /** The standard screen, for which scripts choose their cameras. */
 const usualSide = Math.tan(MathUtils.degToRad(21)) * (16 / 9);
 
@@ -42,10 +54,21 @@ export class Framing implements FramePart, PageListener {
   private readonly world_: World;
   private readonly viewer_: Viewer;
   private readonly navigation_: Navigation;
+  /** Corners of all things, in the order of the items, and places of drawings after them. */
   private readonly points_ = new Points();
   private readonly setting_ = new Points();
-  /** Points that have left the view and were added to it. */
+  /** The points of the first view, and those that widen it. */
+  private readonly base_ = new Points();
   private readonly kept_ = new Points();
+  /** What moves; and of that, what is part of the scene: not what has gone away. */
+  private moving_: readonly Item[] = [];
+  private members_: readonly Item[] = [];
+  /** Slots of the fixed bodies that are part of the scene, and the middle and size of what moves in it at first. */
+  private chosen_: ReadonlySet<number> = new Set();
+  private fixed_: readonly Item[] = [];
+  private core_ = { center: [0, 0, 0] as readonly [number, number, number], radius: 1 };
+  /** The latest places of members, by slot, oldest first; of many members only of those that have left the view. */
+  private readonly ways_ = new Map<number, (readonly [number, number, number])[]>();
   private framed_: Bounds | null = null;
   private script_ = "";
   private wait_ = 0;
@@ -54,6 +77,7 @@ export class Framing implements FramePart, PageListener {
   private rejoined_ = false;
   /** The aspect ratio of the window for which the first view was calculated. */
   private aspect_ = 0;
+  private margin_ = 0;
 
   constructor(world: World, viewer: Viewer, navigation: Navigation) {
     this.world_ = world;
@@ -63,17 +87,19 @@ export class Framing implements FramePart, PageListener {
 
   /** Moves to the first view of the present scene. */
   home(): void {
-    this.kept_.clear();
-    this.look_();
+    this.begin_(this.look_(true));
     this.frame_(true);
     this.navigation_.reset();
   }
 
   /** Brings all moving bodies into view, in the present direction. */
   showAll(): void {
-    this.look_();
+    this.look_(false);
+    this.setting_.clear();
+    for (const item of this.moving_) this.addItem_(item, this.setting_);
+    this.setting_.addAll(this.base_);
     const { yaw, pitch } = this.navigation_.goal;
-    const view = fitView(this.points_, yaw, Math.max(pitch, 0.05), this.calcFrame_(1));
+    const view = fitView(this.setting_, yaw, Math.max(pitch, 0.05), this.calcFrame_(1));
     if (view !== null) this.navigation_.goTo(view);
     this.viewer_.invalidate();
   }
@@ -100,8 +126,10 @@ export class Framing implements FramePart, PageListener {
     const { body } = this.world_.entities;
     camera.getWorldPosition(body.eye);
     body.pixels = (renderer.domElement.height * camera.projectionMatrix.elements[5]) / 2;
-    if (camera.aspect !== this.aspect_ && !this.viewer_.presenting) {
+    const { margins: { bottom } } = this.viewer_;
+    if ((camera.aspect !== this.aspect_ || bottom !== this.margin_) && !this.viewer_.presenting) {
       this.aspect_ = camera.aspect;
+      this.margin_ = bottom;
       this.frame_(false);
     }
     this.wait_ -= seconds;
@@ -110,15 +138,14 @@ export class Framing implements FramePart, PageListener {
     this.wait_ = lookEverySeconds;
     // A first look at a part of the scene would be kept: light and ground do not shrink at once.
     if (!this.world_.described || this.script_ === "") return;
-    const bounds = this.look_();
+    const seen = this.look_(this.framed_ === null);
+    const { framed_: framed } = this;
+    const isOther = framed === null || seen === null || !this.stays_ || seen.radius * otherSize < framed.radius || (this.rejoined_ && isAnother(seen, framed));
+    const bounds = isOther ? this.look_(true) : seen;
     if (bounds === null) return;
-    const isOther = this.framed_ === null || isAnother(bounds, this.framed_);
-    const before = isOther && this.rejoined_ ? null : this.framed_;
+    const before = isOther && this.rejoined_ ? null : framed;
     this.rejoined_ = false;
-    if (isOther) {
-      this.kept_.clear();
-      this.framed_ = bounds;
-    }
+    if (isOther) this.begin_(bounds);
     const { hasCamera, cameraPosition: eye, cameraTarget: target } = this.world_.settings;
     const chosen = hasCamera ? smallest * Math.hypot(...eye.map((value, axis) => value - target[axis])) : 0;
     const size = Math.max(bounds.radius, chosen, 1e-12);
@@ -139,44 +166,121 @@ export class Framing implements FramePart, PageListener {
 
   // --- inside
 
-  /** Keeps everything in view unless the script or the user has set the camera. */
+  /** Takes the things that were just looked at as the scene to show. */
+  private begin_(bounds: Bounds | null): Bounds | null {
+    this.kept_.clear();
+    this.ways_.clear();
+    this.base_.clear();
+    this.addScene_(this.base_);
+    this.framed_ = bounds;
+    return bounds;
+  }
+
+  /** Whether half of all things or more are still in the scene. */
+  private get stays_(): boolean {
+    const fixed = this.chosen_.size;
+    return 2 * (this.members_.length + fixed) >= this.moving_.length + fixed;
+  }
+
+  /** Keeps the scene in view unless the script or the user has set the camera. */
   private follow_(bounds: Bounds): void {
-    const view = this.calcView_(this.points_);
     const shown = this.navigation_.home;
-    const frame = this.calcFrame_(1.04);
-    const middle = new Points();
-    middle.add(...bounds.center);
-    // A scene that falls out of the picture is followed; parts that swing out of it widen the view.
-    this.falling_ = shareOutside(middle, shown, this.calcFrame_(0.7)) > 0;
-    if (this.falling_ && view !== null) {
-      this.kept_.clear();
-      this.framed_ = bounds;
-      this.navigation_.setHome({ ...view, distance: Math.max(view.distance, shown.distance) });
+    // A scene that falls out of the picture is followed.
+    this.falling_ = this.isLeaving_(shown);
+    if (this.falling_) {
+      const view = this.calcView_(this.begin_(this.look_(true)) === null ? this.kept_ : this.base_);
+      if (view === null) return;
+      this.navigation_.setHome({ ...view, distance: Math.max(followDistance * view.distance, shown.distance) });
       this.navigation_.follow();
       return;
     }
-    const share = shareOutside(this.points_, shown, frame);
-    // For a few that fly away, markers at the edge are shown instead.
-    if (share === 0 || share > 0.5) return;
-    this.kept_.addAll(this.points_);
-    const reach = this.kept_.bounds();
-    if (reach === null || this.framed_ === null || reach.radius > 2 * this.framed_.radius) {
-      this.kept_.clear();
+    const frame = this.calcFrame_(1.04);
+    const out = this.members_.filter((item) => {
+      const { setting_: corners } = this;
+      corners.clear();
+      this.addItem_(item, corners);
+      return shareOutside(corners, shown, frame) > 0;
+    });
+    const { kept_: kept } = this;
+    const before = kept.count;
+    let most = widest;
+    if (out.length > 1 && out.length > few * (this.moving_.length + this.chosen_.size)) {
+      this.setting_.clear();
+      for (const item of out) this.addItem_(item, this.setting_);
+      addOutermost(kept, this.setting_, shown, frame);
+    } else {
+      most = this.addReturning_(out) ? widestCircle : widest;
+    }
+    if (kept.count === before) this.addNewDrawings_(shown, frame);
+    if (kept.count === before) return;
+    this.setting_.clear();
+    this.setting_.addAll(this.base_);
+    this.setting_.addAll(kept);
+    const reach = this.setting_.bounds();
+    const view = this.calcView_(this.setting_);
+    if (reach === null || view === null || reach.radius > most * Math.max(bounds.radius, this.framed_?.radius ?? 0)) {
+      kept.count = before;
       return;
     }
-    const larger = this.calcView_(this.kept_);
-    if (this.kept_.count > 4000) this.kept_.clear();
-    if (larger === null) return;
-    this.navigation_.setHome(larger);
+    this.navigation_.setHome(view);
     this.navigation_.reset();
+  }
+
+  /** Whether the middle of all things leaves the view, and most of them do. */
+  private isLeaving_(shown: FittedView): boolean {
+    const { setting_: places, moving_: moving, chosen_: { size: fixed } } = this;
+    places.clear();
+    for (const { center } of moving) places.add(...center);
+    // It is brought well into the picture.
+    const inner = this.calcFrame_(this.falling_ ? 0.25 : 0.7);
+    const away = shareOutside(places, shown, inner) * moving.length;
+    if (2 * away <= moving.length + fixed) return false;
+    const middle = withoutFar(moving);
+    places.clear();
+    places.add(...boxOf(middle).center);
+    return shareOutside(places, shown, inner) > 0;
+  }
+
+  /** Adds places of single things outside the view that turn back, rest or circle; whether one circles. */
+  private addReturning_(out: readonly Item[]): boolean {
+    const { framed_: framed, ways_: ways, kept_: kept } = this;
+    if (framed === null) return false;
+    const { members_: members } = this;
+    const slots = new Set(members.map(({ slot }) => slot));
+    for (const slot of ways.keys()) if (!slots.has(slot)) ways.delete(slot);
+    for (const { slot, center } of members.length > mostWays ? out : members) ways.set(slot, [...(ways.get(slot) ?? []), center].slice(-3));
+    let circles = false;
+    for (const item of out) {
+      const way = ways.get(item.slot)!;
+      if (way.length < 2 || item.slot < 0) continue;
+      const [far, before] = [apart(item.center, framed.center), apart(way.at(-2)!, framed.center)];
+      const rests = way.length === 3 && apart(way[0], way[2]) < 0.01 * framed.radius && far < restSize * framed.radius;
+      if (rests || far < before - 0.005 * framed.radius) this.addItem_(item, kept);
+      const circle = way.length === 3 ? circleThrough(way[0], way[1], way[2]) : null;
+      if (circle === null || circle.radius > nearSize * framed.radius || apart(circle.center, framed.center) > 1.5 * framed.radius) continue;
+      circles = true;
+      for (const place of circle.points) kept.add(...place);
+    }
+    return circles;
+  }
+
+  /** Adds what the script has drawn or labeled since. */
+  private addNewDrawings_(shown: FittedView, frame: Frame): void {
+    const { setting_: drawn } = this;
+    drawn.clear();
+    this.addSetting_(drawn);
+    if (shareOutside(drawn, shown, frame) > 0) addOutermost(this.kept_, drawn, shown, frame);
   }
 
   /** Brings what moves out of a narrow window into view, as far as the standard one would show it. */
   private widen_(): void {
     if (this.narrowness_ <= 1 || this.kept_.count >= mostKept) return;
     const { home } = this.navigation_;
-    if (shareOutside(this.points_, home, this.calcFrame_(1.04)) === 0) return;
-    addOutermost(this.kept_, this.points_, home, this.calcFrame_(1));
+    const { setting_: scene } = this;
+    scene.clear();
+    this.addScene_(scene);
+    if (shareOutside(scene, home, this.calcFrame_(1.04)) === 0) return;
+    addOutermost(this.kept_, scene, home, this.calcFrame_(1));
     this.frame_(false);
   }
 
@@ -197,30 +301,52 @@ export class Framing implements FramePart, PageListener {
 
   private calcHome_(): FittedView | null {
     const { hasCamera, cameraPosition: eye, cameraTarget: target } = this.world_.settings;
-    if (!hasCamera) {
-      this.points_.addAll(this.kept_);
-      return this.calcView_(this.points_);
-    }
-    // A narrow window shows the same width as the standard one, up to that of the scene.
     this.setting_.clear();
-    this.setting_.addAll(this.points_);
+    this.setting_.addAll(this.base_);
     this.setting_.addAll(this.kept_);
+    if (!hasCamera) return this.calcView_(this.setting_);
+    // A narrow window shows the same width as the standard one, up to that of the scene.
     this.addDrawn_(this.setting_);
     return standBack(this.setting_, eye, target, this.calcFrame_(1), this.narrowness_);
   }
 
+  /** Shows the points, and labels at their sizes. */
   private calcView_(points: Points): FittedView | null {
-    const view = fitView(points, usualYaw, usualPitch, this.calcFrame_(1));
+    const frame = this.calcFrame_(1);
+    const { count } = points;
+    let view = fitView(points, usualYaw, usualPitch, frame);
+    // Labels are as large as the view is far away.
+    for (let round = 0; round < 3 && view !== null; round++) {
+      points.count = count;
+      this.addLabels_(points, view);
+      if (points.count === count) break;
+      view = fitView(points, usualYaw, usualPitch, frame);
+    }
+    points.count = count;
     if (view === null) return null;
     // A single point has no size.
     return { ...view, distance: Math.max(view.distance, 1.6 * this.viewer_.size) };
+  }
+
+  /** Corners of the labels of a constant size, as they are seen in a view. */
+  private addLabels_(points: Points, { distance, yaw, pitch }: FittedView): void {
+    const [right, up] = viewAxes(yaw, pitch);
+    for (const moving of [false, true]) {
+      this.world_.entities.label.forEachPlate(moving, ({ x, y, z }, width, height) => {
+        if (apart([x, y, z], this.core_.center) > (moving ? nearSize : labelSize) * Math.max(this.core_.radius, 1e-12)) return;
+        const [a, b] = [(width * distance) / 2, (height * distance) / 2];
+        for (const [across, over] of [[a, b], [a, -b], [-a, b], [-a, -b]]) {
+          points.add(x + across * right[0] + over * up[0], y + over * up[1], z + across * right[2] + over * up[2]);
+        }
+      });
+    }
   }
 
   /** The part of the picture without bar and edges, enlarged by the factor `larger`. */
   private calcFrame_(larger: number): Frame {
     const { camera } = this.viewer_;
     const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
-    const bar = this.viewer_.filming ? 0.06 : (innerWidth < narrowWidth ? tallBarHeight : barHeight) / innerHeight;
+    const bar = this.viewer_.filming ? 0.06 : this.viewer_.margins.bottom / innerHeight;
     return {
       side: Math.min(0.9 * larger, 1) * up * camera.aspect,
       up: Math.min(0.88 * larger, 1) * up,
@@ -228,52 +354,111 @@ export class Framing implements FramePart, PageListener {
     };
   }
 
-  /** Collects the corners of the scene and returns its bounds; null if it is empty. */
-  private look_(): Bounds | null {
-    const { points_: points, setting_: setting, world_: { entities, ground } } = this;
-    const every = Math.ceil(entities.body.count / mostBodies);
+  /** Collects what is in the world and returns the bounds of the scene; null if there is none. `fresh`: chooses what is part of it. */
+  private look_(fresh: boolean): Bounds | null {
+    const { points_: points, framed_: framed, world_: { entities: { body, particleSet }, settings: { hasCamera }, time, ground } } = this;
+    const every = Math.ceil(body.count / mostBodies);
     points.clear();
-    entities.body.addPoints(points, every);
-    if (points.count === 0) entities.particleSet.addPoints(points);
-    if (points.count === 0) entities.body.forEachSetting(setting, (corners) => { points.addAll(corners); }, every);
-    for (const view of Object.values<EntityView<never>>(entities)) view.addMoving?.(points);
-    if (points.count === 0) this.addDrawn_(points);
-    let bounds = points.bounds();
-    if (bounds === null) return null;
-    const most = settingSize * Math.max(bounds.radius, 1e-12);
-    const moving = bounds;
-    const take = (corners: Points) => {
-      const its = corners.bounds();
-      if (its === null) return;
-      const apart = Math.hypot(...its.center.map((value, axis) => value - moving.center[axis]));
-      if (apart + its.radius < most) points.addAll(corners);
+    let moving: Item[] = [];
+    const fixed: Item[] = [];
+    const take = (first: number, slot: number, moves: boolean) => {
+      const item = makeItem(points, first, slot, moves);
+      if (item !== null) (moves ? moving : fixed).push(item);
     };
-    setting.clear();
-    this.addDrawn_(setting);
-    // One by one: a single thing far away leaves the others counted.
-    const [middleX, middleY, middleZ] = moving.center;
-    for (let at = 0; at < 3 * setting.count; at += 3) {
-      const x = setting.xyz[at];
-      const y = setting.xyz[at + 1];
-      const z = setting.xyz[at + 2];
-      if (Math.hypot(x - middleX, y - middleY, z - middleZ) < most) points.add(x, y, z);
+    body.forEachDrawn((slot, kind) => {
+      const first = points.count;
+      body.addCorners(points, slot);
+      take(first, slot, kind === BodyKind.dynamic);
+    }, every);
+    if (moving.length === 0) {
+      const { setting_: sparks } = this;
+      sparks.clear();
+      particleSet.addPoints(sparks);
+      for (let at = 0; at < 3 * sparks.count; at += 3) {
+        points.add(sparks.xyz[at], sparks.xyz[at + 1], sparks.xyz[at + 2]);
+        take(points.count - 1, -1, true);
+      }
     }
-    entities.body.forEachSetting(setting, take, every);
-    bounds = points.bounds()!;
+    if (moving.length === 0) moving = fixed.splice(0);
+    if (moving.length === 0) {
+      const first = points.count;
+      this.addDrawn_(points);
+      take(first, -1, true);
+    }
+    this.moving_ = moving;
+    if (moving.length === 0) return null;
+    if (fresh || framed === null) {
+      // What stands is where the scene was made.
+      const usual = time > goneAfter ? new Set(withoutFar([...moving, ...fixed])) : null;
+      const there = usual === null ? [] : moving.filter((item) => usual.has(item));
+      this.members_ = there.length > 0 ? there : withoutFar(moving);
+      this.core_ = boxOf(this.members_);
+      this.chosen_ = new Set(settingOf(this.members_, fixed, !hasCamera).map(({ slot }) => slot));
+    } else {
+      const most = nearSize * Math.max(framed.radius, 1e-12);
+      this.members_ = moving.filter(({ center }) => apart(center, framed.center) < most);
+    }
+    this.fixed_ = fixed.filter((item) => (
+      this.chosen_.has(item.slot) || (!fresh && framed !== null && apart(item.center, framed.center) + item.radius < framed.radius)
+    ));
+    const { setting_: scene } = this;
+    scene.clear();
+    this.addScene_(scene);
+    let bounds = scene.bounds();
     // The place of the shadow below.
-    if (ground !== null && ground < bounds.lowest && bounds.lowest - ground < 1.5 * bounds.radius) {
+    if (bounds !== null && ground !== null && ground < bounds.lowest && bounds.lowest - ground < 1.5 * bounds.radius) {
       points.add(bounds.center[0], ground, bounds.center[2]);
-      bounds = points.bounds()!;
+      take(points.count - 1, -1, false);
+      this.fixed_ = [...this.fixed_, fixed.at(-1)!];
+      scene.add(bounds.center[0], ground, bounds.center[2]);
+      bounds = scene.bounds();
     }
     return bounds;
   }
 
-  /** From a place to the farthest corner of what is fixed, m. */
-  private calcReach_([x, y, z]: readonly [number, number, number]): number {
-    let reach = 0;
-    this.world_.entities.body.forEachSetting(this.setting_, ({ xyz, count }) => {
-      for (let at = 0; at < 3 * count; at += 3) reach = Math.max(reach, Math.hypot(xyz[at] - x, xyz[at + 1] - y, xyz[at + 2] - z));
+  private addItem_({ first, end }: Item, points: Points): void {
+    const { xyz } = this.points_;
+    for (let at = 3 * first; at < 3 * end; at += 3) points.add(xyz[at], xyz[at + 1], xyz[at + 2]);
+  }
+
+  /** Adds what is part of the scene. */
+  private addScene_(points: Points): void {
+    for (const item of this.members_) this.addItem_(item, points);
+    const drawn = new Points();
+    for (const view of Object.values<EntityView<never>>(this.world_.entities)) view.addMoving?.(drawn);
+    this.addNear_(drawn, nearSize * (this.framed_?.radius ?? Infinity), points);
+    this.addSetting_(points);
+  }
+
+  /** Adds what is part of the scene and does not move. */
+  private addSetting_(points: Points): void {
+    for (const item of this.fixed_) this.addItem_(item, points);
+    const drawn = new Points();
+    this.addDrawn_(drawn);
+    this.addNear_(drawn, settingSize * Math.max(this.core_.radius, 1e-12), points);
+    this.world_.entities.label.forEachPlate(false, ({ x, y, z }) => {
+      if (apart([x, y, z], this.core_.center) < labelSize * Math.max(this.core_.radius, 1e-12)) points.add(x, y, z);
     });
+  }
+
+  /** Adds those of the points that are near the middle of the scene, one by one: a single thing far away leaves the others counted. */
+  private addNear_({ xyz, count }: Points, most: number, points: Points): void {
+    const { center } = this.core_;
+    for (let at = 0; at < 3 * count; at += 3) {
+      if (apart([xyz[at], xyz[at + 1], xyz[at + 2]], center) < most) points.add(xyz[at], xyz[at + 1], xyz[at + 2]);
+    }
+  }
+
+  /** From a place to the farthest corner of what is fixed or has gone away, m. */
+  private calcReach_([x, y, z]: readonly [number, number, number]): number {
+    const { world_: { entities: { body } }, setting_: corners } = this;
+    corners.clear();
+    body.forEachDrawn((slot, kind) => {
+      if (kind !== BodyKind.dynamic) body.addCorners(corners, slot);
+    });
+    let reach = 0;
+    for (let at = 0; at < 3 * corners.count; at += 3) reach = Math.max(reach, Math.hypot(corners.xyz[at] - x, corners.xyz[at + 1] - y, corners.xyz[at + 2] - z));
+    for (const { center } of this.moving_) reach = Math.max(reach, apart(center, [x, y, z]));
     return reach;
   }
 

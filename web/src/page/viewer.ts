@@ -35,8 +35,6 @@ export interface Timing {
   decodeMs: number;
 }
 
-/** Number of warm-up frames before the page is shown. */
-const warmFrames = 3;
 const longestFrameMs = 100;
 
 /** A running mean that forgets half in about 14 values. */
@@ -61,6 +59,9 @@ export class Viewer {
   /** The place of a headset's user in the world, m: the head, and three numbers for each hand. Null and none before a flat screen. */
   readonly user = { head: null as Vector3 | null, hands: [] as number[] };
 
+  /** Height of the page's own controls at the lower edge, css px: a view is framed above them. */
+  readonly margins = { bottom: 84 };
+
   /** Distance from the camera to what it looks at, m. */
   lookDistance: () => number = () => this.stage.size;
 
@@ -69,7 +70,7 @@ export class Viewer {
   private ready_: () => void = () => {};
   private last_ = 0;
   private readonly redraw_ = new Redraw();
-  private warmed_ = 0;
+  private shown_: "nothing" | "warm" | "ready" = "nothing";
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
@@ -149,7 +150,7 @@ export class Viewer {
     for (const part of parts) part.update?.(seconds, started);
     for (const part of parts) part.aim?.(seconds, frame);
     for (const part of parts) part.interact?.(seconds);
-    const warming = this.warmed_ < warmFrames && this.worthShowing_();
+    const warming = this.shown_ === "nothing" && this.worthShowing_();
     if (warming) for (const part of parts) part.warmUp?.();
     for (const part of parts) part.draw?.(seconds, frame);
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
@@ -159,7 +160,14 @@ export class Viewer {
       if (this.presenting || !this.renderer.shadowMap.enabled) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);
-      if (warming && ++this.warmed_ === warmFrames) this.ready_();
+      // The page shows the next picture: this one has one of each thing that may appear later.
+      if (this.shown_ === "warm") {
+        this.shown_ = "ready";
+        this.ready_();
+      } else if (warming) {
+        this.shown_ = "warm";
+        this.invalidate();
+      }
     }
     timing.scriptMs = smooth(timing.scriptMs, scripted - started);
     timing.renderMs = smooth(timing.renderMs, performance.now() - scripted);

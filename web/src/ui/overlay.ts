@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's own controls: one thin bar, time readings, a hint at the pointer, actions, cards, help.
+// The page's own controls: one thin bar, times on request, a hint at the pointer, actions, cards, help.
 
 import { isAllowed, type Command } from "../commands/command.ts";
 import type { Grab, Pointer } from "../interact/gestures.ts";
@@ -16,13 +16,15 @@ import { byId, keyName, make, placeNear } from "./dom.ts";
 import { Keys } from "./keys.ts";
 import type { PeopleList } from "./people_list.ts";
 import type { Profile } from "./profile.ts";
-import { Welcome } from "./welcome.ts";
 
 const idleAfterMs = 7000;
 const welcomeMs = 15000;
 /** N. */
 const leastForce = 0.05;
 const meterEveryMs = 250;
+/** Between the page's controls and what is framed, css px; and the largest share of the window below it. */
+const reservedGap = 24;
+const mostReserved = 0.3;
 const linkCard = "link";
 const watcherWelcome = "You watch: drag to look around";
 const peopleSign = "M9 11a3.5 3.5 0 1 0 0-7 3.5 3.5 0 0 0 0 7M2.5 20v-1a6.5 5 0 0 1 13 0v1M15.5 4.5a3.5 3.5 0 0 1 0 6.3M18 14.6a6 5 0 0 1 3.5 4.4v1";
@@ -42,7 +44,7 @@ export class Overlay implements PageListener, FramePart {
   private readonly chosen_ = byId("chosen", HTMLElement);
   private readonly bar_ = byId("bar", HTMLElement);
   private readonly meter_ = byId("meter", HTMLElement);
-  private readonly welcome_: Welcome;
+  private readonly welcome_ = byId("welcome", HTMLElement);
   private readonly help_ = byId("help", HTMLDialogElement);
   private profile_: Profile | null = null;
   private profiles_ = false;
@@ -60,7 +62,6 @@ export class Overlay implements PageListener, FramePart {
   constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
     this.page_ = page;
     this.canvas_ = canvas;
-    this.welcome_ = new Welcome(page, byId("welcome", HTMLElement), byId("foot", HTMLElement));
     const showBar = () => this.showBar();
     page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
     page.commands.add(this.peopleCommand_(), this.helpCommand_(), this.profileCommand_());
@@ -87,7 +88,8 @@ export class Overlay implements PageListener, FramePart {
     theme.addEventListener("change", applyTheme);
     applyTheme();
     window.setInterval(() => this.refreshMeter_(), meterEveryMs);
-    window.setTimeout(() => this.welcome_.leave(), welcomeMs);
+    window.setTimeout(() => this.welcome_.classList.add("gone"), welcomeMs);
+    window.addEventListener("resize", () => this.reserve_());
     showBar();
   }
 
@@ -182,7 +184,7 @@ export class Overlay implements PageListener, FramePart {
   }
 
   grab(grab: Grab): void {
-    this.welcome_.leave();
+    this.welcome_.classList.add("gone");
     this.canvas_.classList.toggle("grabbing", this.page_.gestures.grabs.length > 0);
     if (grab.pointer.name === "mouse") this.refreshHint_();
   }
@@ -208,7 +210,7 @@ export class Overlay implements PageListener, FramePart {
   private profileCommand_(): Command {
     return {
       name: "profile",
-      help: "where the time of a frame goes",
+      help: "times of a step and of a frame",
       keys: ["i"],
       title: () => "Profile",
       active: () => this.profiles_,
@@ -257,7 +259,7 @@ export class Overlay implements PageListener, FramePart {
   private takeRole_(role: Role): void {
     if (role === this.role_) return;
     this.role_ = role;
-    if (role === Role.viewer) this.welcome_.say(watcherWelcome);
+    if (role === Role.viewer) this.welcome_.textContent = watcherWelcome;
     this.takeCommands_();
   }
 
@@ -272,6 +274,14 @@ export class Overlay implements PageListener, FramePart {
     this.bodyHint_ = (this.role_ === Role.viewer ? [] : ["drag", ...hints]).join("; ");
     this.closeMenu_();
     this.refreshStrip_();
+    this.reserve_();
+  }
+
+  /** Keeps the place of bar, buttons and start hint free of what is framed. Buttons that come and go with a selection do not change it. */
+  private reserve_(): void {
+    const tops = [this.bar_, this.strip_, this.welcome_].filter(({ childNodes }) => childNodes.length > 0).map((part) => part.getBoundingClientRect().top);
+    this.page_.viewer.margins.bottom = Math.min(innerHeight - Math.min(...tops) + reservedGap, mostReserved * innerHeight);
+    this.page_.viewer.invalidate();
   }
 
   private refreshBar_(): void {
@@ -344,13 +354,14 @@ export class Overlay implements PageListener, FramePart {
 
   private refreshMeter_(): void {
     this.refreshBar_();
-    this.welcome_.place();
+    this.meter_.hidden = !this.profiles_;
+    if (!this.profiles_) return;
     const { world, viewer: { timing } } = this.page_;
     const step = make("b", "", world.stepMs.toFixed(2));
     const frame = make("b", "", timing.frameMs.toFixed(1));
     this.meter_.replaceChildren("step ", step, " ms\nframe ", frame, " ms");
     this.meter_.title = `script ${timing.scriptMs.toFixed(2)} ms a frame · step ${world.step} · ${world.time.toFixed(1)} s · gap ${world.gap.toExponential(1)} m`;
-    if (!this.profiles_ || this.profile_ === null) return;
+    if (this.profile_ === null) return;
     this.profile_.refresh();
     this.meter_.append(this.profile_.element);
   }

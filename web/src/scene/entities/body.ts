@@ -310,32 +310,25 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return this.bodies_.keys();
   }
 
-  /** Adds the corners of all drawn bodies that can be held, or of every n-th one. */
-  addPoints(points: Points, every = 1): void {
-    for (const batches of this.batches_.values()) {
-      for (const { pool, placements } of batches) {
-        for (let index = 0; index < pool.count; index += every) {
-          const slot = pool.members[index];
-          if (this.poses.known[slot] !== 1 || !Number.isFinite(this.reach[slot])) continue;
-          if (this.bodies_.get(slot)?.entity.kind !== BodyKind.dynamic) continue;
-          writeMatrix(this.position, this.rotation, slot, placements, placementSize * index, 1, this.matrix_.elements, 0);
-          addCorners(points, pool.mesh.geometry, this.matrix_);
-        }
-      }
+  /** Adds the corners of all drawn bodies that can be held. */
+  addPoints(points: Points): void {
+    this.forEachDrawn((slot, kind) => {
+      if (kind === BodyKind.dynamic) this.addCorners(points, slot);
+    });
+  }
+
+  /** Calls `visit` with each drawn body that has a place and an end, or with every n-th. */
+  forEachDrawn(visit: (slot: number, kind: BodyKind) => void, every = 1): void {
+    let number = 0;
+    for (const { entity: { id: { slot }, kind }, instances } of this.bodies_.values()) {
+      if (instances.length === 0 || number++ % every !== 0) continue;
+      if (this.poses.known[slot] === 1 && Number.isFinite(this.reach[slot])) visit(slot, kind);
     }
   }
 
-  /** Calls `take` with the corners of each drawn body that cannot be held, or of every n-th; the points are only valid during the
-   * call. */
-  forEachSetting(points: Points, take: (points: Points) => void, every = 1): void {
-    let number = 0;
-    for (const { entity: { id: { slot }, kind }, instances } of this.bodies_.values()) {
-      if (kind === BodyKind.dynamic || instances.length === 0 || number++ % every !== 0) continue;
-      if (this.poses.known[slot] !== 1 || !Number.isFinite(this.reach[slot])) continue;
-      points.clear();
-      for (const instance of instances) addCorners(points, instance.mesh.geometry, this.placed_(slot, instance));
-      take(points);
-    }
+  /** Adds the corners of a drawn body. */
+  addCorners(points: Points, slot: number): void {
+    for (const instance of this.bodies_.get(slot)?.instances ?? noInstances) addCorners(points, instance.mesh.geometry, this.placed_(slot, instance));
   }
 
   /** The meshes of triangles of bodies that stay where they are; a place is only valid until the next one. */

@@ -4,7 +4,7 @@
 
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
 import type { LabelEntity } from "../../protocol/generated.ts";
-import { placeOf } from "../anchors.ts";
+import { moves, placeOf } from "../anchors.ts";
 import { liftApart, upAt, type Plate } from "../label_layout.ts";
 import type { Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
@@ -44,6 +44,7 @@ export class LabelView implements EntityView<LabelEntity> {
   private readonly eye_: Vector3;
   private readonly labels_ = new Map<number, Label>();
   private readonly b_ = new Vector3();
+  private readonly place_ = new Vector3();
   private readonly plates_: Plate[] = [];
 
   /** `eye`: place of the viewer, world, m; kept up to date by its owner. */
@@ -82,6 +83,15 @@ export class LabelView implements EntityView<LabelEntity> {
     label.texture?.dispose();
   }
 
+  /** The places of those with a constant size, and that size at a distance of 1. `moving`: of those on bodies, or of all others. */
+  forEachPlate(moving: boolean, visit: (place: Vector3, width: number, height: number) => void): void {
+    const usual = this.usual_ / plateHeight;
+    for (const { entity, canvas } of this.labels_.values()) {
+      if (entity.height > 0 || canvas.width === 0 || moves(entity.a) !== moving) continue;
+      if (this.placeOf_(entity, this.place_)) visit(this.place_, usual * canvas.width, usual * canvas.height);
+    }
+  }
+
   /** Corners of those with a height. */
   addPlaces(points: Points): void {
     for (const { entity: { height }, sprite: { position, scale, visible } } of this.labels_.values()) {
@@ -96,17 +106,13 @@ export class LabelView implements EntityView<LabelEntity> {
   }
 
   draw(seconds: number): void {
-    const usual = usualHeight * Math.min(1, (1.2 * innerWidth) / innerHeight);
-    const { plates_: plates, eye_: eye } = this;
+    const { plates_: plates, eye_: eye, usual_: usual } = this;
     plates.length = 0;
-    for (const { entity: { a, b, offset, height }, sprite, canvas, plate } of this.labels_.values()) {
+    for (const { entity, sprite, canvas, plate } of this.labels_.values()) {
       const { position } = sprite;
-      sprite.visible = canvas.width > 0 && placeOf(this.poses_, a, position) && placeOf(this.poses_, b, this.b_);
+      const { height } = entity;
+      sprite.visible = canvas.width > 0 && this.placeOf_(entity, position);
       if (!sprite.visible) continue;
-      position.add(this.b_).multiplyScalar(0.5);
-      position.x += offset[0];
-      position.y += offset[1];
-      position.z += offset[2];
       const away = position.distanceTo(eye);
       const line = height > 0 ? height / capital : usual * away;
       sprite.scale.set((line * canvas.width) / plateHeight, (line * canvas.height) / plateHeight, 1);
@@ -126,6 +132,21 @@ export class LabelView implements EntityView<LabelEntity> {
       const { position } = label.sprite;
       position.addScaledVector(upAt(label.plate.direction, this.b_), label.lift * position.distanceTo(eye));
     }
+  }
+
+  /** Height of a line's plate at a distance of 1 m, m, in this window. */
+  private get usual_(): number {
+    return usualHeight * Math.min(1, (1.2 * innerWidth) / innerHeight);
+  }
+
+  /** False if what it is on has no pose yet. */
+  private placeOf_({ a, b, offset }: LabelEntity, out: Vector3): boolean {
+    if (!placeOf(this.poses_, a, out) || !placeOf(this.poses_, b, this.b_)) return false;
+    out.add(this.b_).multiplyScalar(0.5);
+    out.x += offset[0];
+    out.y += offset[1];
+    out.z += offset[2];
+    return true;
   }
 }
 

@@ -64,11 +64,6 @@ export class NailView extends EntityRecords<NailEntity> {
     super.destroy(slot);
   }
 
-  /** Calls a function with the place of each nail, world, m. */
-  forEachPlace(take: (place: Vector3) => void): void {
-    for (const { at } of this.records_.values()) if (placeOf(this.poses_, at, this.place_)) take(this.place_);
-  }
-
   draw(): void {
     if (!this.changed_ && !this.moves_ && this.drawnRadius_ === this.pinRadius) return;
     this.changed_ = this.moves_ = false;
