@@ -89,7 +89,7 @@ describe("the page of a chain", () => {
     for (let body = 1; body < before.length; body++) expect(Math.abs(twist(before[body - 1], before[body]))).toBeLessThan(0.8);
   });
 
-  it("lets a link be dragged by mouse: it follows, is red and selected, and swings back", async () => {
+  it("lets a link be dragged by mouse: it follows, is outlined and selected, and swings back", async () => {
     const body = 15;
     await tab.page.mouse.move(...(await tab.slack(await tab.take(body), 0.3)), { steps: 6 });
     await tab.until("the server knows the hold", () => iota.holds().length === 1);

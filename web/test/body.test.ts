@@ -156,11 +156,11 @@ describe("bodies", () => {
   it("have the script's name, else that of their class, and another name moves nothing", () => {
     const test = told(2);
     const { body: bodies } = test.world.entities;
-    expect([0, 1, 2].map((slot) => bodies.nameOf(slot))).toEqual(["link 0", "link 1", ""]);
+    expect([0, 1, 2].map((slot) => bodies.nameOf(slot))).toEqual(["link", "link", ""]);
     const places = test.meshes()[0].instanceMatrix;
     const members = [...test.meshes()].map((mesh) => mesh.count);
     const made = madeBy(() => test.set("body", bodyEntity(1, { name: "left arm" })));
-    expect([0, 1].map((slot) => bodies.nameOf(slot))).toEqual(["link 0", "left arm"]);
+    expect([0, 1].map((slot) => bodies.nameOf(slot))).toEqual(["link", "left arm"]);
     expect([0, 1].map((slot) => bodies.ownNameOf(slot))).toEqual(["", "left arm"]);
     expect(bodies.renamed).toBe(1);
     expect(made).toEqual({ geometries: 0, objects: 0 });

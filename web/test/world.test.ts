@@ -42,16 +42,16 @@ describe("the world", () => {
   it("names bodies by the script's visuals and lets only dynamic ones be held", () => {
     const { world } = told();
     const { body: bodies } = world.entities;
-    expect(bodies.nameOf(7)).toBe("link 7");
+    expect(bodies.nameOf(7)).toBe("link");
     expect(bodies.nameOf(8)).toBe("");
     expect([...bodies.pickable.subarray(0, bodies.pickableCount)]).toEqual([0, 7]);
   });
 
-  it.each(["(solid)", "visual 3"])("names bodies of the visual %s, which no script has named, by their number alone", (name) => {
+  it.each(["(solid)", "visual 3"])("names bodies of the visual %s, which no script has named, by the word for their shape", (name) => {
     const test = told();
     test.set("visual", visual(2, name, part("sphere", [0.1])));
     test.set("body", bodyEntity(4, { visual: 2 }));
-    expect(test.world.entities.body.nameOf(4)).toBe("body 4");
+    expect(test.world.entities.body.nameOf(4)).toBe("ball");
   });
 
   it("keeps the style that its own user chose when the script's style changes", () => {

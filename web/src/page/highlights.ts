@@ -14,6 +14,7 @@ import type { FramePart, Viewer } from "./viewer.ts";
 /** Colors of other people, by client number. */
 export const others = ["#8d6fd1", "#3f7fd0", "#c2863a", "#4c9a52", "#c0508e"].map((code) => new Color(code));
 const mostOthers = 6;
+const mostHeld = 8;
 /** Several selected bodies are tinted: an outline for each would be drawn one by one. */
 const severalTint = 0.6;
 /** A hold that the server has not confirmed after this time was refused. */
@@ -35,6 +36,7 @@ export class Highlights implements FramePart {
   private readonly selected_: Outline;
   private readonly hovered_: Outline;
   private readonly others_: Outline[] = [];
+  private readonly held_: Outline[] = [];
   private readonly eye_ = new Vector3();
   private readonly point_ = new Float32Array(3);
 
@@ -47,6 +49,7 @@ export class Highlights implements FramePart {
     this.selected_ = makeOutline(this.bodies_, palette.selected, 0.0026);
     this.hovered_ = makeOutline(this.bodies_, palette.hoverOnLight, 0.0022);
     for (let index = 0; index < mostOthers; index++) this.others_.push(makeOutline(this.bodies_, new Color(), 0.0018));
+    for (let index = 0; index < mostHeld; index++) this.held_.push(makeOutline(this.bodies_, new Color(), 0.0032));
   }
 
   get root(): Group {
@@ -65,11 +68,11 @@ export class Highlights implements FramePart {
     for (const body of this.selection_.several) this.bodies_.setTint(body, palette.selected, severalTint);
     if (this.selection_.several.size > 0) this.bodies_.setTint(selected, palette.selected, severalTint);
     this.lines_.begin();
-    this.markOthersHolds_();
+    for (const outline of this.held_) outline.body = -1;
     this.markOwnHolds_();
+    this.markOthersHolds_();
     this.outlineOthers_();
-    this.hovered_.body = hovered;
-    // A held body is tinted red, without an outline.
+    this.hovered_.body = hovered === held ? -1 : hovered;
     this.selected_.body = selected === hovered || selected === held ? -1 : selected;
   }
 
@@ -90,7 +93,7 @@ export class Highlights implements FramePart {
     for (let index = 0; index < holdCount; index++) {
       const hold = holds[index];
       if (hold.client === this.session_.clientId) continue;
-      this.bodies_.setTint(hold.body, palette.held, 0.85);
+      this.outlineHeld_(hold.body, others[hold.client % others.length]);
       this.lines_.add(hold.point, hold.target, hold.force, this.eye_, 0.8);
     }
   }
@@ -100,17 +103,25 @@ export class Highlights implements FramePart {
     for (const grab of this.selection_.gestures.grabs) {
       const force = this.selection_.confirmedForce(grab);
       if (force < 0 && now - grab.startedAt > confirmWithinMs) continue;
-      if (!grab.isGone) this.bodies_.setTint(grab.body, palette.held, 1);
+      if (!grab.isGone) this.outlineHeld_(grab.body, palette.held);
       this.selection_.gestures.grabbedPoint(grab, this.point_);
       this.lines_.add(this.point_, grab.target, Math.max(force, 0), this.eye_, 1);
     }
+  }
+
+  /** A held body keeps its material. One that several hold has the outline of the first. */
+  private outlineHeld_(body: number, color: Color): void {
+    const free = this.held_.find((outline) => outline.body === -1 || outline.body === body);
+    if (free === undefined || free.body === body) return;
+    free.material.color.copy(color);
+    free.body = body;
   }
 
   private outlineOthers_(): void {
     let used = 0;
     for (const client of this.world_.clients) {
       const body = this.bodies_.slotOf(client.selected);
-      if (client.client === this.session_.clientId || body < 0 || used === mostOthers) continue;
+      if (client.client === this.session_.clientId || body < 0 || used === mostOthers || this.held_.some((held) => held.body === body)) continue;
       const outline = this.others_[used++];
       outline.material.color.copy(others[client.client % others.length]);
       outline.body = body;

@@ -4,6 +4,7 @@
 import { isAllowed, type Command } from "../commands/command.ts";
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
+import { forceText } from "../page/force_text.ts";
 import type { PageListener, PageNotice } from "../page/events.ts";
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
@@ -344,7 +345,7 @@ export class Overlay implements PageListener, FramePart {
       const force = this.page_.selection.forceOf(grab);
       // A click that only selects has no force.
       if (force < leastForce) return "";
-      return `${force < 10 ? force.toFixed(1) : force.toFixed(0)} N`;
+      return forceText(force);
     }
     const mouse = this.page_.gestures.pointers[0];
     if (!mouse.active || mouse.hovered < 0) return "";

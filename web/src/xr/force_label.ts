@@ -3,6 +3,7 @@
 
 import { Vector3, type Matrix4 } from "three";
 import { Board, font, roundedBox } from "./board.ts";
+import { forceText } from "../page/force_text.ts";
 import type { Input } from "./input.ts";
 import { faceReader } from "./wrist_panel.ts";
 
@@ -11,6 +12,8 @@ const width = 260;
 const height = 96;
 const wide = 0.065;
 const above = 0.06;
+/** N; less is shown as none. */
+const leastForce = 0.05;
 const readEverySeconds = 0.1;
 
 export class ForceLabel {
@@ -44,7 +47,7 @@ export class ForceLabel {
       this.sinceRead_ = Infinity;
     } else if (this.sinceRead_ > readEverySeconds) {
       this.sinceRead_ = 0;
-      const text = `${newtons.toFixed(newtons < 10 ? 1 : 0)} N`;
+      const text = newtons < leastForce ? "0 N" : forceText(newtons);
       if (text !== this.text) board.repaint();
       this.text = text;
     }

@@ -11,7 +11,7 @@ import type { Cover, Pickable } from "../pickable.ts";
 import { addCorners, type Points } from "../points.ts";
 import { grown, mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
-import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
+import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, wordOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
 import type { Wall } from "../walls.ts";
 import type { EntityView } from "./entity.ts";
 import type { Visuals, VisualUser } from "./visual.ts";
@@ -374,14 +374,14 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return this.bodies_.get(body)?.entity.name ?? "";
   }
 
-  /** That name, or "link 12"; empty if there is no such body. */
+  /** That name, else the one of its look or the word for its shape, as in "ball"; empty if there is no such body. */
   nameOf(body: number): string {
-    const entity = this.bodies_.get(body)?.entity;
-    if (entity === undefined) return "";
-    if (entity.name !== "") return entity.name;
-    const name = this.visuals_.nameOf(entity.visual);
+    const found = this.bodies_.get(body);
+    if (found === undefined) return "";
+    if (found.entity.name !== "") return found.entity.name;
+    const name = this.visuals_.nameOf(found.entity.visual);
     // Names that the world or the server makes up mean nothing to users.
-    return `${/^visual \d+$|^\(/.test(name) ? "body" : name} ${body}`;
+    return name === "" || /^visual \d+$|^\(/.test(name) ? wordOf(found.shapes) : name;
   }
 
   addOutline(outline: Outline): void {

@@ -7,6 +7,7 @@ import { arc, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 export const capsule: Kind = {
   name: "capsule",
   sizes: ["radius", "length"],
+  word: () => "rod",
   distance: ({ sizes }, x, y, z) => Math.hypot(Math.max(0, Math.abs(x) - sizes[1] / 2), y, z) - sizes[0],
   reach: ({ sizes: [radius, length] }) => length / 2 + radius,
   draw({ sizes: [radius, length] }, detail, material) {

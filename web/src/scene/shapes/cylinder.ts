@@ -7,6 +7,7 @@ import { arc, bevel, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 export const cylinder: Kind = {
   name: "cylinder",
   sizes: ["radius", "length", "rounding"],
+  word: ({ sizes: [radius, length] }) => (length > 6 * radius ? "rod" : length < radius ? "disk" : "cylinder"),
   distance({ sizes }, x, y, z) {
     const side = Math.hypot(y, z) - sizes[0] + sizes[2];
     const end = Math.abs(x) - sizes[1] / 2 + sizes[2];

@@ -9,6 +9,7 @@ const drawn = 1000;
 export const halfSpace: Kind = {
   name: "half_space",
   sizes: ["normal_x", "normal_y", "normal_z"],
+  word: () => "ground",
   distance: ({ sizes: n }, x, y, z) => (n[0] * x + n[1] * y + n[2] * z) / Math.hypot(n[0], n[1], n[2]),
   reach: () => Infinity,
   draw({ sizes: [x, y, z] }) {

@@ -143,6 +143,7 @@ export function drawTriangles(positions: Float32Array, triangles: Uint32Array, c
 export const mesh: Kind = {
   name: "mesh",
   sizes: [],
+  word: () => "part",
   distance: ({ mesh: data }, x, y, z) => (data === null ? Infinity : meshDistance(data, x, y, z)),
   reach: ({ mesh: data }) => (data === null ? 0 : meshReach(data)),
   draw: ({ mesh: data }) => (data === null ? new BufferGeometry() : drawTriangles(data.positions, data.triangles)),

@@ -91,6 +91,13 @@ export function shapeDistance(solid: Solid, x: number, y: number, z: number): nu
   return solid.kind.distance(solid, x, y, z);
 }
 
+/** What people call a thing of these shapes: by the largest of them. */
+export function wordOf(placed: readonly PlacedShape[]): string {
+  if (placed.length === 0) return "thing";
+  const { shape } = placed.reduce((largest, each) => (shapeReach(each.shape) > shapeReach(largest.shape) ? each : largest));
+  return shape.kind.word?.(shape) ?? shape.kind.name.replaceAll("_", " ");
+}
+
 /** Radius in meters of the smallest enclosing sphere about the shape's origin. */
 export function shapeReach(solid: Solid): number {
   return solid.kind.reach(solid);

@@ -5,6 +5,7 @@ import type { Kind } from "./kind.ts";
 export const sphere: Kind = {
   name: "sphere",
   sizes: ["radius"],
+  word: () => "ball",
   distance: ({ sizes }, x, y, z) => Math.hypot(x, y, z) - sizes[0],
   reach: ({ sizes: [radius] }) => radius,
   draw({ sizes: [radius] }, detail) {

@@ -6,6 +6,7 @@ import { sweep } from "./sweep.ts";
 export const torus: Kind = {
   name: "torus",
   sizes: ["radius", "tube", "stretch"],
+  word: () => "ring",
   distance({ sizes }, x, y, z) {
     const beyond = Math.max(0, Math.abs(x) - sizes[2] / 2);
     return Math.hypot(Math.hypot(beyond, y) - sizes[0], z) - sizes[1];
