@@ -60,6 +60,9 @@ void set_settings(RoomObject& self, const std::string& title, const std::vector<
                  client);
 }
 
+/// The name of a level, the number of things at it, and slots of their bodies.
+using LevelTuple = std::tuple<std::string, std::uint32_t, std::vector<std::uint32_t>>;
+
 /// Two digits, so that small fluctuations are not sent to pages.
 float two_digits(double value) {
   if (!(value > 0) || !std::isfinite(value)) return 0;
@@ -68,9 +71,12 @@ float two_digits(double value) {
 }
 
 void set_room_state(RoomObject& self, bool paused, double speed, double step_ms, double dt,
-                    const std::vector<std::pair<std::string, double>>& costs) {
-  protocol::WorldState state{paused, static_cast<float>(speed), two_digits(step_ms), dt, {}};
+                    const std::vector<std::pair<std::string, double>>& costs, double budget_ms,
+                    const std::vector<LevelTuple>& levels, const std::vector<std::string>& changes) {
+  protocol::WorldState state{
+      paused, static_cast<float>(speed), two_digits(step_ms), dt, {}, static_cast<float>(budget_ms), {}, changes};
   for (const auto& [part, ms] : costs) state.costs.push_back({part, two_digits(ms)});
+  for (const auto& [name, count, bodies] : levels) state.levels.push_back({name, count, bodies});
   if (self.state == state) return;
   self.state = state;
   self.use().set(state);
@@ -299,7 +305,8 @@ void bind_room(nb::module_& module) {
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "styles"_a, "style"_a, "camera"_a.none(),
            "ground"_a.none(), "modules"_a, "client"_a = 0,
            "client: for this one alone, until the next settings for all (client 0).")
-      .def("set_state", &set_room_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
+      .def("set_state", &set_room_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a,
+           "budget_ms"_a = 0.0, "levels"_a = std::vector<LevelTuple>{}, "changes"_a = std::vector<std::string>{})
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")
       .def(
@@ -359,11 +366,17 @@ void bind_room(nb::module_& module) {
       .def(
           "notice",
           [](RoomObject& self, std::uint32_t client, std::uint8_t level, const std::string& title,
-             const std::string& text, const std::string& hint,
-             bool keep) { self.use().notice(client, level, title, text, hint, keep); },
-          "client"_a, "level"_a, "title"_a, "text"_a, "hint"_a = "", "keep"_a = false,
+             const std::string& text, const std::string& hint, bool keep, const std::string& id, double seconds,
+             std::uint8_t place) {
+            self.use().notice(client, level, title, text, hint, keep,
+                              {id, static_cast<float>(seconds),
+                               static_cast<protocol::NoticePlace>(std::min<std::uint8_t>(place, 4))});
+          },
+          "client"_a, "level"_a, "title"_a, "text"_a, "hint"_a = "", "keep"_a = false, "id"_a = "", "seconds"_a = 0.0,
+          "place"_a = 0,
           "A card on one client's page, or on all (client 0). level: a NoticeLevel. keep: pages that open later are shown\n"
-          "it too.")
+          "it too. id: it replaces the card with the same one. seconds: 0 as usual, -1 until it is closed. place: a\n"
+          "NoticePlace.")
       .def(
           "forget_notice", [](RoomObject& self, const std::string& title) { self.use().forget_notice(title); },
           "title"_a, "Kept cards with this title, or all for an empty one, are not shown to pages that open later.")

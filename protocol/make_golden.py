@@ -164,6 +164,7 @@ CLIENT: list[Vector] = [
     ("presence", "presence", b"\x0d" + STANCE_BYTES, {"stance": STANCE}),
     ("profile", "profile", b"\x0e\x01", {"on": True}),
     ("send_away", "send_away", b"\x0f\x02\x01\x00\x00", {"client": 258}),
+    ("rename", "rename", b"\x10" + text("Ada"), {"name": "Ada"}),
 ]
 
 BODIES = [
@@ -250,8 +251,16 @@ SERVER: list[Vector] = [
     (
         "notice",
         "notice",
-        b"\x45\x02" + text("chain.py") + text("ZeroDivisionError") + text(""),
-        {"level": 2, "title": "chain.py", "text": "ZeroDivisionError", "hint": ""},
+        b"\x45\x02" + text("chain.py") + text("ZeroDivisionError") + text("") + text("run") + pack("<f", 2.5) + b"\x04",
+        {
+            "level": 2,
+            "title": "chain.py",
+            "text": "ZeroDivisionError",
+            "hint": "",
+            "id": "run",
+            "seconds": 2.5,
+            "place": 4,
+        },
     ),
     (
         "effect",
@@ -328,8 +337,26 @@ SERVER: list[Vector] = [
     (
         "world_state",
         "world_state",
-        b"\x4c\x01" + pack("<ffd", 0.5, 0.375, 1 / 120) + pack("<I", 1) + text("forces") + pack("<f", 0.25),
-        {"paused": True, "speed": 0.5, "step_ms": 0.375, "dt": 1 / 120, "costs": [{"part": "forces", "ms": 0.25}]},
+        b"\x4c\x01"
+        + pack("<ffd", 0.5, 0.375, 1 / 120)
+        + pack("<I", 1)
+        + text("forces")
+        + pack("<f", 0.25)
+        + pack("<fI", 4.0, 1)
+        + text("full")
+        + pack("<IIII", 3, 2, 7, 9)
+        + pack("<I", 1)
+        + text("tower: full to 1/4"),
+        {
+            "paused": True,
+            "speed": 0.5,
+            "step_ms": 0.375,
+            "dt": 1 / 120,
+            "costs": [{"part": "forces", "ms": 0.25}],
+            "budget_ms": 4.0,
+            "levels": [{"name": "full", "count": 3, "bodies": [7, 9]}],
+            "changes": ["tower: full to 1/4"],
+        },
     ),
     (
         "actions",

@@ -115,9 +115,15 @@ bool has_waiting_twin(std::vector<ClientInput>& waiting, const ClientInput& inpu
   return false;
 }
 
-protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::string_view text, std::string_view hint) {
-  return {static_cast<protocol::NoticeLevel>(std::min<std::uint8_t>(level, 2)), fit_text(title, 256),
-          fit_text(text, 8192), fit_text(hint, 1024)};
+protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::string_view text, std::string_view hint,
+                             const NoticeOptions& options = {}) {
+  return {static_cast<protocol::NoticeLevel>(std::min<std::uint8_t>(level, 2)),
+          fit_text(title, 256),
+          fit_text(text, 8192),
+          fit_text(hint, 1024),
+          fit_text(options.id, 64),
+          options.seconds,
+          options.place};
 }
 
 }  // namespace
@@ -160,9 +166,10 @@ bool Hub::set_latest(std::string key, Frame frame, std::uint32_t client) {
 }
 
 bool Hub::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                 std::string_view hint, bool is_kept) {
-  return post([this, client, frame = make_frame(make_notice(level, title, text, hint)),
-               kept_as = is_kept ? std::string(title) : std::string()] {
+                 std::string_view hint, bool is_kept, const NoticeOptions& options) {
+  const std::string_view key = options.id.empty() ? title : std::string_view(options.id);
+  return post([this, client, frame = make_frame(make_notice(level, title, text, hint, options)),
+               kept_as = is_kept ? std::string(key) : std::string()] {
     if (!kept_as.empty()) {
       std::erase_if(kept_notices_, [&](const auto& kept) { return kept.first == kept_as; });
       if (kept_notices_.size() == max_kept_notices) kept_notices_.erase(kept_notices_.begin());
@@ -391,6 +398,12 @@ bool Hub::try_push(ClientInput input) {
     for (auto i = input_.rbegin(); i != input_.rend() && is_move(*i); ++i)
       if (move_the_same(*i, input)) return replace(*i, std::move(input)), true;
   }
+  // Of a place of a user, only the newest.
+  if (is_a<protocol::Presence>(input)) {
+    for (auto& other : input_)
+      if (other.client == input.client && is_a<protocol::Presence>(other))
+        return replace(other, std::move(input)), true;
+  }
   // Only the newest value of a control counts, unless there was another input in between.
   if (!input_.empty() && change_the_same(input_.back(), input)) return replace(input_.back(), std::move(input)), true;
   if (has_waiting_twin(input_, input)) return true;
@@ -486,18 +499,25 @@ bool Hub::accept(std::uint32_t client, const protocol::Picture& message) {
   return !is_too_large || refuse(client, "picture: it is above 64 MiB");
 }
 
+bool Hub::accept(std::uint32_t client, const protocol::Presence& message) {
+  const protocol::Stance& stance = message.stance;
+  if (!is_near(stance.hands)) return refuse(client, "presence: a place is beyond 1e9 m");
+  if (stance.hands.size() % 3 != 0) return refuse(client, "presence: a hand has three coordinates");
+  clients_.at(client).stance = stance;
+  tell_people();
+  return true;
+}
+
+bool Hub::accept(std::uint32_t client, const protocol::Rename& message) {
+  clients_.at(client).name = message.name;
+  tell_clients();
+  return true;
+}
+
 void Hub::answer(std::uint32_t client, const protocol::Hello&) { refuse_frame(client, "hello was said before"); }
 
 void Hub::answer(std::uint32_t client, const protocol::Ping& message) {
   clients_.at(client).link->send(make_frame(protocol::Pong{message.client_time, poses_.poses().step}), {});
-}
-
-void Hub::answer(std::uint32_t client, const protocol::Presence& message) {
-  const protocol::Stance& stance = message.stance;
-  if (!is_near(stance.hands)) return refuse_frame(client, "presence: a place is beyond 1e9 m");
-  if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
-  clients_.at(client).stance = stance;
-  tell_people();
 }
 
 void Hub::answer(std::uint32_t client, const protocol::SendAway& message) {

@@ -66,10 +66,11 @@ class Hub {
   /// the next message of the type to all.
   template <class Message>
   [[nodiscard]] bool set(const Message& message, std::uint32_t client = 0);
-  /// Kept: also sent to clients that join later, until it is removed or replaced by another one with the same title.
+  /// Kept: also sent to clients that join later, until it is removed or replaced by another one with the same id, or
+  /// title without an id.
   [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                            std::string_view hint, bool is_kept);
-  /// Removes the kept notices with this title, or all for an empty one.
+                            std::string_view hint, bool is_kept, const NoticeOptions& options = {});
+  /// Removes the kept notices with this id or title, or all for an empty one.
   [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position, float volume = 1);
@@ -157,12 +158,13 @@ class Hub {
   bool accept(std::uint32_t client, const protocol::Control& message);
   bool accept(std::uint32_t client, const protocol::Pointer& message);
   bool accept(std::uint32_t client, const protocol::Picture& message);
+  bool accept(std::uint32_t client, const protocol::Presence& message);
+  bool accept(std::uint32_t client, const protocol::Rename& message);
   /// Refuses the frame; false.
   bool refuse(std::uint32_t client, std::string_view reason);
   /// Messages that are for the server itself.
   void answer(std::uint32_t client, const protocol::Hello& message);
   void answer(std::uint32_t client, const protocol::Ping& message);
-  void answer(std::uint32_t client, const protocol::Presence& message);
   void answer(std::uint32_t client, const protocol::SendAway& message);
   void send_away_now(std::uint32_t client);
   /// Whether a client is a host; others are told that this is for hosts.

@@ -365,8 +365,8 @@ void Room::set(const protocol::Listens& listens) { deliver_if(hub_->set(listens)
 void Room::ask_picture(std::uint32_t client, std::uint32_t number) { deliver_if(hub_->ask_picture(client, number)); }
 
 void Room::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                  std::string_view hint, bool is_kept) {
-  deliver_if(hub_->notice(client, level, title, text, hint, is_kept));
+                  std::string_view hint, bool is_kept, const NoticeOptions& options) {
+  deliver_if(hub_->notice(client, level, title, text, hint, is_kept, options));
 }
 
 void Room::forget_notice(std::string_view title) { deliver_if(hub_->forget_notice(title)); }

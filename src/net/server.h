@@ -60,6 +60,14 @@ struct Answer {
   std::string type, body;
 };
 
+/// How a card is shown. id: it replaces the card with the same one; empty: the one with its title. seconds: 0: as usual,
+/// -1: until it is closed.
+struct NoticeOptions {
+  std::string id{};
+  float seconds = 0;
+  protocol::NoticePlace place = protocol::NoticePlace::free;
+};
+
 /// A message of a client that was welcomed, or an event of the server: the client joined or left.
 struct ClientInput {
   std::uint32_t client = 0;  ///< from 1, never used twice in a world
@@ -127,9 +135,9 @@ class Room {
   /// Asks one client for a picture; its parts arrive as input with this number. One at a time.
   void ask_picture(std::uint32_t client, std::uint32_t number);
   /// A card on one client's page, or on all (client 0). Level 0 info, 1 warning, 2 error. Long texts are cut. Kept ones
-  /// are shown to later clients too, at most eight, until `forget_notice` with their title, or an empty one for all.
+  /// are shown to later clients too, at most eight, until `forget_notice` with their id or title, or an empty one for all.
   void notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-              std::string_view hint = {}, bool is_kept = false);
+              std::string_view hint = {}, bool is_kept = false, const NoticeOptions& options = {});
   void forget_notice(std::string_view title);
   /// Flash, sound and haptic pulse: "break", "join" or "grab" at a place in the world. Throws std::invalid_argument
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from page_client import PageClient
@@ -81,7 +83,89 @@ def test_users_see_where_the_others_are(run_world: Runner) -> None:
         assert person["client"] == page.id
         assert person["stance"]["head"] == (0.5, 1.5, 2.0) and list(person["stance"]["hands"]) == [1, 2, 3]
         assert {client["name"] for client in other.last["clients"]["clients"]} == {"Ada", "Bo"}
+        page.send("rename", name="Grace")
+        other.wait_for(lambda: {client["name"] for client in other.last["clients"]["clients"]} == {"Grace", "Bo"})
+        mine = next(client for client in world.users.clients if client.id == page.id)
+        page.wait_for(lambda: mine.name == "Grace")
+        assert mine.eye == iota.Vec3(0.5, 1.5, 2.0)
         page.send("presence", stance=stance | {"head": (3e9, 0, 0)})
         page.wait_for(lambda: any("beyond 1e9 m" in notice["text"] for notice in page.notices))
         page.close()
         other.wait_for(lambda: not other.last["people"]["people"])
+
+
+def test_a_card_has_a_time_an_id_and_a_place(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    with PageClient(run_world(world)) as page:
+        world.call(lambda: world.users.notice("Question", id="quiz", seconds=2.5, place="left"))
+        world.call(lambda: world.users.notice("Answer", id="quiz", seconds=math.inf))
+        world.call(lambda: world.users.close_notice("quiz"))
+        page.wait_for(lambda: len(page.notices) == 3)
+        told = [(card["title"], card["id"], card["seconds"], card["place"]) for card in page.notices]
+        assert told == [("Question", "quiz", 2.5, 2), ("Answer", "quiz", -1.0, 0), ("", "quiz", 0.0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("given", "what"),
+    [
+        ({"place": "middle"}, "place must be one of free, top, left, right, bottom, not 'middle'"),
+        ({"seconds": 0}, "seconds must be above 0"),
+        ({"seconds": "long"}, "seconds must be above 0"),
+        ({"id": 65 * "x"}, "id must be a text of at most 64 bytes"),
+        ({"level": "bad"}, "level must be one of"),
+    ],
+)
+def test_a_card_that_cannot_be_shown_is_refused(given: dict[str, Any], what: str) -> None:
+    with pytest.raises(ValueError, match=what):
+        iota.World(iota.System()).users.notice("Question", **given)
+
+
+def test_what_is_near_the_user_of_an_open_page_is_simulated_in_full(run_world: Runner) -> None:
+    system = iota.System()
+    balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(20.0 * k, 1, 0)) for k in range(3)]
+    world = iota.World(system, ground=None, camera=iota.Camera((0, 1, 2), (0, 1, 0)))
+    assert world.levels._eyes().tolist() == [[0, 1, 2]]
+    world.levels.budget_ms = 4.0
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.last.get("world_state", {}).get("budget_ms") == 4.0)
+        assert page.last["world_state"]["levels"] == []
+        page.send("presence", stance={"head": (40, 1, 0), "rotation": (0, 0, 0, 1), "scale": 1.0, "hands": ()})
+        page.wait_for(lambda: [client.eye for client in world.users.clients] == [iota.Vec3(40, 1, 0)])
+        assert world.call(lambda: world.levels._eyes().tolist()) == [[40, 1, 0]]
+        page.send("profile", on=True)
+        levels = page.wait_for(lambda: page.last["world_state"]["levels"])
+        assert sum(level["count"] for level in levels) == 3
+        assert sorted(slot for level in levels for slot in level["bodies"]) == [ball.slot for ball in balls]
+
+
+def test_energy_that_steps_made_is_told_to_the_author_alone(capfd: pytest.CaptureFixture[str]) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    rotor = system.body(shape=iota.Box((1, 0.2, 0.1)), mass=1, position=(0, 1, 0))
+    rotor.name = "rotor"
+    rotor.angular_velocity = (0, 0, 40)
+    world = iota.World(system, ground=None)
+    shown: list[Any] = []
+    world._state.notices.show = lambda *card: shown.append(card)
+    take = world._stepper._step_system
+
+    def with_warning(dt: float) -> Any:
+        return Warned(take(dt))
+
+    world._stepper._step_system = with_warning  # type: ignore[method-assign]
+    for _ in range(2):
+        world.step()
+    told = capfd.readouterr().err
+    assert told.count("gained energy") == 1 and shown == []
+    assert "too long for 'rotor', which turns by 19 degrees in it. Try shorter steps: world.clock.dt = 1 / 240" in told
+
+
+class Warned:
+    """A report of a step that made energy."""
+
+    warnings = ("the integration made energy that no force explains (energy.made); try shorter steps",)
+
+    def __init__(self, report: iota.StepReport) -> None:
+        self.report = report
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.report, name)

@@ -52,14 +52,16 @@ class Hold:
 
 @dataclass
 class Client:
-    """One open page. role: host, guest or viewer, see `Pages.link`. selected: its selection. is_profiling: it shows what the parts of a step cost. holds: by the page's
-    own number of the grab."""
+    """One open page. role: host, guest or viewer, see `Pages.link`. selected: its selection. is_profiling: it shows what the parts of a step cost. eye: the place of
+    the user's eyes, world, m; None until the page has told it, which it does while there are several pages or a step has a
+    budget. holds: by the page's own number of the grab."""
 
     id: int
     name: str = ""
     role: str = "host"
     selected: Body | None = None
     is_profiling: bool = False
+    eye: Vec3 | None = None
     holds: dict[int, Hold] = field(default_factory=dict)
     take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
     send_pulse: SendPulse | None = field(default=None, repr=False, compare=False)

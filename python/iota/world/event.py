@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Broken, ContactEvent, StopEvent, System, Vec3
-from iota.world.notices import Notices
+from iota.world.notices import Notices, Place
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,16 @@ class Event:
             raise LookupError(f"the event {self.name!r} is on no body")
         return self.target
 
-    def notice(self, title: str, text: str = "", hint: str = "", level: str = "info") -> None:
+    def notice(
+        self,
+        title: str,
+        text: str = "",
+        hint: str = "",
+        level: str = "info",
+        seconds: float | None = None,
+        id: str = "",
+        place: Place = "free",
+    ) -> None:
         """Shows a small card to the user of the event, or on all pages if it has no user. level: "info", "warning" or
-        "error"."""
-        self.notices.send(title, text, hint, level, self.client)
+        "error". seconds, id, place: as in `world.users.notice`."""
+        self.notices.send(title, text, hint, level, self.client, seconds=seconds, id=id, place=place)

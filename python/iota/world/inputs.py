@@ -155,6 +155,14 @@ class Inputs:
     def _profile(self, client: Client, message: protocol.Profile) -> None:
         client.is_profiling = message.on
 
+    @handles(protocol.Presence, share=0.02)
+    def _presence(self, client: Client, message: protocol.Presence) -> None:
+        client.eye = Vec3(*message.stance.head)
+
+    @handles(protocol.Rename, share=0.2)
+    def _rename(self, client: Client, message: protocol.Rename) -> None:
+        client.name = message.name
+
     @handles(protocol.Picture)
     def _picture(self, client: Client, message: protocol.Picture) -> None:
         self._state.pictures.take(message)

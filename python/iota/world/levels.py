@@ -17,7 +17,7 @@ from iota._core import Articulate, Body, Particle, StepReport, System, Vec3
 from iota.arguments import SHORT, is_number
 from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
-from iota.world.clients import Clients
+from iota.world.clients import Client, Clients
 from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
@@ -34,6 +34,7 @@ URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
 SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
+SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page shows
 JUMP = 2.0  # m in a step: then all things are looked at
 
 
@@ -140,6 +141,9 @@ class Levels(Part):
         self._latest_ms: tuple[float, ...] = ()
         self._seen: Floats = np.zeros((0, 3))
         self._changes: deque[LevelChange] = deque(maxlen=1000)
+        self._groups: list[tuple[str, int, list[int]]] = []
+        self._lines: list[str] = []
+        self._shown_until = 0.0
 
     # --- for scripts ------------------------------------------------------------------------------------------------
 
@@ -176,8 +180,8 @@ class Levels(Part):
 
     @property
     def viewers(self) -> Callable[[], Iterable[Place]] | None:
-        """The places of eyes: a function that returns them, m. None: the cameras that the script gave to clients and world.
-        What matters to one of them matters."""
+        """The places of eyes: a function that returns them, m. None: those of the users of all open pages, or, while none is
+        open, the camera that the script gave to the world. What matters to one of them matters."""
         return self._viewers
 
     @viewers.setter
@@ -275,6 +279,30 @@ class Levels(Part):
         filled = min(10, round(10 * self._ms / self._budget))
         counts = ", ".join(f"{count} {name}" for name, count in self.counts().items())
         return f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:g} ms: {counts}"
+
+    def _shown(self) -> tuple[list[tuple[str, int, list[int]]], list[str]]:
+        """For pages: each level with the number of its things and slots of their bodies, the best first, and the latest
+        changes as lines. Found anew twice a second."""
+        if time.perf_counter() < self._shown_until:
+            return self._groups, self._lines
+        self._shown_until = time.perf_counter() + SHOWN_FOR
+        found: dict[str, tuple[float, int, list[int]]] = {}
+        left = MOST_SHOWN
+        for thing in self._things:
+            level = thing.level
+            _, count, slots = found.get(level.name, (0.0, 0, []))
+            if left > 0 and thing.root.alive:
+                bodies = [body.slot for body in thing.bodies][:left]
+                left -= len(bodies)
+                slots = slots + bodies
+            found[level.name] = (level.quality, count + 1, slots)
+        ordered = sorted(found.items(), key=lambda item: -item[1][0])
+        self._groups = [(name, count, slots) for name, (_, count, slots) in ordered][:32]
+        self._lines = [
+            f"{change.time:.1f} s: {change.thing} {change.before} to {change.after}, {change.reason}"[:200]
+            for change in list(self._changes)[-LINES:]
+        ]
+        return self._groups, self._lines
 
     # --- the loop ---------------------------------------------------------------------------------------------------
 
@@ -497,8 +525,10 @@ class Levels(Part):
         if self._viewers is not None:
             found = [list(map(float, place)) for place in self._viewers()]
         else:
-            cameras = [client.camera for client in self._clients.by_id.values()] + [self._scene.camera]
-            found = [list(map(float, camera.position)) for camera in cameras if camera is not None]
+            eyes = [place for client in self._clients.by_id.values() if (place := _eye_of(client)) is not None]
+            if not eyes and self._scene.camera is not None:
+                eyes = [self._scene.camera.position]
+            found = [list(map(float, eye)) for eye in eyes]
         places = np.array(found, dtype=float).reshape(-1, 3)
         finite: Floats = places[np.isfinite(places).all(axis=1)]
         return finite
@@ -547,6 +577,13 @@ class Levels(Part):
             ]
             thing.index = fitting[0] if fitting else 0
         self._is_old = True
+
+
+def _eye_of(client: Client) -> Place | None:
+    """Where its page has told that its user's eyes are, or until then the camera that it got."""
+    if client.eye is not None or client.camera is None:
+        return client.eye
+    return client.camera.position
 
 
 class _Arrays:

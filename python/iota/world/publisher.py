@@ -94,6 +94,7 @@ class Publisher:
             step_ms=state.step_ms,
             dt=clock.dt,
             costs=list(state.step_costs.ms.items()),
+            **self._budget(),
         )
         state.things.tell(self.room, state.system.structure_version, partial(state.notices.warn_once, keep=True))
         self._source.publish(self.room, state.scene.shows_edits)
@@ -106,6 +107,16 @@ class Publisher:
         for request in self._server.take_requests() if self._is_alone else ():
             figures = of_world(self._state, self._server.statistics) + of_process()
             self._server.answer(request, text_of(figures).encode(), CONTENT_TYPE)
+
+    def _budget(self) -> dict[str, Any]:
+        """The budget of a step; for pages that show costs also the levels of things and their latest changes."""
+        levels = self._state.levels
+        if levels is None or levels.budget_ms is None:
+            return {}
+        if not self._state.clients.is_profiled:
+            return {"budget_ms": levels.budget_ms}
+        groups, lines = levels._shown()
+        return {"budget_ms": levels.budget_ms, "levels": groups, "changes": lines}
 
     def bodies_of(self, ids: Sequence[Id]) -> list[Any]:
         """The bodies with these ids that still exist, each once."""

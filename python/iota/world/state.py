@@ -11,6 +11,7 @@ from iota.world.clients import Clients
 from iota.world.clock import Clock
 from iota.world.costs import Costs
 from iota.world.history import History
+from iota.world.levels import Levels
 from iota.world.listeners import Listeners
 from iota.world.notices import Notices
 from iota.world.pictures import Pictures
@@ -37,6 +38,7 @@ class State:
     listeners: Listeners = field(default_factory=Listeners)
     pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
+    levels: Levels | None = None
     step_ms: float = 0.0
 
     def __post_init__(self) -> None:

@@ -7,17 +7,17 @@ import math
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from iota._core import Body, Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
+from iota.world.blame import told_of_energy
 from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
 from iota.world.event import Event
 from iota.world.journal import Journal
 from iota.world.keeping import Keeper
-from iota.world.levels import Levels
 from iota.world.listeners import Listener
 from iota.world.scene import Camera
 from iota.world.state import State
@@ -42,7 +42,7 @@ class Stepper:
         self.journal: Journal | None = None
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
-        self.levels: Levels | None = None
+        self._told_of_energy = False
 
     @property
     def has_begun(self) -> bool:
@@ -115,11 +115,19 @@ class Stepper:
         if self._tally is not None:
             self._tally.add(report, dt)
         for warning in report.warnings:
-            state.notices.warn_once(warning)
+            if "energy.made" in warning:  # nothing that visitors of the page could mend
+                self._tell_author(dt)
+            else:
+                state.notices.warn_once(warning)
         self._tell_what_happened()
         if self.journal is not None:
             self.journal.note_step(seconds, not (report.cut_short and state.system.budget_seconds))
         return report
+
+    def _tell_author(self, dt: float) -> None:
+        if not self._told_of_energy:
+            self._told_of_energy = True
+            print_on_terminal(f"iota: {told_of_energy(self._state.system, dt)}\n")
 
     def _step_system(self, dt: float) -> StepReport:
         try:
@@ -138,8 +146,9 @@ class Stepper:
         is_shown = state.clients.is_profiled
         if not is_shown and state.step_costs.ms:
             state.step_costs.clear()
-        is_managed = self.levels is not None and self.levels.budget_ms is not None
-        take: Callable[[float], StepReport] = cast(Levels, self.levels)._step if is_managed else state.system.step
+        levels = state.levels
+        is_managed = levels is not None and levels.budget_ms is not None
+        take: Callable[[float], StepReport] = levels._step if is_managed and levels is not None else state.system.step
         is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
         if not is_due or not isinstance(state.system, System):
             return take(dt)

@@ -12,7 +12,7 @@ from iota.world.callbacks import Guard
 from iota.world.clients import Client, Clients
 from iota.world.controls import Controls
 from iota.world.events import Events
-from iota.world.notices import Notices
+from iota.world.notices import Notices, Place
 from iota.world.parts import Part
 from iota.world.survey import Survey
 
@@ -52,9 +52,33 @@ class Users(Part):
         """The body that a client has selected."""
         return self._call(lambda: self._clients.selected(client))
 
-    def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
-        """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
-        self._notices.send(title, text, hint, level, client)
+    def notice(
+        self,
+        title: str,
+        text: str = "",
+        hint: str = "",
+        level: str = "info",
+        client: int = 0,
+        seconds: float | None = None,
+        id: str = "",
+        place: Place = "free",
+    ) -> None:
+        """Shows a small card on all pages, or on one client's.
+
+        level: "info", "warning" or "error". seconds: how long, at most a day; None: as usual for its level, math.inf: until
+        its user closes it. id: it replaces the card with the same one, and `close_notice` removes it; without one, that with
+        the same title. place: "top", "left", "right" or "bottom" of a flat page, or "free": where it covers no label
+        and no control.
+
+            world.users.notice("Question 2", "Which falls first?", id="quiz", seconds=30, place="left")
+
+        Raises ValueError for an unknown level or place, a time that is not above 0, or an id above 64 bytes.
+        """
+        self._notices.send(title, text, hint, level, client, seconds=seconds, id=id, place=place)
+
+    def close_notice(self, id: str, client: int = 0) -> None:
+        """Removes the card with this id from all pages, or from one client's. Raises ValueError for an empty id."""
+        self._notices.close(id, client)
 
     def ask(
         self,

@@ -165,7 +165,7 @@ class World:
         )
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
-        self._levels = self._stepper.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
+        self._levels = state.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
         self.camera = camera
         self._runner: int | None = None
         self._background: threading.Thread | None = None
@@ -630,7 +630,7 @@ class World:
     def _run_viewed(self, view: View, seconds: float) -> RunSummary:
         notices, clock = self._state.notices, self._real_time
         self._begin()
-        notices.show = lambda client, level, title, text, hint, keep: view.notice(title, text, hint)
+        notices.show = lambda client, level, title, text, hint, *_: view.notice(title, text, hint) if title else None
         end = time.monotonic() + seconds
         view.open(self)
         try:

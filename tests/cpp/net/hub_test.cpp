@@ -171,6 +171,43 @@ TEST_F(HubTest, tells_all_where_users_are_once_a_frame) {
   EXPECT_EQ(one.all<protocol::People>().back().people.size(), 1u);
 }
 
+TEST_F(HubTest, gives_the_script_the_newest_place_of_a_user) {
+  Link link;
+  const std::uint32_t client = join(link);
+  (void)hub.take_input();
+  for (const float x : {1.0F, 2.0F, 3.0F}) receive(client, protocol::Presence{{{x, 0, 0}, {0, 0, 0, 1}, 1, {}}});
+  const auto input = hub.take_input();
+  ASSERT_EQ(input.size(), 1u);
+  EXPECT_EQ(std::get<protocol::Presence>(input[0].what).stance.head[0], 3.0F);
+}
+
+TEST_F(HubTest, tells_all_the_new_name_of_a_user) {
+  Link one, two;
+  const std::uint32_t client = join(one, "Ada");
+  join(two);
+  receive(client, protocol::Rename{"Grace"});
+  EXPECT_EQ(two.all<protocol::Clients>().back().clients.at(0).name, "Grace");
+  EXPECT_EQ(std::get<protocol::Rename>(hub.take_input().back().what).name, "Grace");
+}
+
+TEST_F(HubTest, keeps_one_notice_of_an_id_whatever_its_title) {
+  (void)hub.notice(0, 0, "first", "", "", true, {"quiz", 30, protocol::NoticePlace::left});
+  (void)hub.notice(0, 0, "second", "", "", true, {"quiz", -1, protocol::NoticePlace::free});
+  hub.deliver();
+  Link link;
+  join(link);
+  const auto notices = link.all<protocol::Notice>();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].title, "second");
+  EXPECT_EQ(notices[0].id, "quiz");
+  EXPECT_EQ(notices[0].seconds, -1.0F);
+  (void)hub.forget_notice("quiz");
+  hub.deliver();
+  Link later;
+  join(later);
+  EXPECT_TRUE(later.all<protocol::Notice>().empty());
+}
+
 TEST_F(HubTest, refuses_a_place_of_a_user_that_is_far_or_not_whole) {
   Link link;
   const std::uint32_t client = join(link);

@@ -3,6 +3,7 @@
 
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
+import { ownName } from "../net/name.ts";
 import { takeToken } from "../net/token.ts";
 import type { PageListener } from "../page/events.ts";
 import { makePage, type Page } from "../page/page.ts";
@@ -33,7 +34,7 @@ function socketUrl(): string {
 /** The world, the role and the user's name in the page's address. */
 function requestOf(search: string): JoinRequest {
   const asked = new URLSearchParams(search);
-  return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: (asked.get("name") ?? "").slice(0, 40) };
+  return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: ownName(asked.get("name")) };
 }
 
 /** The panel of controls is loaded with the first control, as most worlds have none. */

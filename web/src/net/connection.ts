@@ -39,6 +39,8 @@ export class Connection {
   state: LinkState = "connecting";
   /** This client's number at the server; 0 before the first welcome. */
   clientId = 0;
+  /** By which the user is called when the page connects. */
+  name: string;
   /** Last measured round trip, ms. */
   roundTripMs = 0;
   /** Frames that could not be read since the page was loaded. */
@@ -59,6 +61,7 @@ export class Connection {
   constructor(url: string, request: JoinRequest, listener: ConnectionListener) {
     this.url_ = url;
     this.request_ = request;
+    this.name = request.name;
     this.listener_ = listener;
     const retryNow = () => this.retryNow();
     window.addEventListener("online", retryNow);
@@ -83,7 +86,7 @@ export class Connection {
       this.opened_ = true;
       this.silentPings_ = 0;
       this.sendNow_({
-        type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, ...this.request_,
+        type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, ...this.request_, name: this.name,
       });
     };
     socket.onmessage = (event: MessageEvent<unknown>) => this.receive_(event.data);

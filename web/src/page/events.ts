@@ -3,7 +3,7 @@
 
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
-import type { NoticeLevel, Vec3 } from "../protocol/generated.ts";
+import type { NoticeLevel, NoticePlace, Vec3 } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 
 /** More breaks and joins than this in this time are not shown as events. */
@@ -19,6 +19,9 @@ export interface PageNotice {
   readonly hint: string;
   /** Replaces the card with the same key; default: its title. */
   readonly key?: string;
+  /** How long it is shown; 0 (default): as usual for its level, -1: until it is closed. */
+  readonly seconds?: number;
+  readonly place?: NoticePlace;
 }
 
 /** All methods are optional. */

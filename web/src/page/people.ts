@@ -16,6 +16,8 @@ const handRadius = 0.04;
 /** A head that is nearer to the own eyes is not drawn: who looks from the same place would be in it. */
 const tooNear = 0.4;
 const tellEverySeconds = 0.1;
+/** The script alone needs the place, for what is near it to be simulated in full. */
+const tellAloneSeconds = 0.25;
 /** Heads glide to where they are told to be. */
 const glideSeconds = 0.08;
 /** A scene from this to that size is walked in at its real size, any other at that of a table, as in a headset. */
@@ -157,7 +159,8 @@ export class People implements FramePart {
     if (user.head === null) camera.getWorldPosition(this.head_);
     else this.head_.copy(user.head);
     this.wait_ -= seconds;
-    if (this.wait_ > 0 || this.world_.clients.length < 2 || filming) return;
+    const { clients, budgetMs } = this.world_;
+    if (this.wait_ > 0 || (clients.length < 2 && budgetMs === 0) || filming) return;
     camera.getWorldQuaternion(this.turn_);
     const scale = presenting ? room.scale.x : scaleOf(size);
     const round = (value: number) => Number(value.toPrecision(5));
@@ -166,7 +169,7 @@ export class People implements FramePart {
       scale: round(scale), hands: Float32Array.from(user.hands, round),
     };
     const told = JSON.stringify([stance, [...stance.hands], this.world_.clients.length]);
-    this.wait_ = tellEverySeconds;
+    this.wait_ = clients.length < 2 ? tellAloneSeconds : tellEverySeconds;
     if (told === this.told_) return;
     this.told_ = told;
     this.session_.send({ type: "presence", stance });

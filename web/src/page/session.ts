@@ -2,6 +2,7 @@
 // This page's connection to a world: passes the server's messages on, and sends the user's requests. A body is a slot
 // on the page and a full id on the wire, so that a late request cannot reach another body in the same slot.
 
+import { keepName } from "../net/name.ts";
 import { Connection, type ConnectionListener, type LinkState, type JoinRequest } from "../net/connection.ts";
 import { Role, type ClientMessage, type ControlCommand, type Id, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
@@ -50,6 +51,14 @@ export class Session implements ConnectionListener {
     this.connection.send(message);
   }
 
+  /** The name by which others see this user, from now on and when the page is opened again. */
+  rename(name: string): void {
+    const told = name.trim();
+    this.connection.name = told;
+    keepName(told);
+    this.send({ type: "rename", name: told });
+  }
+
   /** Pause, play, single step, reset, speed. */
   control(command: ControlCommand, value = 0): void {
     this.send({ type: "control", command, value });
@@ -77,7 +86,7 @@ export class Session implements ConnectionListener {
 
   message(message: ServerMessage): void {
     this.viewer_.invalidate();
-    if (message.type === "notice") this.events_.notice(message);
+    if (message.type === "notice") this.events_.notice({ ...message, ...(message.id === "" ? {} : { key: message.id }) });
     else if (message.type === "askPicture") void sendPicture(this.viewer_, message.request, (part) => this.send(part));
     else if (message.type === "effect") this.events_.effect(message.kind, message.position, message.volume);
     else if (message.type === "pulse") this.events_.pulse(message.hand, message.strength, message.seconds);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small cards at the top: event, place, and suggestion. The world stays visible behind them.
+// Small cards: event, place, and suggestion. The world stays visible behind them, and they lie on no label and no control, unless the
+// script has chosen their place.
 
+import { NoticePlace } from "../protocol/generated.ts";
 import { make } from "./dom.ts";
 
 export type CardLevel = "info" | "warning" | "error";
@@ -12,20 +14,41 @@ export interface CardText {
   readonly hint: string;
 }
 
+export interface CardOptions {
+  /** How long it is shown; 0: as usual for its level, -1: until it is closed. */
+  readonly seconds?: number | undefined;
+  readonly place?: NoticePlace | undefined;
+  /** Goes only by remove(). */
+  readonly lasting?: boolean;
+}
+
+/** The places where cards are stacked, the first of which is free is taken. */
+const spots = ["top", "left", "right", "bottom"] as const;
+const spotOf: Partial<Record<NoticePlace, (typeof spots)[number]>> = {
+  [NoticePlace.top]: "top", [NoticePlace.left]: "left", [NoticePlace.right]: "right", [NoticePlace.bottom]: "bottom",
+};
+
 const most = 4;
+/** In css px. */
+const gap = 8;
+const wideWindow = 900;
 /** Errors remain until they are closed. */
 const shownMs: Record<CardLevel, number> = { info: 5000, warning: 9000, error: Infinity };
 
 export class Cards {
-  private readonly root_: HTMLElement;
+  private readonly stacks_ = new Map<string, HTMLElement>();
   private readonly shown_ = new Map<string, HTMLElement>();
+  private readonly covered_: () => readonly DOMRect[];
 
-  constructor(root: HTMLElement) {
-    this.root_ = root;
+  /** `covered`: what a card must not lie on, css px. */
+  constructor(root: HTMLElement, covered: () => readonly DOMRect[]) {
+    this.covered_ = covered;
+    for (const spot of spots) this.stacks_.set(spot, make("div", `spot ${spot}`));
+    root.append(...this.stacks_.values());
   }
 
-  /** Shows a card; one with the same key is replaced. `lasting` cards go only by remove(). */
-  show(card: CardText, key = card.title, lasting = false): void {
+  /** Shows a card; one with the same key is replaced. */
+  show(card: CardText, key = card.title, { seconds = 0, place = NoticePlace.free, lasting = false }: CardOptions = {}): void {
     const face = `${card.level}\n${card.title}\n${card.text}\n${card.hint}`;
     const before = this.shown_.get(key);
     // Repeated (each failed attempt to connect): it is shown already, and must not flash.
@@ -45,8 +68,8 @@ export class Cards {
     if (card.text !== "") element.append(make("p", "", card.text));
     if (card.hint !== "") element.append(make("p", "try", card.hint));
     this.shown_.set(key, element);
-    this.root_.append(element);
-    const wait = shownMs[card.level];
+    this.place_(element, place);
+    const wait = seconds === 0 ? shownMs[card.level] : seconds < 0 ? Infinity : 1000 * seconds;
     if (!lasting && Number.isFinite(wait)) {
       window.setTimeout(() => {
         if (this.shown_.get(key) === element) this.remove(key);
@@ -56,6 +79,30 @@ export class Cards {
       if (this.shown_.size <= most) break;
       this.remove(oldest);
     }
+  }
+
+  /** Puts a card where it was told, or where it covers nothing. */
+  private place_(element: HTMLElement, place: NoticePlace): void {
+    this.makeRoom_();
+    const chosen = spotOf[place];
+    if (chosen !== undefined) return this.stacks_.get(chosen)!.append(element);
+    const covered = this.covered_();
+    const isFree = (spot: (typeof spots)[number]) => {
+      this.stacks_.get(spot)!.append(element);
+      const { left, right, top, bottom } = element.getBoundingClientRect();
+      return bottom <= innerHeight && covered.every((box) => left >= box.right || right <= box.left || top >= box.bottom || bottom <= box.top);
+    };
+    if (!spots.some(isFree)) this.stacks_.get("top")!.append(element);
+  }
+
+  /** Stacks leave the panel of controls and the bar free, as they are now. */
+  private makeRoom_(): void {
+    const panel = document.getElementById("panel")?.getBoundingClientRect();
+    const foot = document.getElementById("foot")?.getBoundingClientRect();
+    const isBeside = panel !== undefined && panel.width > 0 && innerWidth >= wideWindow;
+    this.stacks_.get("top")!.style.setProperty("--beside", isBeside ? `${innerWidth - panel.left + gap}px` : "0px");
+    this.stacks_.get("right")!.style.setProperty("--below", panel !== undefined && panel.width > 0 ? `${panel.bottom + gap}px` : "0px");
+    this.stacks_.get("bottom")!.style.setProperty("--above", `${innerHeight - (foot?.top ?? innerHeight) + gap}px`);
   }
 
   remove(key: string): void {

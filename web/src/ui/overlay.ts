@@ -11,6 +11,7 @@ import type { FramePart } from "../page/viewer.ts";
 import { Role } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
+import type { Budget } from "./budget.ts";
 import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
@@ -34,7 +35,7 @@ const levels: readonly CardLevel[] = ["info", "warning", "error"];
 type OverlayPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "framing" | "setTheme">;
 
 export class Overlay implements PageListener, FramePart {
-  readonly cards = new Cards(byId("cards", HTMLElement));
+  readonly cards = new Cards(byId("cards", HTMLElement), () => this.coveredByOthers_());
 
   private readonly page_: OverlayPage;
   private readonly canvas_: HTMLCanvasElement;
@@ -49,6 +50,7 @@ export class Overlay implements PageListener, FramePart {
   private readonly help_ = byId("help", HTMLDialogElement);
   private profile_: Profile | null = null;
   private profiles_ = false;
+  private budget_: Budget | null = null;
   private barItems_: readonly BarItem[] = [];
   private pointerAt_ = { x: 0, y: 0, touch: false };
   private idle_: number | undefined;
@@ -169,19 +171,20 @@ export class Overlay implements PageListener, FramePart {
           title: this.everConnected_ ? "The world is not answering" : "No world here yet",
           text: "Trying again; the page reconnects automatically.",
           hint: this.everConnected_ ? "If the script was stopped, start it again." : "Is the script running?",
-        }, linkCard, true);
+        }, linkCard, { lasting: true });
         break;
       case "refused":
         this.loading_.hidden = true;
-        this.cards.show({ level: "error", title: "The world refuses this page", text: reason, hint: "" }, linkCard, true);
+        this.cards.show({ level: "error", title: "The world refuses this page", text: reason, hint: "" }, linkCard, { lasting: true });
         break;
       case "connecting":
         break;
     }
   }
 
-  notice({ level, title, text, hint, key }: PageNotice): void {
-    this.cards.show({ level: levels[level] ?? "info", title, text, hint }, key);
+  notice({ level, title, text, hint, key, seconds, place }: PageNotice): void {
+    if (title === "" && text === "") this.cards.remove(key ?? "");
+    else this.cards.show({ level: levels[level] ?? "info", title, text, hint }, key, { seconds, place });
   }
 
   grab(grab: Grab): void {
@@ -218,6 +221,7 @@ export class Overlay implements PageListener, FramePart {
       run: () => {
         this.profiles_ = !this.profiles_;
         this.page_.session.send({ type: "profile", on: this.profiles_ });
+        if (this.budget_ !== null) this.budget_.shown = this.profiles_;
         void import("./profile.ts").then(({ Profile }) => {
           this.profile_ ??= new Profile(this.page_);
           this.refreshMeter_();
@@ -283,6 +287,15 @@ export class Overlay implements PageListener, FramePart {
     const tops = [this.bar_, this.strip_, this.welcome_].filter(({ childNodes }) => childNodes.length > 0).map((part) => part.getBoundingClientRect().top);
     this.page_.viewer.margins.bottom = Math.min(innerHeight - Math.min(...tops) + reservedGap, mostReserved * innerHeight);
     this.page_.viewer.invalidate();
+  }
+
+  /** What a card must not lie on, css px: controls and labels. */
+  private coveredByOthers_(): DOMRect[] {
+    const { world: { entities: { label } }, viewer: { camera } } = this.page_;
+    const boxes: DOMRect[] = [];
+    for (const element of document.querySelectorAll("#panel, #bar, #strip:not(:empty)")) boxes.push(element.getBoundingClientRect());
+    label.forEachBox(camera, (left, top, width, height) => boxes.push(new DOMRect(left, top, width, height)));
+    return boxes.filter(({ width }) => width > 0);
   }
 
   private refreshBar_(): void {
@@ -365,5 +378,17 @@ export class Overlay implements PageListener, FramePart {
     if (this.profile_ === null) return;
     this.profile_.refresh();
     this.meter_.append(this.profile_.element);
+    if (world.budgetMs === 0) return;
+    if (this.budget_ === null) {
+      void import("./budget.ts").then(({ Budget }) => {
+        if (this.budget_ !== null) return;
+        this.budget_ = new Budget(this.page_);
+        this.budget_.shown = this.profiles_;
+        this.page_.viewer.add(this.budget_);
+      });
+      return;
+    }
+    this.budget_.refresh();
+    this.meter_.append(this.budget_.element);
   }
 }

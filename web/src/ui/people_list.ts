@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The people at this world, with a button for a host to send others away. Fetched when it is first opened.
+// The people at this world, each with the color that others see of them: a field for one's own name, and a button for a host to send
+// others away. Fetched when it is first opened.
 
 import type { Page } from "../page/page.ts";
+import { others } from "../page/highlights.ts";
 import { Role, type ClientEntry } from "../protocol/generated.ts";
 import { make } from "./dom.ts";
 import "./people_list.css";
@@ -11,10 +13,12 @@ type ListedPage = Pick<Page, "world" | "session">;
 const roleNames: Record<Role, string> = { [Role.host]: "host", [Role.actor]: "guest", [Role.viewer]: "watches" };
 /** After the first press of a button, in which the second one counts. */
 const askedMs = 4000;
+const longestName = 40;
 
 export class PeopleList {
   private readonly page_: ListedPage;
   private readonly root_ = make("section", "pill");
+  private readonly name_ = make("input", "name");
   private shown_ = "";
   /** Whom the next press sends away; 0: nobody. */
   private asked_ = 0;
@@ -30,6 +34,12 @@ export class PeopleList {
       if (event.key !== "Escape") return;
       event.stopPropagation();
       this.close();
+    });
+    Object.assign(this.name_, { id: "own-name", type: "text", maxLength: longestName, placeholder: "Your name", autocomplete: "nickname" });
+    this.name_.setAttribute("aria-label", "Your name, as others see it");
+    this.name_.addEventListener("change", () => this.page_.session.rename(this.name_.value));
+    this.name_.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.name_.blur();
     });
     foot.append(this.root_);
   }
@@ -51,7 +61,6 @@ export class PeopleList {
   refresh(): void {
     if (this.root_.hidden) return;
     const { world: { clients }, session: { role, clientId } } = this.page_;
-    if (clients.length < 2) return this.close();
     const now = JSON.stringify([clients.map(({ client, name, role: theirs }) => [client, name, theirs]), role, clientId, this.asked_]);
     if (now === this.shown_) return;
     this.shown_ = now;
@@ -66,7 +75,10 @@ export class PeopleList {
     const { session } = this.page_;
     const isSelf = client === session.clientId;
     const called = name === "" ? `Page ${client}` : name;
-    const row = [make("span", "name", called), make("span", "role", isSelf ? `${roleNames[role]}, you` : roleNames[role])];
+    if (isSelf && document.activeElement !== this.name_) this.name_.value = name;
+    const swatch = make("span", "swatch");
+    swatch.style.background = `#${others[client % others.length].getHexString()}`;
+    const row = [swatch, isSelf ? this.name_ : make("span", "name", called), make("span", "role", isSelf ? `${roleNames[role]}, you` : roleNames[role])];
     if (session.role !== Role.host || isSelf) return [...row, make("span")];
     const isAsked = this.asked_ === client;
     const button = make("button", isAsked ? "text sure" : "text", isAsked ? "Press again" : "Send away");

@@ -3,7 +3,7 @@
 
 import { Vector3 } from "three";
 import {
-  NO_BODY, type ActionEntry, type ClientEntry, type Cost, type Listens, type Person, type PosesBuffer, type ServerMessage, type WorldSettings,
+  NO_BODY, type ActionEntry, type ClientEntry, type Cost, type LevelGroup, type Listens, type Person, type PosesBuffer, type ServerMessage, type WorldSettings,
 } from "../protocol/generated.ts";
 import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts";
 import { PoseBuffer } from "../scene/pose_buffer.ts";
@@ -21,7 +21,7 @@ export interface Hold {
 }
 
 /** The part of the world that changed; listeners redraw only that. */
-export type Change = "settings" | "actions" | "clients" | "look";
+export type Change = "settings" | "actions" | "clients" | "look" | "budget";
 
 /** Listens to events of the world. */
 export interface WorldListener {
@@ -49,6 +49,11 @@ export class World {
   stepMs = 0;
   /** The costs of a step, by its parts, while this page or another shows them. */
   costs: readonly Cost[] = [];
+  /** Processor time that a step may take, ms; 0: any. */
+  budgetMs = 0;
+  /** The levels of what a budget manages, the best first, and the latest changes in words; while a page shows costs. */
+  levels: readonly LevelGroup[] = [];
+  levelChanges: readonly string[] = [];
   step = 0;
   /** Simulated, s. */
   time = 0;
@@ -124,6 +129,12 @@ export class World {
         this.speed = message.speed;
         this.stepMs = message.stepMs;
         this.costs = message.costs;
+        this.levels = message.levels;
+        this.levelChanges = message.changes;
+        if (message.budgetMs !== this.budgetMs) {
+          this.budgetMs = message.budgetMs;
+          this.listener_.changed("budget");
+        }
         break;
       case "actions":
         this.actions = message.actions;

@@ -238,8 +238,10 @@ export class Headset implements PageListener, FramePart {
     for (const input of this.inputs) input.pulse(input.pointer.grab === null ? strength / 2 : strength, kind === "break" ? 60 : 35);
   }
 
-  notice({ level, title, text, hint, key }: PageNotice): void {
-    if (this.presenting) this.notices.show(level, title, text, hint, key);
+  notice({ level, title, text, hint, key, seconds }: PageNotice): void {
+    if (!this.presenting) return;
+    if (title === "" && text === "") this.notices.remove(key ?? "");
+    else this.notices.show(level, title, text, hint, key, false, seconds);
   }
 
   link(state: LinkState, reason: string): void {

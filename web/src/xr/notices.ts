@@ -79,9 +79,10 @@ export class Notices {
     return this.cards_.map((card) => card.title);
   }
 
-  show(level: number, title: string, text: string, hint: string, key = title, lasting = false): void {
+  /** `seconds`: 0: as usual for the level, below 0: until it is pressed. */
+  show(level: number, title: string, text: string, hint: string, key = title, lasting = false, seconds = 0): void {
     this.cards_ = this.cards_.filter((card) => card.key !== key);
-    this.cards_.push({ key, level, title, text, hint, left: lasting ? Infinity : (shownSeconds[level] ?? 6), lasting });
+    this.cards_.push({ key, level, title, text, hint, left: lasting || seconds < 0 ? Infinity : seconds || (shownSeconds[level] ?? 6), lasting });
     if (this.cards_.length > most) this.cards_.shift();
     this.arrange_();
   }
@@ -147,7 +148,7 @@ export class Notices {
     const height = this.lay_(this.measure_, null);
     this.board.resize(width, height);
     // Cards that disappear by themselves let rays through to the bodies behind them.
-    this.board.buttons = this.cards_.some((card) => card.level > 0 && !card.lasting) ? [{ x: 0, y: 0, width, height }] : [];
+    this.board.buttons = this.cards_.some((card) => (card.level > 0 || card.left === Infinity) && !card.lasting) ? [{ x: 0, y: 0, width, height }] : [];
   }
 
   private paint_(context: CanvasRenderingContext2D, colors: Colors): void {

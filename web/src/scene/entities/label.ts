@@ -2,7 +2,7 @@
 // Labels: text on a small plate that faces the viewer. Those without a height have a constant size on the screen, are in
 // front of everything else, and are lifted where they would cover each other.
 
-import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
+import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3, type PerspectiveCamera } from "three";
 import type { LabelEntity } from "../../protocol/generated.ts";
 import { moves, placeOf } from "../anchors.ts";
 import { liftApart, upAt, type Plate } from "../label_layout.ts";
@@ -89,6 +89,19 @@ export class LabelView implements EntityView<LabelEntity> {
     for (const { entity, canvas } of this.labels_.values()) {
       if (entity.height > 0 || canvas.width === 0 || moves(entity.a) !== moving) continue;
       if (this.placeOf_(entity, this.place_)) visit(this.place_, usual * canvas.width, usual * canvas.height);
+    }
+  }
+
+  /** The places of all on the screen of a camera, css px. */
+  forEachBox(camera: PerspectiveCamera, visit: (left: number, top: number, width: number, height: number) => void): void {
+    for (const { sprite } of this.labels_.values()) {
+      if (!sprite.visible) continue;
+      const seen = this.place_.copy(sprite.position).applyMatrix4(camera.matrixWorldInverse);
+      const pixels = innerHeight * camera.projectionMatrix.elements[5] / (-2 * seen.z);
+      if (!(seen.z < 0)) continue;
+      const { x, y } = seen.applyMatrix4(camera.projectionMatrix);
+      const [width, height] = [sprite.scale.x * pixels, sprite.scale.y * pixels];
+      visit(((1 + x) * innerWidth - width) / 2, ((1 - y) * innerHeight - height) / 2, width, height);
     }
   }
 
