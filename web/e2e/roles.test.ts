@@ -168,7 +168,8 @@ it("shows the list of people wholly in the window of a phone", async () => {
 it("lets the host send a guest away by two presses, whose page then stays away", async () => {
   await guest.press("#people");
   await guest.page.locator("#people-list").waitFor();
-  expect(await guest.page.locator("#people-list").innerText()).toMatch(/Hana\s+host\s+Gil\s+guest, you\s+Vera\s+watches/);
+  expect(await guest.page.locator("#people-list").innerText()).toMatch(/Hana\s+host\s+guest, you\s+Vera\s+watches/);
+  expect(await guest.page.inputValue("#own-name")).toBe("Gil");
   expect(await guest.page.locator("#people-list button").count()).toBe(0);
   await guest.picture("roles_people_of_guest");
   await host.press("#people");

@@ -186,6 +186,7 @@ TEST_F(HubTest, tells_all_the_new_name_of_a_user) {
   const std::uint32_t client = join(one, "Ada");
   join(two);
   receive(client, protocol::Rename{"Grace"});
+  hub.frame();
   EXPECT_EQ(two.all<protocol::Clients>().back().clients.at(0).name, "Grace");
   EXPECT_EQ(std::get<protocol::Rename>(hub.take_input().back().what).name, "Grace");
 }

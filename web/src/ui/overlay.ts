@@ -369,7 +369,7 @@ export class Overlay implements PageListener, FramePart {
   private refreshMeter_(): void {
     this.refreshBar_();
     this.meter_.hidden = !this.profiles_;
-    if (!this.profiles_) return;
+    if (!this.profiles_) return this.meter_.replaceChildren();
     const { world, viewer: { timing } } = this.page_;
     const step = make("b", "", world.stepMs.toFixed(2));
     const frame = make("b", "", timing.frameMs.toFixed(1));
