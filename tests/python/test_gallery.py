@@ -178,9 +178,12 @@ def test_a_role_holds_in_the_process_of_a_study_too(gallery: Gallery, role: str)
 def test_every_study_has_a_thumbnail_and_a_line(gallery: Gallery) -> None:
     base = gallery.url.split("?")[0]
     listed = json.loads(urlopen(base + "studies.json").read())
-    assert sorted(study["name"] for study in listed) == studies.names()
-    assert listed[0]["name"] == "chain" and set(serving.FIRST) <= set(studies.names())
-    for study in listed:
+    assert [group["group"] for group in listed] == list(serving.GROUPS)
+    assert listed[0]["studies"][0]["name"] == "lab" and listed[-1]["studies"][0]["name"] == "appendix-e1"
+    shown = [study for group in listed for study in group["studies"]]
+    assert sorted(study["name"] for study in shown) == studies.names(), "each study once"
+    assert all(study["title"][0].isupper() and "-" not in study["title"] for study in shown)
+    for study in shown:
         assert 20 < len(study["text"]) < 140 and study["text"].endswith("."), study
         assert urlopen(f"{base}studies/{study['name']}.jpg").read().startswith(b"\xff\xd8")
     assert b"gallery" in urlopen(base).read() and b"canvas" in urlopen(base + "world.html").read()
@@ -191,9 +194,17 @@ def test_a_click_leads_to_a_world_and_a_button_back(gallery: Gallery) -> None:
     with open_page(390, 844) as page:
         complaints = listen_for_complaints(page)
         page.goto(gallery.url)
-        page.locator("a", has_text="chain").first.wait_for()
+        chain = page.locator("a[href$='world=chain']")
+        chain.wait_for()
+        tops = page.evaluate(
+            "[...document.querySelectorAll('main a')].slice(0, 3).map((a) => a.getBoundingClientRect().top)"
+        )
+        assert tops[0] == tops[1] < tops[2], "two columns on a phone"
+        assert page.evaluate("document.querySelector('a[href$=\"world=chain\"] .keys').innerText").startswith(
+            ", break it with b"
+        )
         assert page.evaluate(r"!/\d \p{L}/u.test(document.querySelector('main').innerText)"), "units stay with numbers"
-        page.locator("a", has_text="chain").first.click()
+        chain.click()
         page.wait_for_function(
             "() => globalThis.iota?.connected && iota.bodies().length === 24 && iota.step > 0", timeout=60_000
         )

@@ -24,10 +24,46 @@ from iota.world.callbacks import print_error
 from iota.world.page import page_copy
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
-FIRST = (  # on the page
-    "chain", "ladder", "stack", "knot", "grasp", "links", "pour", "capstan", "wrecking-ball", "cradle", "undersea", "marbles", "cloth", "playground",
-    "physics-class", "fireworks",
-)  # fmt: skip
+GROUPS = {  # on the page, the best first: each study and its title
+    "See": {
+        "lab": "A laboratory",
+        "shoal": "A shoal of fish",
+        "mechanisms": "Mechanisms",
+        "undersea": "Under the sea",
+        "grasp": "Grippers",
+        "wrecking-ball": "Wrecking ball",
+        "rigging": "A derrick",
+        "evacuation": "Evacuation",
+        "marbles": "Marble run",
+        "fireworks": "Fireworks",
+        "crowd": "A crowd",
+        "weather": "Weather",
+    },
+    "Learn": {
+        "physics-class": "Physics class",
+        "cradle": "Newton's cradle",
+        "cradle-contact": "Cradles of steel and lead",
+        "capstan": "Capstan",
+        "pour": "Hopper",
+        "bucky": "Bucky ball",
+        "molecule": "Molecule",
+        "soft-molecule": "Soft molecule",
+    },
+    "Build and break": {
+        "playground": "Playground",
+        "chain": "Chain",
+        "ladder": "Jacob's ladder",
+        "stack": "Towers",
+        "knot": "A knot",
+        "links": "Chain links",
+        "cloth": "Cloth",
+    },
+    "From the thesis": {
+        "appendix-e1": "Appendix E.1",
+        "appendix-e2": "Appendix E.2",
+        "appendix-e3": "Appendix E.3",
+    },
+}
 LOOK = 0.1  # s, between two checks for visitors
 PATIENCE = 2.0  # s, within which a study has to end
 
@@ -155,7 +191,7 @@ class Gallery(Server):
 
 def in_order() -> list[str]:
     """All studies, as the page has them."""
-    return sorted(studies.names(), key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
+    return [each["name"] for group in grouped() for each in group["studies"]]
 
 
 def make_folder() -> tempfile.TemporaryDirectory[str]:
@@ -163,6 +199,21 @@ def make_folder() -> tempfile.TemporaryDirectory[str]:
     folder = page_copy("gallery.html")
     target = Path(folder.name)
     shutil.copytree(studies.PICTURES, target / "studies")
-    described = [{"name": name, "text": studies.description(name)} for name in in_order()]
-    (target / "studies.json").write_text(json.dumps(described))
+    (target / "studies.json").write_text(json.dumps(grouped()))
     return folder
+
+
+def grouped() -> list[dict[str, Any]]:
+    """The groups of the page, each with its studies: name, title and a sentence. A study of no group ends the first one."""
+    listed = {name for group in GROUPS.values() for name in group}
+    others = {name: name.replace("-", " ").capitalize() for name in studies.names() if name not in listed}
+    groups = {title: group | (others if number == 0 else {}) for number, (title, group) in enumerate(GROUPS.items())}
+    return [
+        {
+            "group": title,
+            "studies": [
+                {"name": name, "title": words, "text": studies.description(name)} for name, words in group.items()
+            ],
+        }
+        for title, group in groups.items()
+    ]
