@@ -4,8 +4,16 @@
 /** Keys that move a slider. */
 const sliderKeys = /^(Arrow|Home|End|Page)/;
 
-/** Whether the focused control, or an open dialog, keeps the key. */
+const owners: ((key: string) => boolean)[] = [];
+
+/** Keys for which `owns` is true are neither the script's nor the page's: those of an emulated headset, while it presents. */
+export function ownKeys(owns: (key: string) => boolean): void {
+  owners.push(owns);
+}
+
+/** Whether the focused control, an open dialog or an owner keeps the key. */
 export function keepsKey({ target, key }: KeyboardEvent): boolean {
+  if (owners.some((owns) => owns(key))) return true;
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog[open]") !== null) return true;
   if (target instanceof HTMLInputElement && target.type === "range") return sliderKeys.test(key);

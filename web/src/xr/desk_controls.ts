@@ -5,6 +5,7 @@
 import { Euler, Quaternion, Vector3 } from "three";
 import type { XRDevice } from "iwer";
 import { Hit, pickRay } from "../interact/picking.ts";
+import { ownKeys } from "../page/focus.ts";
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
 import { rayOnPlate, Spot, type Plate } from "./plate.ts";
@@ -29,7 +30,9 @@ const stickKeys: Record<string, readonly [number, number]> = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
 
-type DeskPage = Pick<Page, "viewer" | "world" | "commands">;
+const otherKeys: ReadonlySet<string> = new Set(["1", "2", "h", "v", "x", "Escape"]);
+
+type DeskPage = Pick<Page, "viewer" | "world">;
 
 export class DeskControls implements FramePart {
   /** Panels for the mouse; set once they exist. */
@@ -65,6 +68,8 @@ export class DeskControls implements FramePart {
   constructor(page: DeskPage, canvas: HTMLCanvasElement, device: XRDevice) {
     this.page_ = page;
     this.device_ = device;
+    // Also before the script's, which has its actions on the wrist panel and the buttons of the controllers.
+    ownKeys((key) => this.on_ && (key.toLowerCase() in walkKeys || key in stickKeys || otherKeys.has(key)));
     // Before the page's own listeners, since the mouse is a hand in a session.
     const take = (type: string, act: (event: Event) => void) => window.addEventListener(type, (event) => {
       if (this.on_ && (event.target === canvas || event instanceof KeyboardEvent)) act(event);
@@ -144,9 +149,7 @@ export class DeskControls implements FramePart {
 
   private key_(event: KeyboardEvent, down: boolean): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { key } = event;
-    // Keys of the script have priority, as on the page.
-    if (this.page_.commands.script.some((command) => command.keys?.includes(key)) || !this.own_(key, down, event.repeat)) return;
+    if (!this.own_(event.key, down, event.repeat)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
   }
@@ -168,7 +171,7 @@ export class DeskControls implements FramePart {
       controller?.updateButtonValue(id, down ? 1 : 0);
       return true;
     }
-    if (key !== "h" && key !== "v" && key !== "x" && key !== "Escape") return false;
+    if (!otherKeys.has(key)) return false;
     if (!down || repeat) return true;
     if (key === "x") {
       this.isWristUp_ = !this.isWristUp_;
