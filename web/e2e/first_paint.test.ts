@@ -7,6 +7,11 @@ import { afterAll, beforeAll, expect, it } from "vitest";
 import { Browser, small } from "./browser.ts";
 import { artifacts, freePort, probe, WorldServer } from "./server.ts";
 
+declare global {
+  // Frames in which the described world was not shown yet.
+  var framesHidden: number;
+}
+
 let server: WorldServer;
 let browser: Browser;
 
@@ -65,6 +70,25 @@ it("says that it opens the world, above a moving bar, until the world is drawn",
   pass();
   await page.waitForFunction(() => globalThis.iota?.connected && iota.bodies().length > 0 && iota.step > 0);
   await loading.waitFor({ state: "hidden" });
+  await page.close();
+});
+
+it("shows the world a few frames after its first poses, at once and not slowly", async () => {
+  const page = await browser.context.newPage();
+  await page.addInitScript(() => {
+    globalThis.framesHidden = 0;
+    const look = () => {
+      const isHidden = document.getElementById("view")?.classList.contains("waiting") ?? true;
+      if (globalThis.iota?.page.world.described && isHidden) globalThis.framesHidden++;
+      requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  });
+  await page.goto(server.url);
+  await page.waitForFunction(() => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
+  const { hidden, eased } = await page.evaluate(() => ({ hidden: framesHidden, eased: getComputedStyle(document.getElementById("view")!).transitionProperty }));
+  expect(hidden).toBeLessThan(4);
+  expect(eased).not.toMatch(/opacity|all/);
   await page.close();
 });
 

@@ -218,7 +218,8 @@ describe("the view of a running scene", () => {
   afterEach(() => void vi.unstubAllGlobals());
 
   /** The views, one a look, of four balls, the last of which goes along a way; x in m. */
-  function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3]): FittedView[] {
+  async function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3]): Promise<FittedView[]> {
+    await import("../src/page/ways.ts"); // which the page fetches when it needs it
     vi.stubGlobal("innerWidth", 1280);
     vi.stubGlobal("innerHeight", 720);
     const camera = new PerspectiveCamera(42, 16 / 9);
@@ -245,26 +246,27 @@ describe("the view of a running scene", () => {
       test.poses(all.map((slot) => body(slot, others[slot] ?? way(time))));
       framing.update(0.3);
       navigation.update(0.3);
+      await new Promise((resolve) => setTimeout(resolve));
       views.push(navigation.goal);
     }
     return views;
   }
 
-  it("stays where it is while one of four things goes away", () => {
-    const [first, ...later] = watch((time) => Math.min(3.5 + 0.7 * time, 9.9));
+  it("stays where it is while one of four things goes away", async () => {
+    const [first, ...later] = await watch((time) => Math.min(3.5 + 0.7 * time, 9.9));
     for (const view of later) expect(view).toEqual(first);
   });
 
-  it("is widened once for one that swings out of it", () => {
-    const views = watch((time) => 4 + 1.6 * Math.sin(2 * time));
+  it("is widened once for one that swings out of it", async () => {
+    const views = await watch((time) => 4 + 1.6 * Math.sin(2 * time));
     const seen = new Set(views.map(({ distance }) => distance.toFixed(6)));
     expect(views.at(-1)!.distance).toBeGreaterThan(views[0].distance);
     expect(seen.size).toBeLessThan(5);
     expect(views.at(-1)).toEqual(views[18]);
   });
 
-  it("follows the only thing", () => {
-    const views = watch((time) => 0.5 + time, []);
+  it("follows the only thing", async () => {
+    const views = await watch((time) => 0.5 + time, []);
     expect(views.at(-1)!.pivot[0]).toBeGreaterThan(8);
   });
 });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { boxOf, circleThrough, makeItem, settingOf, withoutFar, type Item } from "../src/page/subject.ts";
+import { boxOf, makeItem, settingOf, withoutFar, type Item } from "../src/page/subject.ts";
+import { circleThrough } from "../src/page/ways.ts";
 import { Points } from "../src/scene/points.ts";
 
 type Place = readonly [number, number, number];

@@ -12,7 +12,8 @@ import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import type { World } from "../world/world.ts";
 import type { PageListener } from "./events.ts";
-import { apart, boxOf, circleThrough, makeItem, settingOf, settingSize, withoutFar, type Item } from "./subject.ts";
+import { apart, boxOf, makeItem, settingOf, settingSize, withoutFar, type Item } from "./subject.ts";
+import type { Ways } from "./ways.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
 /** The first view without a camera of the script: a little from the side and above. */
@@ -34,9 +35,6 @@ const widest = 2;
 const widestCircle = 3;
 /** Of the things, so many may leave the view before it is widened at once: a single one may be on its way to far away. */
 const few = 0.1;
-/** What rests outside the view widens it up to so many sizes from its middle. */
-const restSize = 1.6;
-const mostWays = 100;
 /** A followed scene has room to move in. */
 const followDistance = 1.6;
 /** In s: from then on a thing that is far away has gone there. */
@@ -67,8 +65,8 @@ export class Framing implements FramePart, PageListener {
   private chosen_: ReadonlySet<number> = new Set();
   private fixed_: readonly Item[] = [];
   private core_ = { center: [0, 0, 0] as readonly [number, number, number], radius: 1 };
-  /** The latest places of members, by slot, oldest first; of many members only of those that have left the view. */
-  private readonly ways_ = new Map<number, (readonly [number, number, number])[]>();
+  private ways_: Ways | null = null;
+  private asked_ = false;
   private framed_: Bounds | null = null;
   private script_ = "";
   private wait_ = 0;
@@ -169,7 +167,7 @@ export class Framing implements FramePart, PageListener {
   /** Takes the things that were just looked at as the scene to show. */
   private begin_(bounds: Bounds | null): Bounds | null {
     this.kept_.clear();
-    this.ways_.clear();
+    this.ways_?.clear();
     this.base_.clear();
     this.addScene_(this.base_);
     this.framed_ = bounds;
@@ -209,7 +207,9 @@ export class Framing implements FramePart, PageListener {
       for (const item of out) this.addItem_(item, this.setting_);
       addOutermost(kept, this.setting_, shown, frame);
     } else {
-      most = this.addReturning_(out) ? widestCircle : widest;
+      if (out.length > 0 && !this.asked_) this.fetchWays_();
+      const circles = this.ways_?.follow(this.members_, out, this.framed_ ?? bounds, kept, (item) => this.addItem_(item, kept));
+      most = circles === true ? widestCircle : widest;
     }
     if (kept.count === before) this.addNewDrawings_(shown, frame);
     if (kept.count === before) return;
@@ -241,27 +241,11 @@ export class Framing implements FramePart, PageListener {
     return shareOutside(places, shown, inner) > 0;
   }
 
-  /** Adds places of single things outside the view that turn back, rest or circle; whether one circles. */
-  private addReturning_(out: readonly Item[]): boolean {
-    const { framed_: framed, ways_: ways, kept_: kept } = this;
-    if (framed === null) return false;
-    const { members_: members } = this;
-    const slots = new Set(members.map(({ slot }) => slot));
-    for (const slot of ways.keys()) if (!slots.has(slot)) ways.delete(slot);
-    for (const { slot, center } of members.length > mostWays ? out : members) ways.set(slot, [...(ways.get(slot) ?? []), center].slice(-3));
-    let circles = false;
-    for (const item of out) {
-      const way = ways.get(item.slot)!;
-      if (way.length < 2 || item.slot < 0) continue;
-      const [far, before] = [apart(item.center, framed.center), apart(way.at(-2)!, framed.center)];
-      const rests = way.length === 3 && apart(way[0], way[2]) < 0.01 * framed.radius && far < restSize * framed.radius;
-      if (rests || far < before - 0.005 * framed.radius) this.addItem_(item, kept);
-      const circle = way.length === 3 ? circleThrough(way[0], way[1], way[2]) : null;
-      if (circle === null || circle.radius > nearSize * framed.radius || apart(circle.center, framed.center) > 1.5 * framed.radius) continue;
-      circles = true;
-      for (const place of circle.points) kept.add(...place);
-    }
-    return circles;
+  private fetchWays_(): void {
+    this.asked_ = true;
+    void import("./ways.ts").then(({ Ways }) => {
+      this.ways_ = new Ways();
+    });
   }
 
   /** Adds what the script has drawn or labeled since. */

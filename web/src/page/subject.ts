@@ -4,7 +4,7 @@
 
 import type { Points } from "../scene/points.ts";
 
-type Place = readonly [number, number, number];
+export type Place = readonly [number, number, number];
 
 /** A body or another thing: its box, and its place in a list of points. */
 export interface Item {
@@ -111,35 +111,4 @@ export function settingOf(moving: readonly Item[], fixed: readonly Item[], suppo
     }
     return sides.size > 2;
   }
-}
-
-/** The circle through three places, if they are on one; null for those on a line. */
-export function circleThrough(a: Place, b: Place, c: Place): { center: Place; radius: number; points: readonly Place[] } | null {
-  const [u, v] = [minus(b, a), minus(c, a)];
-  const n = cross(u, v);
-  const [uu, vv, nn] = [dot(u, u), dot(v, v), dot(n, n)];
-  if (nn < 1e-6 * uu * vv) return null;
-  const [toU, toV] = [cross(n, u), cross(v, n)];
-  const way = [0, 1, 2].map((axis) => (vv * toU[axis] + uu * toV[axis]) / (2 * nn)) as unknown as Place;
-  const center: Place = [a[0] + way[0], a[1] + way[1], a[2] + way[2]];
-  const radius = Math.hypot(...way);
-  const across = cross(n, way);
-  const scale = radius / Math.hypot(...across);
-  const points = [...Array(12).keys()].map((k): Place => {
-    const [cos, sin] = [Math.cos((k * Math.PI) / 6), Math.sin((k * Math.PI) / 6)];
-    return [0, 1, 2].map((axis) => center[axis] - cos * way[axis] + sin * scale * across[axis]) as unknown as Place;
-  });
-  return { center, radius, points };
-}
-
-function minus(a: Place, b: Place): Place {
-  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-}
-
-function dot(a: Place, b: Place): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-function cross(a: Place, b: Place): Place {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }

@@ -8,6 +8,8 @@ import type { FramePart } from "../page/viewer.ts";
 import { make } from "./dom.ts";
 
 const most = 4;
+/** Things that are farther apart than one of so many directions have markers of their own. */
+const directions = 8;
 const lookEverySeconds = 0.15;
 /** From the edge, css px. */
 const margin = 34;
@@ -16,6 +18,16 @@ interface Part {
   bodies: number;
   inView: number;
   readonly middle: Vector3;
+}
+
+/** One thing of each direction, those with most things first. Angles in rad. */
+export function oneOfEach<Thing>(things: readonly Thing[], angleOf: (thing: Thing) => number): Thing[] {
+  const ways = new Map<number, Thing[]>();
+  for (const thing of things) {
+    const way = (Math.round((angleOf(thing) / (2 * Math.PI)) * directions) + directions) % directions;
+    ways.set(way, [...(ways.get(way) ?? []), thing]);
+  }
+  return [...ways.values()].sort((a, b) => b.length - a.length).map(([thing]) => thing);
 }
 
 export class EdgeMarkers implements FramePart {
@@ -44,7 +56,8 @@ export class EdgeMarkers implements FramePart {
     }
   }
 
-  /** The articulates that are completely out of view. None if all or most are: then the user looks elsewhere. */
+  /** The articulates that are completely out of view, one for each direction, those with most first. None if all or most are: then the
+   * user looks elsewhere. */
   private findAway_(): readonly Part[] {
     const { world: { entities, poses } } = this.page_;
     const { body, membership } = entities;
@@ -61,9 +74,9 @@ export class EdgeMarkers implements FramePart {
     }
     const parts = [...this.parts_.values()];
     const away = parts.filter((part) => part.inView === 0);
-    if (away.length > most || 2 * away.length > parts.length) return [];
+    if (2 * away.length > parts.length) return [];
     for (const part of away) part.middle.divideScalar(part.bodies);
-    return away;
+    return away.length <= most ? away : oneOfEach(away, ({ middle }) => this.edgeOf_(middle).angle).slice(0, most);
   }
 
   private isInView_(place: Vector3): boolean {
@@ -71,7 +84,8 @@ export class EdgeMarkers implements FramePart {
     return Math.abs(seen.x) < 1 && Math.abs(seen.y) < 1 && seen.z < 1;
   }
 
-  private place_(marker: HTMLElement, middle: Vector3): void {
+  /** Where a place is beyond the edge: -1 .. 1 across and up, and the direction, rad, clockwise from the right. */
+  private edgeOf_(middle: Vector3): { x: number; y: number; angle: number } {
     const { camera } = this.page_.viewer;
     const seen = this.point_.copy(middle).applyMatrix4(camera.matrixWorldInverse);
     const depth = Math.max(Math.abs(seen.z), 1e-9);
@@ -83,7 +97,11 @@ export class EdgeMarkers implements FramePart {
       x /= size;
       y /= size;
     }
-    const angle = Math.atan2(-y * innerHeight, x * innerWidth);
+    return { x, y, angle: Math.atan2(-y * innerHeight, x * innerWidth) };
+  }
+
+  private place_(marker: HTMLElement, middle: Vector3): void {
+    const { x, y, angle } = this.edgeOf_(middle);
     const top = Math.min(Math.max(((1 - y) / 2) * innerHeight, margin), innerHeight - margin - 70);
     // Beside the panel of controls, not below it.
     const panel = document.getElementById("panel")?.getBoundingClientRect();

@@ -12,7 +12,6 @@ import { Role } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
 import type { Budget } from "./budget.ts";
-import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
 import { Keys } from "./keys.ts";
@@ -24,6 +23,7 @@ const welcomeMs = 15000;
 /** N. */
 const leastForce = 0.05;
 const meterEveryMs = 250;
+const markersAfterMs = 1000;
 /** Between the page's controls and what is framed, css px; and the largest share of the window below it. */
 const reservedGap = 24;
 const mostReserved = 0.3;
@@ -66,7 +66,6 @@ export class Overlay implements PageListener, FramePart {
     this.page_ = page;
     this.canvas_ = canvas;
     const showBar = () => this.showBar();
-    page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
     page.commands.add(this.peopleCommand_(), this.helpCommand_(), this.profileCommand_());
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
@@ -135,8 +134,12 @@ export class Overlay implements PageListener, FramePart {
   // --- PageListener
 
   ready(): void {
+    if (!this.canvas_.classList.contains("waiting")) return;
     this.canvas_.classList.remove("waiting");
     this.loading_.hidden = true;
+    // In the first picture nothing has left the view.
+    const fetch = () => void import("./edge_markers.ts").then(({ EdgeMarkers }) => this.page_.viewer.add(new EdgeMarkers(this.page_, byId("away", HTMLElement))));
+    window.setTimeout(fetch, markersAfterMs);
   }
 
   changed(what: Change | "selection"): void {
