@@ -8,7 +8,6 @@ import {
 import type { Page } from "../page/page.ts";
 import type { Film } from "./film.ts";
 import type { CustomClass } from "../scene/entities/custom.ts";
-import { takeFilmFrame } from "../page/picture.ts";
 
 const three = {
   BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, Group, Matrix4, Mesh,
@@ -50,7 +49,7 @@ export interface IotaDebug {
   setStyle(style: string): void;
   select(body: number): void;
   /** Draws one frame and returns it as the address of a JPEG; afterwards the page draws only on this call. */
-  filmFrame(): string;
+  filmFrame(): Promise<string>;
   /** For `iota record`: begins to draw the next frame of a film and returns the frame before, empty at first.
    * `plots`: with those of the script. The page itself is not shown any more. */
   nextFilmFrame(plots: boolean): Promise<string>;
@@ -121,7 +120,7 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     setStyle: (style) => page.world.setStyle(style),
     select: (body) => page.selection.select(body),
     define: (name, made) => void import("../scene/entities/custom.ts").then(({ defineClass }) => defineClass(name, made)),
-    filmFrame: () => takeFilmFrame(page),
+    filmFrame: async () => (await import("../page/picture.ts")).takeFilmFrame(page),
     nextFilmFrame: async (plots) => {
       film ??= new (await import("./film.ts")).Film(page);
       return film.next(plots ? page.world.entities.plot.all() : []);

@@ -4,7 +4,6 @@
 import type { Choice, Command, Entry, ScriptCommand } from "../commands/command.ts";
 import { ActionTarget, ControlCommand, ControllerButton, NoticeLevel, Role, type ActionEntry } from "../protocol/generated.ts";
 import type { PageParts } from "./page_parts.ts";
-import { savePicture } from "./picture.ts";
 
 /** Times real time. */
 const speeds: readonly number[] = [0.1, 0.25, 0.5, 1, 2];
@@ -177,7 +176,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       help: "saves a picture",
       keys: ["p"],
       title: () => "Picture",
-      run: () => void savePicture(viewer, world.settings.title).catch((error: unknown) => say("picture", String(error))),
+      run: () => void import("./picture.ts").then(({ savePicture }) => savePicture(viewer, world.settings.title)).catch((error: unknown) => say("picture", String(error))),
     },
     {
       name: "sound",

@@ -7,7 +7,7 @@ import { Connection, type ConnectionListener, type LinkState, type JoinRequest }
 import { Role, type ClientMessage, type ControlCommand, type Id, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
-import { sendPicture, type PictureViewer } from "./picture.ts";
+import type { PictureViewer } from "./picture.ts";
 import { smooth, type Viewer } from "./viewer.ts";
 
 type SessionViewer = PictureViewer & Pick<Viewer, "invalidate" | "timing">;
@@ -87,7 +87,7 @@ export class Session implements ConnectionListener {
   message(message: ServerMessage): void {
     this.viewer_.invalidate();
     if (message.type === "notice") this.events_.notice({ ...message, ...(message.id === "" ? {} : { key: message.id }) });
-    else if (message.type === "askPicture") void sendPicture(this.viewer_, message.request, (part) => this.send(part));
+    else if (message.type === "askPicture") void import("./picture.ts").then(({ sendPicture }) => sendPicture(this.viewer_, message.request, (part) => this.send(part)));
     else if (message.type === "effect") this.events_.effect(message.kind, message.position, message.volume);
     else if (message.type === "pulse") this.events_.pulse(message.hand, message.strength, message.seconds);
     else this.world_.take(message);

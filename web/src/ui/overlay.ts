@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own controls: one thin bar, times on request, a hint at the pointer, actions, cards, help.
 
+import { Vector3 } from "three";
 import { isAllowed, type Command } from "../commands/command.ts";
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
@@ -23,7 +24,6 @@ const welcomeMs = 15000;
 /** N. */
 const leastForce = 0.05;
 const meterEveryMs = 250;
-const markersAfterMs = 1000;
 /** Between the page's controls and what is framed, css px; and the largest share of the window below it. */
 const reservedGap = 24;
 const mostReserved = 0.3;
@@ -61,6 +61,8 @@ export class Overlay implements PageListener, FramePart {
   private role_: Role = Role.host;
   private people_: PeopleList | null = null;
   private everConnected_ = false;
+  private marks_ = false;
+  private readonly place_ = new Vector3();
 
   constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
     this.page_ = page;
@@ -134,12 +136,8 @@ export class Overlay implements PageListener, FramePart {
   // --- PageListener
 
   ready(): void {
-    if (!this.canvas_.classList.contains("waiting")) return;
     this.canvas_.classList.remove("waiting");
     this.loading_.hidden = true;
-    // In the first picture nothing has left the view.
-    const fetch = () => void import("./edge_markers.ts").then(({ EdgeMarkers }) => this.page_.viewer.add(new EdgeMarkers(this.page_, byId("away", HTMLElement))));
-    window.setTimeout(fetch, markersAfterMs);
   }
 
   changed(what: Change | "selection"): void {
@@ -369,8 +367,20 @@ export class Overlay implements PageListener, FramePart {
     return [name, this.bodyHint_].filter((part) => part !== "").join(": ");
   }
 
+  /** Markers are fetched when the first body has left the view. */
+  private markWhatLeft_(): void {
+    const { world: { entities: { body } }, viewer } = this.page_;
+    if (this.marks_ || viewer.presenting) return;
+    for (let index = 0; index < body.pickableCount && !this.marks_; index++) {
+      const { x, y, z } = this.place_.fromArray(body.position, 3 * body.pickable[index]).project(viewer.camera);
+      this.marks_ = !(Math.abs(x) < 1 && Math.abs(y) < 1 && z < 1);
+    }
+    if (this.marks_) void import("./edge_markers.ts").then(({ EdgeMarkers }) => viewer.add(new EdgeMarkers(this.page_, byId("away", HTMLElement))));
+  }
+
   private refreshMeter_(): void {
     this.refreshBar_();
+    this.markWhatLeft_();
     this.meter_.hidden = !this.profiles_;
     if (!this.profiles_) return this.meter_.replaceChildren();
     const { world, viewer: { timing } } = this.page_;
