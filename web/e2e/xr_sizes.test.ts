@@ -36,7 +36,7 @@ describe("a headset", () => {
     });
     expect(scene.scale === 1, JSON.stringify(scene)).toBe(!isScaled);
     if (isScaled) {
-      expect(scene.size).toBeGreaterThan(0.5);
+      expect(scene.size).toBeGreaterThan(0.45);
       expect(scene.size).toBeLessThan(1.2);
     }
     expect(scene.away).toBeGreaterThan(0.6);
