@@ -43,6 +43,12 @@ const goneAfter = 5;
 const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
+/** Of a chain whose length at rest is looked for; a net is shorter than all its parts. */
+const mostLinks = 20;
+/** After so many looks in a row a smaller scene is another one. */
+const mostSmall = 10;
+/** Looks before the first picture. */
+const mostEarly = 30;
 /** Places that widened the view of a narrow window; enough for a motion's reach. */
 const mostKept = 200;
 /** The standard screen, for which scripts choose their cameras. */
@@ -67,9 +73,13 @@ export class Framing implements FramePart, PageListener {
   private core_ = { center: [0, 0, 0] as readonly [number, number, number], radius: 1 };
   private ways_: Ways | null = null;
   private asked_ = false;
+  private early_ = 0;
   private framed_: Bounds | null = null;
   private script_ = "";
   private wait_ = 0;
+  /** Looks in a row at which the scene was much smaller. */
+  private small_ = 0;
+  private updated_ = 0;
   private falling_ = false;
   /** The connection was lost since the last look: another scene is of another script, though that may have the same title. */
   private rejoined_ = false;
@@ -119,7 +129,7 @@ export class Framing implements FramePart, PageListener {
 
   // --- FramePart
 
-  update(seconds: number): void {
+  update(seconds: number, now?: number): void {
     const { camera, renderer } = this.viewer_;
     const { body } = this.world_.entities;
     camera.getWorldPosition(body.eye);
@@ -130,7 +140,15 @@ export class Framing implements FramePart, PageListener {
       this.margin_ = bottom;
       this.frame_(false);
     }
-    this.wait_ -= seconds;
+    // In real time: a frame that took long is told as a short one.
+    this.wait_ -= now === undefined ? seconds : (now - this.updated_) / 1000;
+    this.updated_ = now ?? 0;
+    // What moves before the page shows its first picture widens it.
+    const isEarly = this.viewer_.hidden && this.framed_ !== null && this.early_ < mostEarly;
+    if (isEarly) {
+      this.early_++;
+      this.wait_ = 0;
+    }
     // A page at rest has nothing new to look at.
     if (this.framed_ !== null && (this.wait_ > 0 || this.viewer_.resting) && !this.falling_) return;
     this.wait_ = lookEverySeconds;
@@ -138,12 +156,15 @@ export class Framing implements FramePart, PageListener {
     if (!this.world_.described || this.script_ === "") return;
     const seen = this.look_(this.framed_ === null);
     const { framed_: framed } = this;
-    const isOther = framed === null || seen === null || !this.stays_ || seen.radius * otherSize < framed.radius || (this.rejoined_ && isAnother(seen, framed));
+    // What swings is small at times.
+    this.small_ = framed !== null && seen !== null && seen.radius * otherSize < framed.radius ? this.small_ + 1 : 0;
+    const isOther = framed === null || seen === null || !this.stays_ || this.small_ > mostSmall || (this.rejoined_ && isAnother(seen, framed));
     const bounds = isOther ? this.look_(true) : seen;
     if (bounds === null) return;
     const before = isOther && this.rejoined_ ? null : framed;
     this.rejoined_ = false;
     if (isOther) this.begin_(bounds);
+    else if (isEarly) this.widenFirst_(bounds);
     const { hasCamera, cameraPosition: eye, cameraTarget: target } = this.world_.settings;
     const chosen = hasCamera ? smallest * Math.hypot(...eye.map((value, axis) => value - target[axis])) : 0;
     const size = Math.max(bounds.radius, chosen, 1e-12);
@@ -153,6 +174,9 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.setScene(bounds.center, this.viewer_.size, Math.min(this.calcReach_(bounds.center), farthestWalk * size));
     if (before === null) {
       this.frame_(true);
+      this.navigation_.jumpHome();
+    } else if (isEarly) {
+      this.frame_(false);
       this.navigation_.jumpHome();
     } else if (isOther) {
       this.frame_(false);
@@ -167,11 +191,22 @@ export class Framing implements FramePart, PageListener {
   /** Takes the things that were just looked at as the scene to show. */
   private begin_(bounds: Bounds | null): Bounds | null {
     this.kept_.clear();
+    this.small_ = 0;
     this.ways_?.clear();
     this.base_.clear();
     this.addScene_(this.base_);
     this.framed_ = bounds;
     return bounds;
+  }
+
+  /** Adds what was just looked at to the first view, unless most of it has gone elsewhere. */
+  private widenFirst_(bounds: Bounds): void {
+    const { base_: base } = this;
+    const before = base.count;
+    this.addScene_(base);
+    if ((base.bounds()?.radius ?? 0) <= widest * bounds.radius) return;
+    base.count = before;
+    this.begin_(bounds);
   }
 
   /** Whether half of all things or more are still in the scene. */
@@ -208,7 +243,7 @@ export class Framing implements FramePart, PageListener {
       addOutermost(kept, this.setting_, shown, frame);
     } else {
       if (out.length > 0 && !this.asked_) this.fetchWays_();
-      const circles = this.ways_?.follow(this.members_, out, this.framed_ ?? bounds, kept, (item) => this.addItem_(item, kept));
+      const circles = this.ways_?.follow(this.members_, out, this.framed_ ?? bounds, kept, this.world_.ground === null, (item) => this.addItem_(item, kept));
       most = circles === true ? widestCircle : widest;
     }
     if (kept.count === before) this.addNewDrawings_(shown, frame);
@@ -232,7 +267,7 @@ export class Framing implements FramePart, PageListener {
     places.clear();
     for (const { center } of moving) places.add(...center);
     // It is brought well into the picture.
-    const inner = this.calcFrame_(this.falling_ ? 0.25 : 0.7);
+    const inner = this.calcFrame_(this.falling_ ? 0.25 : moving.length === 1 ? 0.7 : 0.9);
     const away = shareOutside(places, shown, inner) * moving.length;
     if (2 * away <= moving.length + fixed) return false;
     const middle = withoutFar(moving);
@@ -420,9 +455,27 @@ export class Framing implements FramePart, PageListener {
     const drawn = new Points();
     this.addDrawn_(drawn);
     this.addNear_(drawn, settingSize * Math.max(this.core_.radius, 1e-12), points);
+    this.addHanging_(points);
     this.world_.entities.label.forEachPlate(false, ({ x, y, z }) => {
       if (apart([x, y, z], this.core_.center) < labelSize * Math.max(this.core_.radius, 1e-12)) points.add(x, y, z);
     });
+  }
+
+  /** Adds nails, and below each the place down to which what hangs from it alone reaches at rest. */
+  private addHanging_(points: Points): void {
+    const { moving_: moving, world_: { ground, entities: { nail, membership } } } = this;
+    const hanging = new Map<number, readonly [number, number, number] | null>();
+    nail.forEachPlace((body, { x, y, z }) => {
+      points.add(x, y, z);
+      const part = membership.articulateOf(body);
+      hanging.set(part, part < 0 || hanging.has(part) ? null : [x, y, z]);
+    });
+    if (ground === null) return;
+    for (const [part, place] of hanging) {
+      const links = moving.filter(({ slot }) => slot >= 0 && membership.articulateOf(slot) === part);
+      if (place === null || links.length > mostLinks) continue;
+      points.add(place[0], Math.max(place[1] - links.reduce((length, { radius }) => length + 2 * radius, 0), ground), place[2]);
+    }
   }
 
   /** Adds those of the points that are near the middle of the scene, one by one: a single thing far away leaves the others counted. */

@@ -102,6 +102,11 @@ export class Viewer {
     }
   }
 
+  /** Whether the page has shown no picture of the world yet. */
+  get hidden(): boolean {
+    return this.shown_ !== "ready";
+  }
+
   /** Whether nothing has changed for a while, so that no picture is drawn. */
   get resting(): boolean {
     return this.redraw_.isResting;

@@ -17,12 +17,12 @@ export class Ways {
   private readonly places_ = new Map<number, readonly Place[]>();
 
   /**
-   * Adds to `kept` places of single things outside the view that turn back, rest, or go along a circle; whether one circles. `addItem` adds
-   * its corners.
+   * Adds to `kept` places of single things outside the view that turn back or rest, and, if `mayCircle`, the circles along which they go;
+   * whether one circles. What swings over a ground would not go around. `addItem` adds a thing's corners.
    */
   follow(
     members: readonly Item[], out: readonly Item[], { center, radius }: { readonly center: Place; readonly radius: number }, kept: Points,
-    addItem: (item: Item) => void,
+    mayCircle: boolean, addItem: (item: Item) => void,
   ): boolean {
     const { places_: ways } = this;
     const slots = new Set(members.map(({ slot }) => slot));
@@ -35,7 +35,7 @@ export class Ways {
       const far = apart(item.center, center);
       const rests = way.length === 3 && apart(way[0], way[2]) < still * radius && far < restSize * radius;
       if (rests || far < apart(way.at(-2)!, center) - (still * radius) / 2) addItem(item);
-      const circle = way.length === 3 ? circleThrough(way[0], way[1], way[2]) : null;
+      const circle = mayCircle && way.length === 3 ? circleThrough(way[0], way[1], way[2]) : null;
       if (circle === null || circle.radius > circleSize * radius || apart(circle.center, center) > circleMiddle * radius) continue;
       circles = true;
       for (const place of circle.points) kept.add(...place);

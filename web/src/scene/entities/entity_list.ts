@@ -3,7 +3,7 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { CustomEntity, LightEntity, PlotEntity, SoundEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
+import type { CustomEntity, LightEntity, PlotEntity, PointCloudEntity, ShapeSetEntity, SoundEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
@@ -18,9 +18,7 @@ import { MarkerView } from "./marker.ts";
 import { Memberships } from "./membership.ts";
 import { NailView } from "./nail.ts";
 import { ParticleSetView } from "./particle_set.ts";
-import { PointCloudView } from "./point_cloud.ts";
 import { PaintView } from "./paint.ts";
-import { ShapeSetView } from "./shape_set.ts";
 import { StrutView } from "./strut.ts";
 import { SurfaceView } from "./surface.ts";
 import { Visuals } from "./visual.ts";
@@ -67,13 +65,13 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
     arrow: new ArrowView(poses),
     axes: new AxesView(poses),
     trace: new TraceView(poses),
-    pointCloud: new PointCloudView(poses),
+    pointCloud: new Later<PointCloudEntity>(() => import("./point_cloud.ts").then(({ PointCloudView }) => new PointCloudView(poses)), changed),
     marker: new MarkerView(poses, warn),
     widget: new Widgets(),
     plot: new WatchedRecords<PlotEntity>(),
     surface,
     paint: new PaintView(body),
-    shapeSet: new ShapeSetView(poses, warn),
+    shapeSet: new Later<ShapeSetEntity>(() => import("./shape_set.ts").then(({ ShapeSetView }) => new ShapeSetView(poses, warn)), changed),
     strut: new StrutView(poses, warn),
     tube,
     viewpoint: new WatchedRecords<ViewpointEntity>(),

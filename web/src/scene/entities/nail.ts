@@ -64,6 +64,11 @@ export class NailView extends EntityRecords<NailEntity> {
     super.destroy(slot);
   }
 
+  /** Calls a function with the slot of each nailed body and the place of its nail, world, m. */
+  forEachPlace(visit: (body: number, place: Vector3) => void): void {
+    for (const { at } of this.records_.values()) if (placeOf(this.poses_, at, this.place_)) visit(at.body, this.place_);
+  }
+
   draw(): void {
     if (!this.changed_ && !this.moves_ && this.drawnRadius_ === this.pinRadius) return;
     this.changed_ = this.moves_ = false;
