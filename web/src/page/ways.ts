@@ -6,6 +6,10 @@ import { apart, type Item, type Place } from "./subject.ts";
 
 /** Of many things, only the ways of those outside the view are followed. */
 const mostWays = 100;
+/** Of one way: a circle is found by places that are far apart. */
+const mostPlaces = 12;
+/** Places on a smaller arc are as good as on a line: the plane of their circle is not known. Rad. */
+const leastTurn = 0.05;
 /** In sizes of the scene: from its middle, what rests outside the view; what is rest between two looks; where circles are looked for. */
 const restSize = 1.6;
 const still = 0.01;
@@ -27,15 +31,15 @@ export class Ways {
     const { places_: ways } = this;
     const slots = new Set(members.map(({ slot }) => slot));
     for (const slot of ways.keys()) if (!slots.has(slot)) ways.delete(slot);
-    for (const item of members.length > mostWays ? out : members) ways.set(item.slot, [...(ways.get(item.slot) ?? []), item.center].slice(-3));
+    for (const item of members.length > mostWays ? out : members) ways.set(item.slot, [...(ways.get(item.slot) ?? []), item.center].slice(-mostPlaces));
     let circles = false;
     for (const item of out) {
       const way = ways.get(item.slot)!;
       if (way.length < 2 || item.slot < 0) continue;
       const far = apart(item.center, center);
-      const rests = way.length === 3 && apart(way[0], way[2]) < still * radius && far < restSize * radius;
+      const rests = way.length > 2 && apart(way.at(-3)!, item.center) < still * radius && far < restSize * radius;
       if (rests || far < apart(way.at(-2)!, center) - (still * radius) / 2) addItem(item);
-      const circle = mayCircle && way.length === 3 ? circleThrough(way[0], way[1], way[2]) : null;
+      const circle = mayCircle && way.length > 2 ? circleThrough(way[0], way[way.length >> 1], item.center) : null;
       if (circle === null || circle.radius > circleSize * radius || apart(circle.center, center) > circleMiddle * radius) continue;
       circles = true;
       for (const place of circle.points) kept.add(...place);
@@ -48,12 +52,12 @@ export class Ways {
   }
 }
 
-/** The circle through three places, if they are on one; null for those on a line. */
+/** The circle through three places; null for those nearly on a line. */
 export function circleThrough(a: Place, b: Place, c: Place): { center: Place; radius: number; points: readonly Place[] } | null {
   const [u, v] = [minus(b, a), minus(c, a)];
   const n = cross(u, v);
   const [uu, vv, nn] = [dot(u, u), dot(v, v), dot(n, n)];
-  if (nn < 1e-6 * uu * vv) return null;
+  if (nn < leastTurn * leastTurn * uu * vv) return null;
   const [toU, toV] = [cross(n, u), cross(v, n)];
   const way = [0, 1, 2].map((axis) => (vv * toU[axis] + uu * toV[axis]) / (2 * nn)) as unknown as Place;
   const center: Place = [a[0] + way[0], a[1] + way[1], a[2] + way[2]];
