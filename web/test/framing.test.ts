@@ -7,7 +7,7 @@ import type { Viewer } from "../src/page/viewer.ts";
 import type { LinkState } from "../src/net/connection.ts";
 import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
-import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
+import { body, bodyEntity, id, part, visual, TestWorld } from "./test_world.ts";
 
 const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
 
@@ -218,7 +218,7 @@ describe("the view of a running scene", () => {
   afterEach(() => void vi.unstubAllGlobals());
 
   /** The views, one a look, of four balls, the last of which goes along a way; x in m. */
-  async function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3]): Promise<FittedView[]> {
+  async function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3], hangs = false): Promise<FittedView[]> {
     await import("../src/page/ways.ts"); // which the page fetches when it needs it
     vi.stubGlobal("innerWidth", 1280);
     vi.stubGlobal("innerHeight", 720);
@@ -233,12 +233,16 @@ describe("the view of a running scene", () => {
     const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
     test.join();
     test.world.take({
-      type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
-      ground: 0, modules: [],
+      type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: hangs,
+      ground: -30, modules: [],
     });
     framing.changed("settings");
     test.set("visual", visual(0, "ball", part("sphere", [0.1])));
     const all = [...others.keys(), others.length];
+    if (hangs) {
+      test.set("membership", ...all.map((slot) => ({ id: id(slot), articulate: 0 })));
+      test.set("nail", { id: id(0), at: { body: 0, point: [0, 0, 0] } });
+    }
     test.set("body", ...all.map((slot) => bodyEntity(slot)));
     const views: FittedView[] = [];
     for (let time = 0; time < 9; time += 0.3) {
@@ -263,6 +267,14 @@ describe("the view of a running scene", () => {
     expect(views.at(-1)!.distance).toBeGreaterThan(views[0].distance);
     expect(seen.size).toBeLessThan(5);
     expect(views.at(-1)).toEqual(views[18]);
+  });
+
+  it("reaches from the nail of a chain down to where its end comes to rest", async () => {
+    const rest = new Points();
+    rest.add(1, -1.35, 0);
+    const [held, free] = [await watch(() => 1.3, [1, 1.1, 1.2], true), await watch(() => 1.3, [1, 1.1, 1.2])];
+    expect(shareOutside(rest, held[0], frame)).toBe(0);
+    expect(shareOutside(rest, free[0], frame)).toBe(1);
   });
 
   it("follows the only thing", async () => {
