@@ -36,7 +36,15 @@ world.run()
 }
 OPTIONS = {"physics-class": ["--plots"]}
 # Duration of a film, s, and time of its thumbnail, if they differ from the defaults.
-SECONDS = {"chain": 12.0, "evacuation": 20.0, "grasp": 13.0, "knot": 19.0, "molecule": 12.0, "rigging": 30.0, "undersea": 28.0}
+SECONDS = {
+    "chain": 12.0,
+    "evacuation": 20.0,
+    "grasp": 13.0,
+    "knot": 19.0,
+    "molecule": 12.0,
+    "rigging": 30.0,
+    "undersea": 28.0,
+}
 USUAL = 10.0
 MOMENT = {
     "capstan": 1.9,

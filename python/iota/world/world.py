@@ -160,9 +160,7 @@ class World:
             self._guard,
         )
         self._queries = Queries(state.system, state.scene)
-        self._users = Users(
-            state.clients, state.notices, self._controls, self._events, self._guard, title, self.call
-        )
+        self._users = Users(state.clients, state.notices, self._controls, self._events, self._guard, title, self.call)
         self._pages = Pages(state, inputs.call)
         self._unkept: dict[str, Any] = {}
         self._levels = state.levels = Levels(state.system, state.scene, state.clients, self._guard, state.costs)
