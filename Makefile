@@ -53,7 +53,7 @@ bench: ## build, then measure engine, packaged peers, server and page in one run
 	@$(PYTHON) tools/build.py bench
 	@.venv/bin/python bench/run_bench.py $(BENCH)
 	@.venv/bin/npm --prefix web run --silent capacity
-	@.venv/bin/python bench/contact.py
+	@.venv/bin/python bench/contact_bench.py
 	@.venv/bin/python bench/edit_cost.py
 	@.venv/bin/npm --prefix web run --silent bench
 

@@ -26,7 +26,7 @@ struct Material {
   /// The coefficient of rolling resistance: the torque against rolling is at most this times the normal force and the radius.
   /// Two bodies have the larger one.
   double rolling = 0;
-  /// Of the surface against its body, in the world, m/s: a belt, or an escalator. Friction drives what lies on it.
+  /// The velocity of the surface against its body, in the world, m/s: a belt, or an escalator. Friction drives what lies on it.
   Vec3 surface_velocity;
 
   friend bool operator==(const Material&, const Material&) = default;

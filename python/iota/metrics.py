@@ -41,7 +41,7 @@ def text_of(metrics: Iterable[Metric]) -> str:
 
 
 def of_process() -> list[Metric]:
-    """Those of this process, under the names that all clients of Prometheus use. Memory on Linux only."""
+    """The metrics of this process, under the names that all clients of Prometheus use. Memory on Linux only."""
     found = [
         one("process_cpu_seconds_total", "counter", "Processor time.", time.process_time()),
         one("process_start_time_seconds", "gauge", "Start, since 1970.", _BEGAN),

@@ -29,7 +29,7 @@ class Writer {
     append(v.data(), v.size() * sizeof(T));
   }
   void fail() {}
-  /// Of the items that follow; only a schema has names.
+  /// The name of the items that follow; only a schema has names.
   void name(std::string_view) {}
 
  private:

@@ -136,7 +136,7 @@ To number_as(From value) {
   }
 }
 
-/// What is copied from a record of one schema to that of another.
+/// The bytes to copy from a record of one schema to that of another.
 struct FieldCopy {
   const Schema::Field *from, *to;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bytes of an archive mean: its items by name, and the fields of their records by name and type. With the schema
+// The meaning of the bytes of an archive: its items by name, and the fields of their records by name and type. With the schema
 // that an older program has written, its bytes are translated into those of the present one.
 #pragma once
 

@@ -7,7 +7,7 @@
 
 namespace iota {
 
-// What is left out here is lost between versions; padding is.
+// A field that is missing here is lost between versions; padding is.
 IOTA_FIELDS(Material, friction, touches, restitution, rolling, surface_velocity)
 IOTA_FIELDS(AttributeKey, life, radius, color)
 IOTA_FIELDS(ContactParty, body, group)

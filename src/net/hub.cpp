@@ -398,7 +398,7 @@ bool Hub::try_push(ClientInput input) {
     for (auto i = input_.rbegin(); i != input_.rend() && is_move(*i); ++i)
       if (move_the_same(*i, input)) return replace(*i, std::move(input)), true;
   }
-  // Of a place of a user, only the newest.
+  // Only the newest place of a user counts.
   if (is_a<protocol::Presence>(input)) {
     for (auto& other : input_)
       if (other.client == input.client && is_a<protocol::Presence>(other))

@@ -28,7 +28,7 @@ class Requests {
   /// Nobody waits for the answer any more.
   void remove(std::uint64_t number);
 
-  /// Those since the last call, in order of arrival.
+  /// The requests since the last call, in order of arrival.
   std::vector<Request> take();
   /// Called on the server's thread. Without effect if nobody waits.
   void answer(std::uint64_t number, Answer answer);

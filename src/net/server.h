@@ -200,7 +200,7 @@ class Server {
   /// Requests for these paths wait for the program, if their token is right. A POST comes from the server's own page and
   /// has no body.
   void serve_requests(std::vector<std::string> paths);
-  /// Those since the last call. Each has to be answered within `ServerOptions::answer_time`.
+  /// The requests since the last call. Each has to be answered within `ServerOptions::answer_time`.
   std::vector<Request> take_requests();
   void answer(std::uint64_t number, Answer answer);
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The judge of bench/contact.py, and those of its scenes that take no time."""
+"""The judge of bench/contact_bench.py, and those of its scenes that take no time."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+sys.path[:0] = [
+    str(Path(__file__).resolve().parents[2] / "bench"),
+    str(Path(__file__).resolve().parents[2] / "bench" / "peers"),
+]
 
-from contact_scene import Thing, overlap
-
-import contact
+import contact_bench  # noqa: E402
+from contact_scene import Thing, overlap  # noqa: E402
 
 STRAIGHT = np.eye(3)
 DIAGONAL = np.array([[1, -1, 0], [1, 1, 0], [0, 0, 2**0.5]]) / 2**0.5
@@ -39,6 +41,6 @@ def test_the_judge_measures_overlaps(a, b, way, turn, depth) -> None:  # type: i
 
 @pytest.mark.parametrize("scene", ["cradle", "bounce, e = 1", "bounce, e = 0.5", "slope 0.99", "slope 1.2", "grip 20"])
 def test_iota_passes_where_the_judge_reads_poses_alone(scene: str) -> None:
-    row = contact.run(scene, "iota", 60, 20.0)
+    row = contact_bench.run(scene, "iota", 60, 20.0)
     assert row["passes"], row["figure"]
     assert float(str(row["overlap_mm"])) < 1e-4

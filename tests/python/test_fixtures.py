@@ -56,7 +56,7 @@ class Rig:
         axis, arm = iota.Vec3(-x, -y, -z), at - body.center_of_mass
         twice = axis.cross(arm) * 2.0
         local = arm + twice * w + axis.cross(twice)
-        self.send(protocol.GrabStart(1, protocol.Id(1, 1), local, at), body=body)
+        self.send(protocol.GrabStart(1, protocol.Id(1, 1), local, at, "mouse"), body=body)
         return at
 
     def move(self, to: Any) -> None:

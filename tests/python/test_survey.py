@@ -27,9 +27,7 @@ class Hall:
         self.file = file
         self.survey = self.world.ask(QUESTIONS, file=file, **more)
         self.cards: list[tuple[int, str]] = []
-        self.world._state.notices.show = lambda client, level, title, text, hint, keep: self.cards.append(
-            (client, title)
-        )
+        self.world._state.notices.show = lambda client, level, title, *rest: self.cards.append((client, title))
 
     def come(self, client: int) -> None:
         self.world._inputs.take([(client, protocol.Join("Ada", protocol.Role.HOST))], lambda ids: [])

@@ -100,7 +100,7 @@ def is_of_numbers(rows: list[Row], name: str) -> bool:
 
 
 def most_varied(names: list[str], rows: list[Row]) -> str | None:
-    """Of equals the first one; seeds only if there is no other."""
+    """The first one of equals; seeds only if there is no other."""
     counts = {name: len({row[name] for row in rows}) for name in names}
     return max(counts, key=lambda name: (name != "seed", counts[name]), default=None)
 

@@ -45,7 +45,7 @@ class Settings:
 
 @dataclass
 class Told:
-    """What the process of a room last told. people: name and role of each. is_over: it ended by itself or was asked to."""
+    """The latest words of the process of a room. people: name and role of each. is_over: it ended by itself or was asked to."""
 
     process: int
     title: str = ""

@@ -37,7 +37,7 @@ QUEUE = 128
 
 @dataclass
 class HostOptions:
-    """Of all rooms. host: the address to listen on. leave: s without a visitor, after which a room sleeps. lan: as of
+    """The options of all rooms. host: the address to listen on. leave: s without a visitor, after which a room sleeps. lan: as of
     `iota run`. public_origin: of a proxy."""
 
     host: str
@@ -82,7 +82,7 @@ class RoomProcess:
 
     @property
     def number(self) -> int | None:
-        """Of the process."""
+        """The number of the process."""
         return self._adopted if self._process is None else self._process.pid
 
     @property

@@ -32,7 +32,7 @@ PATIENCE = 5.0  # s, to end in an orderly way
 
 @dataclass
 class RoomOptions:
-    """What `iota rooms` tells the process, as JSON. listener: a socket. leave: s without a visitor, after which it ends.
+    """The words of `iota rooms` to the process, as JSON. listener: a socket. leave: s without a visitor, after which it ends.
     public_origin: as of `Server`, with /PORT for the room."""
 
     folder: str

@@ -35,7 +35,7 @@ STATES = ("running", "starting", "ending", "asleep", "closed", "failed", "hangin
 
 
 class Refused(ValueError):
-    """What a page asks for is not done; the text says why and what to try."""
+    """A wish of a page is not done; the text says why and what to try."""
 
 
 class Rooms(Server):
@@ -143,7 +143,7 @@ class Rooms(Server):
         del self.rooms[name]
 
     def sources(self) -> dict[str, tuple[str, str]]:
-        """What can be a room, by the name on the page: what `iota run` is given, and a sentence."""
+        """The possible rooms by their names on the page: the words for `iota run`, and a sentence."""
         found = {name: (name, studies.description(name)) for name in in_order()}
         if self._scripts is not None:
             with suppress(OSError):
@@ -153,7 +153,7 @@ class Rooms(Server):
         return found
 
     def listing(self) -> dict[str, Any]:
-        """What the page shows."""
+        """The contents of the page."""
         base = self._public_origin or (f"https://{address()}" if self._options.lan is not None else "")
         described = [{"name": name, "text": text} for name, (_, text) in self.sources().items()]
         return {

@@ -242,9 +242,12 @@ class Derrick:
 
     def reeve(self, parts: int) -> None:
         """Leads the rope of the tackle anew: `parts` of it carry the block. Where it has been heaved to stays."""
+        if not self.drum.alive or not all(sheave.alive for sheave in (*self.tops, *self.bottoms)):
+            return  # somebody has taken the derrick apart
         self.parts = parts
         for span in self.spans:
-            span.destroy()
+            if span.alive:
+                span.destroy()
         way = reeved(parts, self.tops, self.bottoms)
         with self.system.edit():
             self.spans = [self.system.span(p, q) for p, q in pairwise(way)]

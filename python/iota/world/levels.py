@@ -580,7 +580,7 @@ class Levels(Part):
 
 
 def _eye_of(client: Client) -> Place | None:
-    """Where its page has told that its user's eyes are, or until then the camera that it got."""
+    """The place of its user's eyes, as its page has told, or until then the camera that it got."""
     if client.eye is not None or client.camera is None:
         return client.eye
     return client.camera.position

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from iota.world.server import Server
     from iota.world.summary import RunSummary
     from iota.world.view import View
-    from iota.world.world import World
 
 
 @dataclass
@@ -36,7 +35,7 @@ class RunOptions:
     keep: Path | None = None
     fresh: bool = False
     make_server: Callable[..., Server] | None = None
-    on_serve: Callable[[World], None] | None = None
+    on_serve: Callable[[Any], None] | None = None
     names: dict[str, Any] | None = None
     ran: bool = False
     summary: RunSummary | None = None

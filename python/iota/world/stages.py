@@ -13,7 +13,6 @@ from iota import looks
 from iota._core import Box, Material, System, Vec3
 
 if TYPE_CHECKING:
-    from iota.world.drawings import Drawings
     from iota.world.scene import Scene
 
 WIDTH, DEPTH, HEIGHT = 9.0, 7.0, 3.2  # of the room, m
@@ -29,7 +28,7 @@ Made = list[Any]
 Colors = dict[str, Any]
 
 
-def room(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
+def room(drawings: Any, scene: Scene) -> tuple[Colors, Made]:
     """9 x 7 m, around the origin, open to the viewer's side: parquet, three walls with windows in the right one, lamps."""
     made: Made = []
     ground = scene.ground or 0.0
@@ -76,7 +75,7 @@ def room(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
     return colors, made
 
 
-def studio(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
+def studio(drawings: Any, scene: Scene) -> tuple[Colors, Made]:
     """A backdrop without an edge, a soft key light, and a cool one from behind."""
     size, middle = extent(scene)
     made: Made = [
@@ -90,7 +89,7 @@ def studio(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
     return {"sky": "#aab2b8", "horizon": "#c6cbce", "ground": "#b8bcbe", "light": 0.75}, made
 
 
-def space(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
+def space(drawings: Any, scene: Scene) -> tuple[Colors, Made]:
     """Black, with stars all around and a sun."""
     size, middle = extent(scene)
     random = np.random.default_rng(5)
@@ -109,7 +108,7 @@ def space(drawings: Drawings, scene: Scene) -> tuple[Colors, Made]:
     return {"sky": "#020308", "horizon": "#05070f", "ground": "#0b0d13", "light": 0.8}, made
 
 
-STAGES: dict[str, Callable[[Drawings, Scene], tuple[Colors, Made]]] = {
+STAGES: dict[str, Callable[[Any, Scene], tuple[Colors, Made]]] = {
     "room": room, "studio": studio, "space": space,
 }  # fmt: skip
 

@@ -30,10 +30,10 @@ const otherPlace = 3;
 /** Labels and moving things count up to so many sizes of the scene from its middle. */
 const labelSize = 24;
 const nearSize = 2.5;
-/** What leaves the view widens it, up to so many times its size; a circle that a thing goes along may be larger. */
+/** A thing that leaves the view widens it, up to so many times its size; a circle that a thing goes along may be larger. */
 const widest = 2;
 const widestCircle = 3;
-/** Of the things, so many may leave the view before it is widened at once: a single one may be on its way to far away. */
+/** So many of the things may leave the view before it is widened at once: a single one may be on its way to far away. */
 const few = 0.1;
 /** A followed scene has room to move in. */
 const followDistance = 1.6;
@@ -43,7 +43,7 @@ const goneAfter = 5;
 const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
-/** Of a chain whose length at rest is looked for; a net is shorter than all its parts. */
+/** The longest chain whose length at rest is looked for; a net is shorter than all its parts. */
 const mostLinks = 20;
 /** After so many looks in a row a smaller scene is another one. */
 const mostSmall = 10;
@@ -64,7 +64,7 @@ export class Framing implements FramePart, PageListener {
   /** The points of the first view, and those that widen it. */
   private readonly base_ = new Points();
   private readonly kept_ = new Points();
-  /** What moves; and of that, what is part of the scene: not what has gone away. */
+  /** All that moves; and the part of it that belongs to the scene and has not gone away. */
   private moving_: readonly Item[] = [];
   private members_: readonly Item[] = [];
   /** Slots of the fixed bodies that are part of the scene, and the middle and size of what moves in it at first. */
@@ -143,7 +143,7 @@ export class Framing implements FramePart, PageListener {
     // In real time: a frame that took long is told as a short one.
     this.wait_ -= now === undefined ? seconds : (now - this.updated_) / 1000;
     this.updated_ = now ?? 0;
-    // What moves before the page shows its first picture widens it.
+    // A thing that moves before the page shows its first picture widens it.
     const isEarly = this.viewer_.hidden && this.framed_ !== null && this.early_ < mostEarly;
     if (isEarly) {
       this.early_++;
@@ -156,7 +156,7 @@ export class Framing implements FramePart, PageListener {
     if (!this.world_.described || this.script_ === "") return;
     const seen = this.look_(this.framed_ === null);
     const { framed_: framed } = this;
-    // What swings is small at times.
+    // A thing that swings is small at times.
     this.small_ = framed !== null && seen !== null && seen.radius * otherSize < framed.radius ? this.small_ + 1 : 0;
     const isOther = framed === null || seen === null || !this.stays_ || this.small_ > mostSmall || (this.rejoined_ && isAnother(seen, framed));
     const bounds = isOther ? this.look_(true) : seen;
@@ -407,7 +407,7 @@ export class Framing implements FramePart, PageListener {
     this.moving_ = moving;
     if (moving.length === 0) return null;
     if (fresh || framed === null) {
-      // What stands is where the scene was made.
+      // All that stands is where the scene was made.
       const usual = time > goneAfter ? new Set(withoutFar([...moving, ...fixed])) : null;
       const there = usual === null ? [] : moving.filter((item) => usual.has(item));
       this.members_ = there.length > 0 ? there : withoutFar(moving);

@@ -22,11 +22,11 @@ export interface Item {
 
 /** Fixed things count if they are near movable ones, up to this many times their size. */
 export const settingSize = 2.6;
-/** Those that are neither a floor nor walls around the moving things count up to so many times their size. */
+/** Things that are neither a floor nor walls around the moving ones count up to so many times their size. */
 const supportSize = 24;
 /** A floor reaches so many sizes of the moving things beyond them, on all sides. */
 const floorSize = 6;
-/** What has gone so many times as far from the middle as any other is left out, if it is one, or a tenth of all. */
+/** A thing that has gone so many times as far from the middle as any other is left out, if it is one, or a tenth of all. */
 const gap = 4;
 const fewest = 3;
 

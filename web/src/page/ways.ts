@@ -4,9 +4,9 @@
 import type { Points } from "../scene/points.ts";
 import { apart, type Item, type Place } from "./subject.ts";
 
-/** Of many things, only the ways of those outside the view are followed. */
+/** Among many things, only the ways of those outside the view are followed. */
 const mostWays = 100;
-/** Of one way: a circle is found by places that are far apart. */
+/** The places of one way: a circle is found by places that are far apart. */
 const mostPlaces = 12;
 /** Places on a smaller arc are as good as on a line: the plane of their circle is not known. Rad. */
 const leastTurn = 0.05;

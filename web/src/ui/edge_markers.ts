@@ -84,7 +84,7 @@ export class EdgeMarkers implements FramePart {
     return Math.abs(seen.x) < 1 && Math.abs(seen.y) < 1 && seen.z < 1;
   }
 
-  /** Where a place is beyond the edge: -1 .. 1 across and up, and the direction, rad, clockwise from the right. */
+  /** The position of a place beyond the edge: -1 .. 1 across and up, and the direction, rad, clockwise from the right. */
   private edgeOf_(middle: Vector3): { x: number; y: number; angle: number } {
     const { camera } = this.page_.viewer;
     const seen = this.point_.copy(middle).applyMatrix4(camera.matrixWorldInverse);

@@ -290,7 +290,7 @@ export class Overlay implements PageListener, FramePart {
     this.page_.viewer.invalidate();
   }
 
-  /** What a card must not lie on, css px: controls and labels. */
+  /** The places that a card must not cover, css px: controls and labels. */
   private coveredByOthers_(): DOMRect[] {
     const { world: { entities: { label } }, viewer: { camera } } = this.page_;
     const boxes: DOMRect[] = [];

@@ -20,7 +20,7 @@ export interface Kind {
   readonly name: string;
   /** Names of its sizes, in the order of protocol/shapes.json. */
   readonly sizes: readonly string[];
-  /** What people call such a thing; its name unless given. */
+  /** The usual word for such a thing; its name unless given. */
   word?(solid: Solid): string;
   /** Distance of a point from the surface, negative inside. Its slope is at most 1. */
   distance(solid: Solid, x: number, y: number, z: number): number;

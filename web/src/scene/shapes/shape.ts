@@ -91,7 +91,7 @@ export function shapeDistance(solid: Solid, x: number, y: number, z: number): nu
   return solid.kind.distance(solid, x, y, z);
 }
 
-/** What people call a thing of these shapes: by the largest of them. */
+/** The usual word for a thing of these shapes: by the largest of them. */
 export function wordOf(placed: readonly PlacedShape[]): string {
   if (placed.length === 0) return "thing";
   const { shape } = placed.reduce((largest, each) => (shapeReach(each.shape) > shapeReach(largest.shape) ? each : largest));

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bodies that touch, in iota and the packaged engines, in one run: processor time, overlap and what a scene is for.
 
-    .venv/bin/python bench/contact.py                        # all scenes (needs bench/requirements.txt)
-    .venv/bin/python bench/contact.py --scenes tower cradle --engines iota Rapier
+    .venv/bin/python bench/contact_bench.py                        # all scenes (needs bench/requirements.txt)
+    .venv/bin/python bench/contact_bench.py --scenes tower cradle --engines iota Rapier
 
 Each row is a process of its own. Poses are judged, not what an engine reports of itself (peers/contact_scene.py). A row that
 takes longer than --cap seconds of processor time is stopped, and says so.
