@@ -119,6 +119,7 @@ void Newton::take_turns(Problem& problem, const Wanted& wanted, double least) {
   after_step_ = u_saved_, end_of_step_ = problem.position;
   problem.position = mean_place_;
   std::copy(x_.begin(), x_.end(), u_saved_.begin());
+  bool is_solved = false;
   std::optional<double> kinetic =
       take_turn(problem, wanted, problem.kinetic_energy([&](std::size_t i) { return x_[i]; }));
   for (int round = 0; round < most_rounds && kinetic; ++round) {
@@ -135,10 +136,12 @@ void Newton::take_turns(Problem& problem, const Wanted& wanted, double least) {
     if (!any) break;
     std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
     kinetic = take_turn(problem, wanted, *kinetic);
+    is_solved = is_solved || kinetic.has_value();
   }
   for (const Turn& turn : turns_) {
     ContactConstraint& c = pool.items[turn.contact];
     ActiveSet::set_cone(pool, turn.contact, turn.state);
+    if (!is_solved) continue;  // all act at once
     c.rebound = turn.has_acted ? std::max(0.0, rate_in_the_middle(c, problem.velocity)) : 0;
     c.leaves = c.rebound > 0;
   }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import struct
 import time
 
 from iota._core import Log, RoomRecording, System
@@ -12,6 +13,7 @@ from iota.journal.records import Commands
 from iota.world import World
 
 PATIENCE = 0.05  # s, for the messages of a frame
+POSES = 68  # type of the message
 FRAME = 1 / 120  # s, between the frames of states that no time is known of
 
 
@@ -59,12 +61,20 @@ def is_repeated(system: System, log: Log, piece: Commands) -> bool:
 def frame_of(world: World, recording: RoomRecording) -> list[bytes]:
     """The messages to viewers about the present state."""
     world.advance(0)
-    return messages_to_viewers(recording)
+    return messages_to_viewers(recording, world.system.time)
 
 
-def messages_to_viewers(recording: RoomRecording) -> list[bytes]:
-    """The messages of the frame that was sent last. The server sends them on its own thread."""
+def messages_to_viewers(recording: RoomRecording, time_now: float) -> list[bytes]:
+    """The messages up to the poses of a time, s, with which a frame ends. The server sends them on its own thread."""
     end = time.monotonic() + PATIENCE
-    while not (taken := recording.take()) and time.monotonic() < end:
-        time.sleep(0.0005)
-    return [data for _, data in taken]
+    taken: list[bytes] = []
+    while not any(ends_at(data, time_now) for data in taken) and time.monotonic() < end:
+        if not (more := [data for _, data in recording.take()]):
+            time.sleep(0.0005)
+        taken += more
+    return taken
+
+
+def ends_at(message: bytes, time_now: float) -> bool:
+    """Whether it has the poses of a time or a later one."""
+    return message[0] == POSES and float(struct.unpack_from("<d", message, 9)[0]) >= time_now

@@ -118,7 +118,7 @@ def record_messages(world: World, film: Film, path: Path, progress: Callable[[in
         told: list[tuple[float, bytes]] = []
         for number in range(film.frames):
             world.advance(steps_before(number, film, world) if number else 0)
-            told += [(number / film.rate, data) for data in messages_to_viewers(recording)]
+            told += [(number / film.rate, data) for data in messages_to_viewers(recording, world.system.time)]
             progress(number + 1, film.frames)
         recording.end()
         write_stream(file, told, world.title)
