@@ -9,6 +9,7 @@ import numpy as np
 
 import iota
 from iota import looks
+from iota.world.frames import Quaternion, one_after_another
 
 from ._story import Story
 
@@ -75,7 +76,7 @@ class Pour:
         self,
         size: tuple[float, float, float],
         at: tuple[float, float, float],
-        turn: tuple[float, float, float, float] = (0, 0, 0, 1),
+        turn: Quaternion = (0, 0, 0, 1),
         look: str = "glass",
         material: iota.Material = GLASSY,
     ) -> iota.Body:
@@ -101,7 +102,7 @@ class Pour:
             self.wall((WALL, HIGH, wide), place((MOUTH + WALL) / 2, RIM + HIGH / 2), upright, look)
             # Its inner face runs from the lip to the rim.
             middle = (THROAT + MOUTH) / 4 + WALL / 2 * math.cos(lean), (LIP + RIM) / 2 - WALL / 2 * math.sin(lean)
-            self.wall((WALL, length, MOUTH), place(*middle), product(upright, about_z(-lean)), look)
+            self.wall((WALL, length, MOUTH), place(*middle), one_after_another(upright, about_z(-lean)), look)
             wide = THROAT + (2 * WALL if side % 2 else 0)
             self.wall((WALL, SPOUT, wide), place((THROAT + WALL) / 2, LIP - SPOUT / 2), upright, look)
 
@@ -236,22 +237,8 @@ class Pour:
                 body.velocity = body.angular_velocity = (0, 0, 0)
 
 
-Turn = tuple[float, float, float, float]
-
-
-def about_z(angle: float) -> Turn:
+def about_z(angle: float) -> Quaternion:
     return (0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2))
-
-
-def product(a: Turn, b: Turn) -> Turn:
-    """Turned by b, then by a."""
-    (ax, ay, az, aw), (bx, by, bz, bw) = a, b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
 
 
 if __name__ == "__main__":
