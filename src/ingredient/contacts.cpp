@@ -131,33 +131,25 @@ bool is_same(const Contact& c, std::uint32_t p, const contact::Touch& t) {
          c.other_feature == t.other_feature;
 }
 
-/// The slots of the contacts of two bodies. Of a table with a thousand things only the shorter list is looked at.
-void find_between(const Model& model, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& slots) {
-  slots.clear();
-  const auto& contacts = model.contacts;
-  std::uint32_t at_a = contacts.heads[a].first, at_b = contacts.heads[b].first;
-  const auto step = [&](std::uint32_t link) { return contacts[link / 2].next[link % 2]; };
-  while (at_a != none && at_b != none) at_a = step(at_a), at_b = step(at_b);
-  const std::uint32_t shorter = at_a == none ? a : b, other = at_a == none ? b : a;
-  for (std::uint32_t link = contacts.heads[shorter].first; link != none; link = step(link))
-    if (contacts[link / 2].at(1 - link % 2) == other) slots.push_back(link / 2);
-  std::sort(slots.begin(), slots.end());
-}
+/// Whether it is not a place: see Contacts::tie.
+bool is_tie(const Contact& c) { return c.feature == none && c.part == none; }
 
-/// The basis weights of the two bodies of a contact, computed when they are asked for.
+/// The basis weights of the two bodies of a contact: those that are known, or computed when they are asked for.
 class Sides {
  public:
-  Sides(const Model& model, std::uint32_t p, std::uint32_t q) : model_(model), bodies_{p, q} {}
+  Sides(const Model& model, std::uint32_t p, std::uint32_t q, const model::BasisWeights* of_p = nullptr,
+        const model::BasisWeights* of_q = nullptr)
+      : model_(model), bodies_{p, q}, known_{of_p, of_q} {}
   std::array<double, 4> of(int side, const Vec3& place) {
     if (!has_points(model_.bodies[bodies_[side]])) return {};
-    auto& weights = weights_[side];
-    if (!weights) weights.emplace(model_, bodies_[side]);
-    return weights->of(place);
+    if (!known_[side]) known_[side] = &weights_[side].emplace(model_, bodies_[side]);
+    return known_[side]->of(place);
   }
 
  private:
   const Model& model_;
   std::uint32_t bodies_[2];
+  const model::BasisWeights* known_[2];
   std::optional<model::BasisWeights> weights_[2];
 };
 
@@ -275,24 +267,25 @@ void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double c
 
 }  // namespace
 
-void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch> touches,
-                    const Motion& motion) {
-  if (touches.empty()) return;
-  thread_local std::vector<std::uint32_t> former;
-  find_between(model, first, second, former);
+void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
+                    std::span<const contact::Touch> touches, const Motion& motion) {
   const Material &one = *model.material(first), &other = *model.material(second);
   thread_local std::vector<std::uint32_t> taken;
   taken.clear();
   const auto is_eased = [&] { return is_on_its_own(model, first) && is_on_its_own(model, second); };
-  Sides sides[2]{{model, first, second}, {model, second, first}};
+  const auto [basis, other_basis] = motion.bases;
+  Sides sides[2]{{model, first, second, basis, other_basis}, {model, second, first, other_basis, basis}};
   const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
   const double most = (both_move ? deepest_of_moving : deepest) * motion.size;
+  // Of a pair that touches, each place counts: when others became the nearest ones of two bodies that had been pressed
+  // together they went through each other.
+  const bool are_known = std::ranges::any_of(former, [&](std::uint32_t slot) { return !is_tie(model.contacts[slot]); });
   for (const contact::Touch& t : touches) {
     const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (is_new && t.gap < -most) continue;
+    if (!are_known && t.gap < -most) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,
@@ -333,10 +326,6 @@ void end_if(Model& model, std::uint32_t body, bool by_motion, Test test) {
 }  // namespace
 
 void Contacts::tie(Model& model, std::uint32_t first, std::uint32_t second) {
-  thread_local std::vector<std::uint32_t> known;
-  find_between(model, first, second, known);
-  for (const std::uint32_t slot : known)
-    if (model.contacts[slot].found_in == model.step + 1) return;
   Contact c;
   c.p = first, c.q = second;
   c.part = c.feature = c.other_part = c.other_feature = none;
@@ -346,25 +335,39 @@ void Contacts::tie(Model& model, std::uint32_t first, std::uint32_t second) {
   touch(model, model.contacts[model.contacts.create(c)], true);
 }
 
-void Contacts::begin_part(Model& model, std::span<const std::uint32_t> bodies, bool is_first) {
-  for (const std::uint32_t body : bodies)
-    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-      Contact& c = model.contacts[slot];
-      c.found_in = 0, c.continues = !is_first && c.impulse != Vec3{};
-    });
+void Contacts::begin_part(Model& model, std::span<const std::uint32_t> slots, bool is_first) {
+  for (const std::uint32_t slot : slots) {
+    Contact& c = model.contacts[slot];
+    c.found_in = 0, c.continues = !is_first && c.impulse != Vec3{};
+  }
 }
 
-void Contacts::end_part(Model& model, std::span<const std::uint32_t> bodies) {
-  for (const std::uint32_t body : bodies)
-    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-      Contact& c = model.contacts[slot];
-      if (c.found_in != 0) return;
-      c.found_in = model.step + 1, c.continues = 0;
-      if (std::exchange(c.is_off, 1)) return;
-      c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
-      if (c.roll_rows > 0) c.roll_rows = 0;
-      touch(model, c, true);
-    });
+bool Contacts::keep(Model& model, std::span<const std::uint32_t> slots) {
+  bool any = false;
+  for (const std::uint32_t slot : slots) {
+    Contact& c = model.contacts[slot];
+    if (!c.is_off) c.found_in = model.step + 1, any = true;
+  }
+  return any;
+}
+
+void Contacts::end_part(Model& model, std::span<const std::uint32_t> slots) {
+  for (const std::uint32_t slot : slots) {
+    Contact& c = model.contacts[slot];
+    if (c.found_in != 0) continue;
+    c.found_in = model.step + 1, c.continues = 0;
+    if (std::exchange(c.is_off, 1)) continue;
+    c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
+    if (c.roll_rows > 0) c.roll_rows = 0;
+    touch(model, c, true);
+  }
+}
+
+bool Contacts::is_of_sweeps(const Model& model, std::uint32_t body) {
+  bool any = false;
+  if (model.contacts.size() > 0)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) { any = any || model.contacts[slot].is_of_sweeps; });
+  return any;
 }
 
 void Contacts::take_over(Model& restored, Model& before) { restored.restores = before.restores + 1; }

@@ -3,6 +3,7 @@
 
 #include "contact/touch.h"
 #include "ingredient/ingredient.h"
+#include "model/basis_weights.h"
 #include "model/end_table.h"
 
 #include <iota/materials.h>
@@ -85,18 +86,24 @@ class Contacts : public NoAnswers {
   static void prepare(Model&, std::uint32_t body);
 
   struct Motion {
-    double size;    ///< of the smaller body, m
-    Vec3 spins[2];  ///< of both, rad/s
-    double h;       ///< of the step, s
+    double size;                          ///< of the smaller body, m
+    Vec3 spins[2];                        ///< of both, rad/s
+    double h;                             ///< of the step, s
+    const model::BasisWeights* bases[2];  ///< of both, where they move
   };
-  /// The contacts of two bodies for a step. Those that they had before keep their forces.
-  static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const contact::Touch>, const Motion&);
+  /// The contacts of two bodies for a step. Those that they had before, `former`, keep their forces.
+  static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
+                   std::span<const contact::Touch>, const Motion&);
   /// Two bodies that may meet on their way in this step are solved together from its begin.
   static void tie(Model&, std::uint32_t first, std::uint32_t second);
-  /// Before and after the contacts of an island are taken for a part of a step. Those that are not taken have no rows in it, but
-  /// stay until the end of the step with their impulse.
-  static void begin_part(Model&, std::span<const std::uint32_t> bodies, bool is_first);
-  static void end_part(Model&, std::span<const std::uint32_t> bodies);
+  /// Before and after the contacts of an island are taken for a part of a step. Those of these that are not taken have no rows
+  /// in it, but stay until the end of the step with their impulse.
+  static void begin_part(Model&, std::span<const std::uint32_t> slots, bool is_first);
+  static void end_part(Model&, std::span<const std::uint32_t> slots);
+  /// The contacts of two bodies that hardly move against each other stay for a part of a step. False: they have none.
+  static bool keep(Model&, std::span<const std::uint32_t> slots);
+  /// Whether contacts of a body were solved one by one in its last step, or part of one: see solver::Heap.
+  static bool is_of_sweeps(const Model&, std::uint32_t body);
   /// Ends all contacts of a body that were not taken in this step.
   static void end_old(Model&, std::uint32_t body);
   /// Ends all contacts of a body.

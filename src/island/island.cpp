@@ -278,7 +278,7 @@ Island::Tried Island::try_motion(const Model& model, double h, const Limits& lim
   solver::IntegratorSettings settings = settings_of(model);
   settings.max_iterations = model.budget_iterations, settings.deadline = limits.deadline;
   if (model.budget_contacts > 0) settings.contact_budget = model.budget_contacts;
-  settings.contact_share = limits.share;
+  settings.contact_share = limits.share, settings.part = limits.part;
   last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();

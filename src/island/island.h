@@ -88,6 +88,7 @@ class Island {
   struct Limits {
     Clock::time_point deadline = Clock::time_point::max();  ///< when to stop looking for a solution
     double share = 1;                                       ///< of StepBudget::contacts
+    double part = 1;                                        ///< of a whole step
   };
   /// A step of h seconds, or of several of them at once, or none: see Strides. The rings of an island with a stride have
   /// rows in the table of tracks.

@@ -593,20 +593,21 @@ double Islands::ahead(const Model& model, const Island& island) const {
   return articulate < ahead_.size() ? ahead_[articulate] : 0;
 }
 
-const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island, double part,
+const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island, double part, double h,
                                                    Island::Clock::time_point deadline) {
   ahead_.resize(model.articulates.slot_count(), 0);
   for (const std::uint32_t body : island.bodies()) {
     double& ahead = ahead_[model.bodies[body].articulate];
     if (model.articulates[model.bodies[body].articulate].first == body) ahead += part;
   }
-  return island.advance_part(model, part, {deadline, share_of(island)});
+  return island.advance_part(model, part, {deadline, share_of(island), part / h});
 }
 
 void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::time_point deadline) {
   if (index < awake_.size()) {
     Island& island = *awake_[index];
-    return (void)island.advance(model, h - ahead(model, island), {deadline, share_of(island)});
+    const double left = h - ahead(model, island);
+    return (void)island.advance(model, left, {deadline, share_of(island), left / h});
   }
   FreeBodies::Loose& loose = free_bodies_.loose()[index - awake_.size()];
   if (loose.goes_on_by_itself(model, h)) return;

@@ -64,7 +64,8 @@ class Islands {
   /// Number of awake islands and loose bodies of a task: all if threads would not be faster.
   std::size_t grain(const Parallel&) const;
   /// A part of a step, before `advance` takes the rest of it. Its contacts are those of this part.
-  const solver::AdvanceReport& advance_part(model::Model&, Island&, double part, Island::Clock::time_point deadline);
+  const solver::AdvanceReport& advance_part(model::Model&, Island&, double part, double h,
+                                            Island::Clock::time_point deadline);
   /// The time that it has advanced in parts since the last step, s.
   double ahead(const model::Model&, const Island&) const;
   /// A step of h seconds of one of them: of `awake`, then of `loose`. Those of others may run at the same time.

@@ -14,7 +14,7 @@ namespace iota::solver {
 namespace {
 
 /// Measured with towers, pyramids and heaps of 50 to 1000 bodies (docs/contact.md): with less a tower of ten sways or falls.
-constexpr int sub_steps = 8, sweeps = 2;
+constexpr int sweeps = 2;
 constexpr int first_sweeps = 8;     // where contacts begin
 constexpr double fastest_push = 1;  // m/s, with which an overlap ends
 
@@ -128,7 +128,9 @@ double Heap::cost_of_factor() {
 void Heap::load_bodies(const Problem& problem, double h) {
   std::vector<Vec3> momentum(bodies_.size());
   std::vector<double> mass(bodies_.size(), 0);
-  for (Body& body : bodies_) body.center = {}, body.inertia = {}, body.spin = body.moved = {}, body.turn = {};
+  motions_.assign(bodies_.size() + 1, {});
+  for (Body& body : bodies_)
+    body.center = {}, body.inertia = body.by_inertia_at_begin = {}, body.moved = {}, body.turn = {};
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
     const std::uint32_t b = body_of_[node];
     mass[b] += problem.mass[node];
@@ -142,39 +144,38 @@ void Heap::load_bodies(const Problem& problem, double h) {
     momentum[b] += c.mass * (problem.velocity[c.a] + problem.velocity[c.b]);
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Body& body = bodies_[i];
-    body.by_mass = 0, body.by_inertia = {};
-    if (body.is_driven || !(mass[i] > 0)) continue;
-    body.by_mass = 1 / mass[i];
-    body.center *= body.by_mass, body.velocity = body.by_mass * momentum[i];
+    if (bodies_[i].is_driven || !(mass[i] > 0)) continue;
+    motions_[i].by_mass = 1 / mass[i];
+    bodies_[i].center *= motions_[i].by_mass, motions_[i].velocity = motions_[i].by_mass * momentum[i];
   }
   std::vector<Vec3> angular(bodies_.size());
   const auto add = [&](double m, std::uint32_t p, std::uint32_t q) {
     const std::uint32_t b = body_of_[p];
     const Vec3 rp = problem.position[p] - bodies_[b].center, rq = problem.position[q] - bodies_[b].center;
-    angular[b] += m * cross(rp, problem.velocity[q] - bodies_[b].velocity);
+    angular[b] += m * cross(rp, problem.velocity[q] - motions_[b].velocity);
     bodies_[b].inertia += m * (Mat3::diagonal(dot(rp, rq)) + -1.0 * Mat3::outer(rq, rp));
   };
   for (std::uint32_t node = 0; node < problem.size(); ++node) add(problem.mass[node], node, node);
   for (const auto& c : problem.mass_couplings) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
+    Motion& motion = motions_[i];
     body.gain = body.turning = {};
-    if (body.by_mass == 0) continue;
+    if (motion.by_mass == 0) continue;
     const SymmetricEigen eigen = symmetric_eigen(body.inertia);
     constexpr double thin = 1e-9;
     const double largest = std::max({eigen.values[0], eigen.values[1], eigen.values[2]});
     for (int k = 0; k < 3; ++k)
       if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
-        body.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
-    body.by_inertia_at_begin = body.by_inertia;
-    body.spin = body.by_inertia * angular[i];
+        motion.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
+    body.by_inertia_at_begin = motion.by_inertia;
+    motion.spin = motion.by_inertia * angular[i];
     body.gain = h * problem.gravity;
     for (std::uint32_t k = 0; k < body.count; ++k) {
       body.arms[k] = problem.position[body.nodes[k]] - body.center;
       if (problem.force.empty()) continue;
       const Vec3& force = problem.force[body.nodes[k]];
-      body.gain += (h * body.by_mass) * force, body.turning += h * cross(body.arms[k], force);
+      body.gain += (h * motion.by_mass) * force, body.turning += h * cross(body.arms[k], force);
     }
   }
   for (const BodyTorque& t : problem.torques) bodies_[body_of_[t.nodes[0]]].turning += h * t.torque;
@@ -201,17 +202,15 @@ Vec3 unit_or(const Vec3& v, const Vec3& other) {
 }  // namespace
 
 void Heap::load_points(Problem& problem, double h, double rate) {
-  points_.clear();
+  points_.clear(), begins_.clear(), by_height_.clear();
   has_new_points_ = false;
   auto& pool = problem.pool_of<ContactConstraint>();
-  points_.reserve(pool.items.size());
   const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
   const Vec3* const x = problem.position.data();
-  const auto is_free = [&](std::uint32_t body) { return body != none && !bodies_[body].is_driven; };
   for (std::size_t i = 0; i < pool.items.size(); ++i) {
     const ContactConstraint& c = pool.items[i];
     Point point;
-    point.row = static_cast<std::uint32_t>(i);
+    PointBegin begin{.row = static_cast<std::uint32_t>(i), .restitution = c.restitution};
     double sum = 0;
     for (std::uint32_t k = 0; k < c.count; ++k) sum += c.weights[0][k];
     const bool has_world_point = c.first_side == 0 && sum < 0;
@@ -226,44 +225,49 @@ void Heap::load_points(Problem& problem, double h, double rate) {
       center = c.constant[0], touching = c.constant_start[1];
     else if (point.b == none)
       origin = -1.0 * c.constant[0], other = -1.0 * c.constant_start[1];
-    const Vec3 turned = c.arm(2, x, 1), way = center - origin;
-    const Vec3 off = c.off(way, turned, c.arm(3, x, 1));
+    const Vec3 tangent = c.arm(3, x, 1), turned = c.arm(2, x, 1), way = center - origin;
+    const Vec3 off = c.off(way, turned, tangent);
     point.normal = unit_or(c.is_round ? off : turned, up);
-    const Vec3 tangent = c.arm(3, x, 1);
     point.first = unit_or(tangent - dot(tangent, point.normal) * point.normal, any_perpendicular(point.normal));
     point.second = cross(point.normal, point.first);
-    point.gap_at_begin = c.is_round ? norm(off) - c.radius : dot(point.normal, way) - c.radius;
-    point.friction = c.friction, point.restitution = c.restitution;
+    point.gap = begin.gap = c.is_round ? norm(off) - c.radius : dot(point.normal, way) - c.radius;
+    point.friction = c.friction;
     // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
     const Vec3 at = center + dot(touching - center, point.normal) * point.normal;
-    point.height = dot(at, up);
     const Vec3 belt = rate * (c.constant[1] - c.constant_start[1]);
     point.drift = belt - dot(belt, point.normal) * point.normal;
     const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
     const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
-    const auto load_side = [&](std::uint32_t b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
+    const auto load_side = [&](std::uint32_t& b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
                                Vec3& gap_arm) {
-      if (!is_free(b)) {
-        if (b != none) point.drift += sign * moving;
-        arm = at, gap_arm = gap_place, point.is_at_rest = true;
+      if (is_free(b)) {
+        arm = at - bodies_[b].center, gap_arm = gap_place - bodies_[b].center;
         return;
       }
-      arm = at - bodies_[b].center, gap_arm = gap_place - bodies_[b].center;
+      if (b != none) point.drift += sign * moving;
+      b = static_cast<std::uint32_t>(bodies_.size()), point.is_at_rest = true;
     };
-    load_side(point.a, center, drift_a, 1, point.arm_a, point.gap_a);
-    load_side(point.b, origin, drift_b, -1, point.arm_b, point.gap_b);
-    point.gap = point.gap_at_begin, point.arm_a_at_begin = point.arm_a, point.arm_b_at_begin = point.arm_b;
+    load_side(point.a, center, drift_a, 1, begin.arm_a, begin.gap_a);
+    load_side(point.b, origin, drift_b, -1, begin.arm_b, begin.gap_b);
+    point.arm_a = begin.arm_a, point.arm_b = begin.arm_b;
     weigh(point);
     const double* const l = pool.multiplier(i);
-    const Vec3 old = -(l[1] * c.arm(3, x, 1) + l[2] * c.arm(4, x, 1));
+    const Vec3 old = -(l[1] * tangent + l[2] * c.arm(4, x, 1));
     point.impulse = -h * l[0];
     point.impulse_first = h * dot(old, point.first), point.impulse_second = h * dot(old, point.second);
-    point.approach = -dot(point.normal, relative_velocity(point));
+    begin.approach = -dot(point.normal, relative_velocity(point));
     has_new_points_ = has_new_points_ || l[0] == 0;
-    points_.push_back(point);
+    by_height_.push_back({-dot(at, up), static_cast<std::uint32_t>(points_.size())});
+    points_.push_back(point), begins_.push_back(begin);
   }
   // From above to below: a pyramid of 55 cubes creeps by 3e-6 m a second, in the other order by 4e-4 m.
-  std::stable_sort(points_.begin(), points_.end(), [](const Point& p, const Point& q) { return p.height > q.height; });
+  std::sort(by_height_.begin(), by_height_.end());
+  const auto order = [&](auto& items, auto& sorted) {
+    sorted.clear();
+    for (const auto& [height, k] : by_height_) sorted.push_back(items[k]);
+    std::swap(items, sorted);
+  };
+  order(points_, sorted_points_), order(begins_, sorted_begins_);
 }
 
 void Heap::load_held(Problem& problem, double h) {
@@ -277,7 +281,7 @@ void Heap::load_held(Problem& problem, double h) {
     c.gradients(problem.position.data(), 1, by_node.data());
     for (std::uint32_t k = 0; k < c.count; ++k) {
       const std::uint32_t b = body_of_[c.nodes[k]];
-      if (bodies_[b].by_mass == 0) continue;
+      if (!is_free(b)) continue;
       const bool is_first = row.a == none || row.a == b;
       (is_first ? row.a : row.b) = b;
       (is_first ? row.way_a : row.way_b) += by_node[k];
@@ -285,7 +289,7 @@ void Heap::load_held(Problem& problem, double h) {
     }
     double inverse = 0;
     const auto add = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
-      if (b != none) inverse += bodies_[b].by_mass * dot(way, way) + dot(turn, bodies_[b].by_inertia * turn);
+      if (b != none) inverse += motions_[b].by_mass * dot(way, way) + dot(turn, motions_[b].by_inertia * turn);
     };
     add(row.a, row.way_a, row.turn_a), add(row.b, row.way_b, row.turn_b);
     if (!(inverse > 0)) continue;
@@ -301,74 +305,68 @@ void Heap::load_grips(const Problem& problem) {
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const GripForce& force = forces[i];
     Grip grip{.body = body_of_[force.arm.nodes[0]], .item = static_cast<std::uint32_t>(i)};
-    const Body& body = bodies_[grip.body];
-    if (body.by_mass == 0) continue;
+    if (!is_free(grip.body)) continue;
     grip.error = force.arm.value(problem.position.data());
-    grip.arm = grip.error + force.arm.origin - body.center;
+    grip.arm = grip.error + force.arm.origin - bodies_[grip.body].center;
     grips_.push_back(grip);
   }
 }
 
 // Held forces, and grips by the end-point rule.
 void Heap::push(double h, const Problem& problem, HeapReport& report) {
-  for (Body& body : bodies_) {
-    if (body.by_mass == 0) continue;
-    const Vec3 gained = body.gain - h * problem.gravity, turned = body.by_inertia * body.turning;
-    body.velocity += 0.5 * body.gain, body.spin += 0.5 * turned;
-    report.external_work += dot(gained, body.velocity) / body.by_mass + dot(body.turning, body.spin);
-    body.velocity += 0.5 * body.gain, body.spin += 0.5 * turned;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    Motion& motion = motions_[i];
+    if (motion.by_mass == 0) continue;
+    const Vec3 gained = body.gain - h * problem.gravity, turned = motion.by_inertia * body.turning;
+    motion.velocity += 0.5 * body.gain, motion.spin += 0.5 * turned;
+    report.external_work += dot(gained, motion.velocity) / motion.by_mass + dot(body.turning, motion.spin);
+    motion.velocity += 0.5 * body.gain, motion.spin += 0.5 * turned;
   }
   const std::span forces = problem.items_of<GripForce>();
   for (const Grip& grip : grips_) {
-    Body& body = bodies_[grip.body];
+    const Body& body = bodies_[grip.body];
+    Motion& motion = motions_[grip.body];
     const GripForce& force = forces[grip.item];
     const Vec3 arm = rotate(body.turn, grip.arm), error = grip.error + body.moved + arm - grip.arm;
-    const Vec3 velocity = body.velocity + cross(body.spin, arm);
+    const Vec3 velocity = motion.velocity + cross(motion.spin, arm);
     const double resistance = h * (force.damping + h * force.stiffness);
     Mat3 matrix;
     for (int k = 0; k < 3; ++k) {
       const Vec3 unit = unit_vector(k);
-      set_column(matrix, k, unit + resistance * (body.by_mass * unit + cross(body.by_inertia * cross(arm, unit), arm)));
+      set_column(matrix, k,
+                 unit + resistance * (motion.by_mass * unit + cross(motion.by_inertia * cross(arm, unit), arm)));
     }
     const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
-    body.velocity += body.by_mass * impulse, body.spin += body.by_inertia * cross(arm, impulse);
-    report.external_work += 0.5 * dot(impulse, velocity + body.velocity + cross(body.spin, arm));
+    motion.velocity += motion.by_mass * impulse, motion.spin += motion.by_inertia * cross(arm, impulse);
+    report.external_work += 0.5 * dot(impulse, velocity + motion.velocity + cross(motion.spin, arm));
   }
 }
 
 void Heap::apply(const Point& point, const Vec3& impulse) {
-  if (point.a != none) {
-    Body& body = bodies_[point.a];
-    body.velocity += body.by_mass * impulse, body.spin += body.by_inertia * cross(point.arm_a, impulse);
-  }
-  if (point.b != none) {
-    Body& body = bodies_[point.b];
-    body.velocity -= body.by_mass * impulse, body.spin -= body.by_inertia * cross(point.arm_b, impulse);
-  }
+  Motion &a = motions_[point.a], &b = motions_[point.b];
+  a.velocity += a.by_mass * impulse, a.spin += a.by_inertia * cross(point.arm_a, impulse);
+  b.velocity -= b.by_mass * impulse, b.spin -= b.by_inertia * cross(point.arm_b, impulse);
 }
 
 Vec3 Heap::relative_velocity(const Point& point) const {
-  Vec3 v = point.drift;
-  if (point.a != none && bodies_[point.a].by_mass > 0)
-    v += bodies_[point.a].velocity + cross(bodies_[point.a].spin, point.arm_a);
-  if (point.b != none && bodies_[point.b].by_mass > 0)
-    v -= bodies_[point.b].velocity + cross(bodies_[point.b].spin, point.arm_b);
-  return v;
+  const Motion &a = motions_[point.a], &b = motions_[point.b];
+  return point.drift + a.velocity + cross(a.spin, point.arm_a) - b.velocity - cross(b.spin, point.arm_b);
 }
 
 void Heap::apply(const Held& row, double impulse) {
   const auto give = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
     if (b == none) return;
-    bodies_[b].velocity += (impulse * bodies_[b].by_mass) * way;
-    bodies_[b].spin += bodies_[b].by_inertia * (impulse * turn);
+    motions_[b].velocity += (impulse * motions_[b].by_mass) * way;
+    motions_[b].spin += motions_[b].by_inertia * (impulse * turn);
   };
   give(row.a, row.way_a, row.turn_a), give(row.b, row.way_b, row.turn_b);
 }
 
 void Heap::solve_held(Held& row) {
   double rate = 0;
-  if (row.a != none) rate += dot(row.way_a, bodies_[row.a].velocity) + dot(row.turn_a, bodies_[row.a].spin);
-  if (row.b != none) rate += dot(row.way_b, bodies_[row.b].velocity) + dot(row.turn_b, bodies_[row.b].spin);
+  if (row.a != none) rate += dot(row.way_a, motions_[row.a].velocity) + dot(row.turn_a, motions_[row.a].spin);
+  if (row.b != none) rate += dot(row.way_b, motions_[row.b].velocity) + dot(row.turn_b, motions_[row.b].spin);
   const double before = row.impulse;
   row.impulse = std::clamp(before - row.mass * rate, -row.most, row.most);
   apply(row, row.impulse - before);
@@ -381,49 +379,60 @@ void Heap::sweep(double h, const Softness& soft, int times) {
   }
 }
 
-// Bodies that met leave each other with a part of their speed, unless that is what gravity gives in a step.
-void Heap::rebound(double least) {
-  for (Point& point : points_) {
-    if (point.restitution == 0 || point.approach <= least || point.sum == 0) continue;
-    const double missing = point.restitution * point.approach - dot(point.normal, relative_velocity(point));
-    const double impulse = std::max(0.0, point.mass * missing);
-    point.sum += impulse;
-    apply(point, impulse * point.normal);
-  }
-}
-
+// All of it works on copies of four vectors: most of the time of a sweep is that of loads and stores.
 void Heap::solve_point(Point& point, double h, const Softness& soft) {
-  const double approach = dot(point.normal, relative_velocity(point)), before = point.impulse;
+  Motion &a = motions_[point.a], &b = motions_[point.b];
+  Vec3 velocity_a = a.velocity, spin_a = a.spin, velocity_b = b.velocity, spin_b = b.spin;
+  const auto slip = [&] {
+    return point.drift + velocity_a + cross(spin_a, point.arm_a) - velocity_b - cross(spin_b, point.arm_b);
+  };
+  const auto give = [&](const Vec3& impulse) {
+    velocity_a += a.by_mass * impulse, spin_a += a.by_inertia * cross(point.arm_a, impulse);
+    velocity_b -= b.by_mass * impulse, spin_b -= b.by_inertia * cross(point.arm_b, impulse);
+  };
+  const double approach = dot(point.normal, slip()), before = point.impulse;
   double push = point.gap / h, of_mass = 1, of_impulse = 0;
   if (point.gap <= 0)
     push = std::max(soft.rate * point.gap, -fastest_push), of_mass = soft.mass, of_impulse = soft.impulse;
   point.impulse = std::max(0.0, before - point.mass * of_mass * (approach + push) - of_impulse * before);
-  apply(point, (point.impulse - before) * point.normal);
-  if (point.friction == 0) return;
-  const Vec3 slip = relative_velocity(point);
-  const double first = point.impulse_first, second = point.impulse_second;
-  point.impulse_first -= point.mass_first * dot(point.first, slip);
-  point.impulse_second -= point.mass_second * dot(point.second, slip);
-  const double most = point.friction * point.impulse,
-               square = point.impulse_first * point.impulse_first + point.impulse_second * point.impulse_second;
-  if (square > most * most) {
-    const double part = most / std::sqrt(square);
-    point.impulse_first *= part, point.impulse_second *= part;
+  if (point.impulse == 0 && before == 0) return;
+  give((point.impulse - before) * point.normal);
+  if (point.friction > 0) {
+    const Vec3 way = slip();
+    const double first = point.impulse_first, second = point.impulse_second;
+    point.impulse_first -= point.mass_first * dot(point.first, way);
+    point.impulse_second -= point.mass_second * dot(point.second, way);
+    const double most = point.friction * point.impulse,
+                 square = point.impulse_first * point.impulse_first + point.impulse_second * point.impulse_second;
+    if (square > most * most) {
+      const double part = most / std::sqrt(square);
+      point.impulse_first *= part, point.impulse_second *= part;
+    }
+    give((point.impulse_first - first) * point.first + (point.impulse_second - second) * point.second);
   }
-  apply(point, (point.impulse_first - first) * point.first + (point.impulse_second - second) * point.second);
+  a.velocity = velocity_a, a.spin = spin_a, b.velocity = velocity_b, b.spin = spin_b;
+}
+
+// Bodies that met leave each other with a part of their speed, unless that is what gravity gives in a step.
+void Heap::rebound(double least) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    PointBegin& begin = begins_[i];
+    if (begin.restitution == 0 || begin.approach <= least || begin.sum == 0) continue;
+    const double missing = begin.restitution * begin.approach - dot(point.normal, relative_velocity(point));
+    const double impulse = std::max(0.0, point.mass * missing);
+    begin.sum += impulse;
+    apply(point, impulse * point.normal);
+  }
 }
 
 // The masses against which its impulses act, of both bodies as they are turned now.
 void Heap::weigh(Point& point) const {
+  const Motion &a = motions_[point.a], &b = motions_[point.b];
   const auto mass_along = [&](const Vec3& direction) {
-    double inverse = 0;
-    const auto add_side = [&](std::uint32_t b, const Vec3& arm) {
-      if (b == none || bodies_[b].by_mass == 0) return;
-      const Vec3 moment = cross(arm, direction);
-      inverse += bodies_[b].by_mass + dot(moment, bodies_[b].by_inertia * moment);
-    };
-    add_side(point.a, point.arm_a), add_side(point.b, point.arm_b);
-    return 1 / inverse;
+    const Vec3 moment_a = cross(point.arm_a, direction), moment_b = cross(point.arm_b, direction);
+    return 1 /
+           (a.by_mass + dot(moment_a, a.by_inertia * moment_a) + b.by_mass + dot(moment_b, b.by_inertia * moment_b));
   };
   point.mass = mass_along(point.normal);
   point.mass_first = mass_along(point.first), point.mass_second = mass_along(point.second);
@@ -432,53 +441,60 @@ void Heap::weigh(Point& point) const {
 // A thin rod that turns has another mass at the same place: with that of the begin its impulses grew without bound.
 bool Heap::has_turned(std::uint32_t body) const {
   constexpr double far = 0.1;  // rad
-  return body != none && std::abs(bodies_[body].turn.w) < 1 - far * far / 8;
+  return body < bodies_.size() && std::abs(bodies_[body].turn.w) < 1 - far * far / 8;
 }
 
 // Gaps, and the arms of forces: both sides have theirs at one place, so that angular momentum is kept.
-void Heap::refresh_points() {
-  for (Point& point : points_) {
-    Vec3 closing = point.drifted;
-    const auto add_side = [&](std::uint32_t b, double sign, const Vec3& arm) {
-      if (b == none || bodies_[b].by_mass == 0) return;
-      closing += sign * (bodies_[b].moved + bodies_[b].turned * arm - arm);
+void Heap::refresh_points(double h) {
+  const std::size_t world = bodies_.size();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    Point& point = points_[i];
+    PointBegin& begin = begins_[i];
+    begin.drifted += h * point.drift;
+    Vec3 closing = begin.drifted;
+    const auto moved = [&](std::uint32_t b, const Vec3& arm) {
+      return bodies_[b].moved + bodies_[b].turned * arm - arm;
     };
-    add_side(point.a, 1, point.gap_a), add_side(point.b, -1, point.gap_b);
-    point.gap = point.gap_at_begin + dot(point.normal, closing);
+    if (point.a < world) closing += moved(point.a, begin.gap_a);
+    if (point.b < world) closing -= moved(point.b, begin.gap_b);
+    point.gap = begin.gap + dot(point.normal, closing);
     if (!point.is_at_rest) {
       const Vec3 apart = 0.5 * (bodies_[point.a].moved - bodies_[point.b].moved);
-      point.arm_a = point.arm_a_at_begin - apart, point.arm_b = point.arm_b_at_begin + apart;
+      point.arm_a = begin.arm_a - apart, point.arm_b = begin.arm_b + apart;
     }
     if (has_turned(point.a) || has_turned(point.b)) weigh(point);
   }
 }
 
 void Heap::move(double h) {
-  for (Body& body : bodies_) {
-    if (body.by_mass == 0) continue;
-    body.moved += h * body.velocity;
-    const Vec3 angular = rotate(body.turn, body.inertia * rotate(conjugate(body.turn), body.spin));
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    Motion& motion = motions_[i];
+    if (motion.by_mass == 0) continue;
+    body.moved += h * motion.velocity;
+    const Vec3 angular = rotate(body.turn, body.inertia * rotate(conjugate(body.turn), motion.spin));
     const auto spin_of = [&](const Quaternion& turn) {
       return rotate(turn, body.by_inertia_at_begin * rotate(conjugate(turn), angular));
     };
-    const Quaternion half = multiply(turn_by((0.5 * h) * body.spin), body.turn);
+    const Quaternion half = multiply(turn_by((0.5 * h) * motion.spin), body.turn);
     body.turn = normalized(multiply(turn_by(h * spin_of(half)), body.turn));
-    body.spin = spin_of(body.turn);
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 unit = unit_vector(k);
-      set_column(body.turned, k, rotate(body.turn, unit));
-      set_column(body.by_inertia, k, rotate(body.turn, body.by_inertia_at_begin * rotate(conjugate(body.turn), unit)));
-    }
+    motion.spin = spin_of(body.turn);
+    for (int k = 0; k < 3; ++k) set_column(body.turned, k, rotate(body.turn, unit_vector(k)));
+    const Mat3 back = body.turned.transposed();
+    for (int k = 0; k < 3; ++k)
+      set_column(motion.by_inertia, k, body.turned * (body.by_inertia_at_begin * (back * unit_vector(k))));
   }
 }
 
 void Heap::store(Problem& problem, double h, HeapReport& report) const {
-  for (const Body& body : bodies_) {
-    if (body.by_mass == 0) continue;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    const Motion& motion = motions_[i];
+    if (motion.by_mass == 0) continue;
     for (std::uint32_t k = 0; k < body.count; ++k) {
       const Vec3 arm = rotate(body.turn, body.arms[k]);
       problem.position[body.nodes[k]] = body.center + body.moved + arm;
-      problem.velocity[body.nodes[k]] = body.velocity + cross(body.spin, arm);
+      problem.velocity[body.nodes[k]] = motion.velocity + cross(motion.spin, arm);
     }
   }
   if (!held_.empty()) {
@@ -488,20 +504,22 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
   }
   auto& pool = problem.pool_of<ContactConstraint>();
   std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0);
-  for (const Point& point : points_) {
-    ContactConstraint& c = pool.items[point.row];
-    double* const l = pool.multiplier(point.row);
-    const Vec3 drag = (1 / h) * (point.sum_first * point.first + point.sum_second * point.second);
-    l[0] = -point.sum / h;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    const PointBegin& begin = begins_[i];
+    ContactConstraint& c = pool.items[begin.row];
+    double* const l = pool.multiplier(begin.row);
+    const Vec3 drag = (1 / h) * (begin.sum_first * point.first + begin.sum_second * point.second);
+    l[0] = -begin.sum / h;
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
     c.is_of_sweeps = true;
     for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
-    report.external_work -= dot(point.sum * point.normal + h * drag, point.drift);
+    report.external_work -= dot(begin.sum * point.normal + h * drag, point.drift);
     report.depth = std::max(report.depth, -point.gap);
   }
 }
 
-HeapReport Heap::advance(Problem& problem, double h, double from, double fraction) {
+HeapReport Heap::advance(Problem& problem, double h, double from, double fraction, int sub_steps) {
   HeapReport report;
   const double part = h / sub_steps;
   const Softness pushing(0.25 / part, part), plain;
@@ -517,11 +535,12 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
     for (const Held& row : held_) apply(row, row.impulse);
     sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
     move(part);
-    for (Point& point : points_) point.drifted += part * point.drift;
-    refresh_points();
+    refresh_points(part);
     sweep(part, plain, sweeps);
-    for (Point& point : points_)
-      point.sum += point.impulse, point.sum_first += point.impulse_first, point.sum_second += point.impulse_second;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      begins_[i].sum += points_[i].impulse;
+      begins_[i].sum_first += points_[i].impulse_first, begins_[i].sum_second += points_[i].impulse_second;
+    }
     for (Held& row : held_) row.sum += row.impulse;
   }
   rebound(h * norm(problem.gravity));

@@ -30,8 +30,9 @@ class Heap {
   bool find_bodies(const Problem&);
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor();
+  static constexpr int most_sub_steps = 8;  ///< see heap.cpp
   /// A (sub-)step of h seconds, at whose end targets have gone this fraction of their way.
-  HeapReport advance(Problem&, double h, double from, double fraction);
+  HeapReport advance(Problem&, double h, double from, double fraction, int sub_steps = most_sub_steps);
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -42,32 +43,41 @@ class Heap {
     std::uint32_t count = 0;
     bool is_driven = false;  ///< its points follow targets
     // In a step.
-    double by_mass = 0;        ///< 1/kg; 0: driven
-    Vec3 velocity, spin;       ///< m/s, rad/s
-    Mat3 inertia, by_inertia;  ///< about the center, at the begin; the latter now; along the line of a rod zero
-    Mat3 by_inertia_at_begin;
+    Mat3 inertia, by_inertia_at_begin;   ///< about the center, at the begin
     Vec3 center, moved;                  ///< at the begin; since then, m
     Quaternion turn;                     ///< since the begin
     Mat3 turned;                         ///< the same as a matrix
     Vec3 gain, turning;                  ///< of held forces in a sub-step: m/s, N m s
     std::array<Vec3, most_points> arms;  ///< of the points at the begin, m
   };
-  /// Body `none`: the world.
+  /// All that a sweep needs of a body. Of what is driven, and of the world: zero.
+  struct Motion {
+    Vec3 velocity, spin;  ///< m/s, rad/s
+    double by_mass = 0;   ///< 1/kg
+    Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
+  };
+  /// A place where two bodies touch. Body `none` in the loading of it: the world, the last of the motions.
   struct Point {
-    std::uint32_t a = none, b = none, row = 0;
-    double friction = 0, restitution = 0;
-    double approach = 0;  ///< at the begin, m/s
+    std::uint32_t a = none, b = none;
+    bool is_at_rest = false;  ///< one side does not move
+    double friction = 0;
     Vec3 normal, first, second;
-    Vec3 arm_a, arm_b;  ///< from the centers to where the forces act, now
-    Vec3 arm_a_at_begin, arm_b_at_begin;
-    Vec3 gap_a, gap_b;                 ///< from the centers to the places that have the gap, at the begin
-    Vec3 drift, drifted;               ///< velocity of driven sides, m/s; way since the begin, m
-    double gap = 0, gap_at_begin = 0;  ///< m
+    Vec3 arm_a, arm_b;                                          ///< from the centers to where the forces act, now
+    Vec3 drift;                                                 ///< velocity of driven sides, m/s
+    double gap = 0;                                             ///< m
     double mass = 0, mass_first = 0, mass_second = 0;           ///< kg
     double impulse = 0, impulse_first = 0, impulse_second = 0;  ///< in a sub-step, N s
-    double sum = 0, sum_first = 0, sum_second = 0;              ///< in the step
-    double height = 0;                                          ///< against gravity
-    bool is_at_rest = false;                                    ///< one side does not move
+  };
+  /// What sweeps do not need of it.
+  struct PointBegin {
+    std::uint32_t row = 0;
+    double restitution = 0;
+    double approach = 0;                            ///< at the begin, m/s
+    Vec3 arm_a, arm_b;                              ///< at the begin
+    Vec3 gap_a, gap_b;                              ///< from the centers to the places that have the gap, at the begin
+    Vec3 drifted;                                   ///< way of driven sides since the begin, m
+    double gap = 0;                                 ///< at the begin, m
+    double sum = 0, sum_first = 0, sum_second = 0;  ///< impulses in the step, N s
   };
   /// A held row of one value, such as resistance against rolling: the impulse by which it acts is bounded.
   struct Held {
@@ -93,8 +103,9 @@ class Heap {
   void solve_held(Held&);
   void apply(const Held&, double impulse);
   void rebound(double least);
-  void refresh_points();
+  void refresh_points(double h);
   void weigh(Point&) const;
+  bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
   bool has_turned(std::uint32_t body) const;
   void apply(const Point&, const Vec3& impulse);
   Vec3 relative_velocity(const Point&) const;
@@ -102,7 +113,12 @@ class Heap {
 
   std::vector<std::uint32_t> body_of_;  // of each node
   std::vector<Body> bodies_;
-  std::vector<Point> points_;
+  std::vector<Motion> motions_;  // of the bodies, and of the world
+  std::vector<Point> points_;    // from above to below
+  std::vector<PointBegin> begins_;
+  std::vector<std::pair<double, std::uint32_t>> by_height_;
+  std::vector<Point> sorted_points_;
+  std::vector<PointBegin> sorted_begins_;
   bool has_new_points_ = false;  // that carried nothing in the step before
   std::vector<Held> held_;
   std::vector<Grip> grips_;

@@ -227,11 +227,13 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   if (!heap_) heap_ = std::make_unique<Heap>();
   if (!std::exchange(is_heap_known_, true)) {
     is_heap_ = heap_->find_bodies(problem);
-    heap_cost_ = is_heap_ ? heap_->cost_of_factor() : 0;
+    heap_cost_.reset();
   }
-  cost = heap_cost_;
   if (!is_heap_) return false;
   std::uint64_t& swept = problem.unsolved_steps;
+  if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole
+  if (!heap_cost_) heap_cost_ = heap_->cost_of_factor();
+  cost = *heap_cost_;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = fewest * cost > settings_.contact_share * budget;
   const bool waits = swept > 0 && !is_due(swept);
@@ -247,7 +249,10 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
 void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
   has_corrected_ = is_instant_ = false;
   const EnergyBalance before = energy_;
-  const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to);
+  const double share = settings_.part * part.h / step_length_;
+  const int sub_steps =
+      std::clamp(static_cast<int>(std::lround(Heap::most_sub_steps * share)), 1, Heap::most_sub_steps);
+  const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
   energy_.measure_change(problem, part.to, swept.external_work);
   // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
   const double lifted = energy_.total - energy_.kinetic - (before.total - before.kinetic);

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace iota::solver {
 
@@ -176,7 +177,7 @@ class Integrator {
   std::unique_ptr<Heap> heap_;               // if there ever were contacts
   bool is_heap_ = false;                     // bodies that only contacts connect
   bool is_heap_known_ = false;               // since the latest change of structure
-  double heap_cost_ = 0;                     // of a factor
+  std::optional<double> heap_cost_;          // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed
   std::vector<std::uint32_t> center_;        // of the latest
   std::unique_ptr<RungeKutta> runge_kutta_;  // if it was needed

@@ -3,15 +3,19 @@
 
 #include "model/outline.h"
 #include "model/solid.h"
+#include "solver/heap.h"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <variant>
 
 namespace iota::step {
 
 namespace {
+
+using solver::Heap;
 
 constexpr double of_way = 1.5;    ///< a body that speeds up goes further than it would
 constexpr double of_size = 0.02;  ///< what it may turn further
@@ -21,7 +25,10 @@ constexpr double of_size = 0.02;  ///< what it may turn further
 constexpr double far = 0.5;      ///< a body that goes or swings further in the rest of a step is followed on its way
 constexpr double closing = 0.1;  ///< what comes closer in the rest of a step meets: the step is cut there
 constexpr double near = 0.25;    ///< the way and the swing in a part in which bodies meet
-constexpr double least = 1e-3;   ///< of the rest of a step: no part is shorter
+/// Islands of sweeps take such parts in any case: their sub-steps are as many in all.
+constexpr std::size_t most_in_parts = 2400;  ///< bodies in all parts of a step: larger islands take fewer
+constexpr double near_in_sweeps = 0.1, still = 0.02;
+constexpr double least = 1e-3;  ///< of the rest of a step: no part is shorter
 
 /// A body lies on the outermost ones of many points: the lowest one, and those that are farthest from the ones before.
 void keep_the_outermost(std::vector<contact::Touch>& touches, double size) {
@@ -55,6 +62,28 @@ bool may_touch(const model::Model& model, const contact::Outlines& outlines, std
 
 }  // namespace
 
+void ContactFinder::Known::look(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  items_.clear(), slots_.clear(), at_ = 0;
+  if (model.contacts.size() == 0) return;
+  const auto is_fixed = [&](std::uint32_t body) { return model.bodies[body].kind == BodyKind::static_; };
+  for (const std::uint32_t body : bodies)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+      const auto& c = model.contacts[slot];
+      const bool is_turned = is_fixed(c.p) || (!is_fixed(c.q) && c.q < c.p);
+      items_.push_back({is_turned ? Pair{c.q, c.p} : Pair{c.p, c.q}, slot});
+    });
+  std::sort(items_.begin(), items_.end());
+  items_.erase(std::unique(items_.begin(), items_.end()), items_.end());
+  for (const auto& [pair, slot] : items_) slots_.push_back(slot);
+}
+
+std::span<const std::uint32_t> ContactFinder::Known::of(const Pair& pair) {
+  while (at_ < items_.size() && items_[at_].first < pair) ++at_;
+  const std::size_t begin = at_;
+  while (at_ < items_.size() && items_[at_].first == pair) ++at_;
+  return std::span(slots_).subspan(begin, at_ - begin);
+}
+
 double ContactFinder::Obstacle::distance(const Vec3& place) const {
   return is_half_space ? dot(normal, place - origin) : geometry::distance(box, place);
 }
@@ -76,10 +105,18 @@ void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outli
   std::sort(obstacles_.begin(), obstacles_.end(), [](const Obstacle& a, const Obstacle& b) { return a.body < b.body; });
 }
 
-ContactFinder::Mover ContactFinder::mover_at(const model::Model& model, const contact::Outlines& outlines,
-                                             std::uint32_t slot) {
+void ContactFinder::begin_look(const model::Model& model, double h) {
+  h_ = h, fall_ = h * norm(model.acting_gravity());
+  ++look_;
+  if (all_movers_.size() < model.bodies.slot_count()) all_movers_.resize(model.bodies.slot_count());
+}
+
+ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, const contact::Outlines& outlines,
+                                              std::uint32_t slot) {
+  Mover& mover = all_movers_[slot];
+  if (mover.look == look_) return mover;
   const model::Body& body = model.bodies[slot];
-  Mover mover{slot, outlines.reach(slot), model.position(body.first), {}, 0};
+  mover = {.body = slot, .reach = outlines.reach(slot), .place = model.position(body.first), .look = look_};
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
@@ -96,8 +133,7 @@ void ContactFinder::list_movers(model::Model& model, const contact::Outlines& ou
     if (body.kind == BodyKind::static_) return;
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
     is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot);
-    if (body.kind != BodyKind::resting && !ingredient::Strides::skips(model, slot))
-      movers_.push_back(mover_at(model, outlines, slot));
+    if (body.kind != BodyKind::resting && !ingredient::Strides::skips(model, slot)) movers_.push_back(slot);
   });
 }
 
@@ -108,8 +144,9 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
 }
 
 // Few obstacles are looked at one by one.
-void ContactFinder::find_obstacles(model::Model& model) {
-  for (const Mover& mover : movers_) {
+void ContactFinder::find_obstacles(model::Model& model, const contact::Outlines& outlines) {
+  for (const std::uint32_t slot : movers_) {
+    const Mover& mover = mover_at(model, outlines, slot);
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
     const double reach_of_stride = mover.steps > 1 ? mover.reach + within(mover, nullptr, mover.steps) : reach;
@@ -126,7 +163,8 @@ void ContactFinder::find_obstacles(model::Model& model) {
 void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines) {
   if (movers_.empty() || !is_any_extended_) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
-  for (const Mover& mover : movers_) {
+  for (const std::uint32_t slot : movers_) {
+    const Mover& mover = mover_at(model, outlines, slot);
     // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
     const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
     geometry::Bounds box = contact::bounds(tree[mover.body]);
@@ -134,7 +172,7 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
     tree.overlapping(box, [&](std::uint32_t body) {
       if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body))
         return;
-      const Mover other = mover_at(model, outlines, body);
+      const Mover& other = mover_at(model, outlines, body);
       const double apart = norm(other.place - mover.place) - mover.reach - other.reach;
       if (mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
           apart <= within(mover, &other, mover.steps))
@@ -207,21 +245,21 @@ bool touch_each_other(model::Model& model, contact::Outlines& outlines,
 
 }  // namespace
 
-void ContactFinder::set_time(const model::Model& model, double h) { h_ = h, fall_ = h * norm(model.acting_gravity()); }
-
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h) {
   hasty_.clear();
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
-  set_time(model, h);
+  step_ = h, shortest_ = h / Heap::most_sub_steps;
+  begin_look(model, h);
   pairs_.clear(), sensed_.clear();
   list_obstacles(model, outlines);
   list_movers(model, outlines);
-  find_obstacles(model);
+  find_obstacles(model, outlines);
   find_pairs(model, outlines);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, pair); });
+  known_.look(model, movers_);
   for (const Pair& pair : pairs_) {
     if (is_sensor(model, pair)) {
       sense(model, outlines, pair);
@@ -230,19 +268,19 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     const Meeting meeting = meeting_of(model, outlines, pair);
     const Ahead ahead = look_ahead(model, outlines, pair, meeting);
     if (ahead.apart >= h) continue;
-    if (!(ahead.apart > 0)) touch(model, outlines, pair, meeting);
+    const bool is_touching = !(ahead.apart > 0) && touch(model, outlines, pair, meeting, known_.of(pair));
     if (!(ahead.part < h)) continue;
-    ingredient::Contacts::tie(model, pair.first, pair.second);
+    if (!is_touching) ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
   }
   if (model.contacts.size() > 0)
-    for (const Mover& mover : movers_) ingredient::Contacts::end_old(model, mover.body);
+    for (const std::uint32_t slot : movers_) ingredient::Contacts::end_old(model, slot);
 }
 
 void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines, const Pair& pair) {
   constexpr double close = 1e-3;  // of the size
   const auto [first, second] = pair;
-  const Mover mover = mover_at(model, outlines, first);
+  const Mover& mover = mover_at(model, outlines, first);
   const bool is_fixed = model.bodies[second].kind == BodyKind::static_;
   const Vec3 other_velocity = is_fixed ? Vec3{} : mover_at(model, outlines, second).velocity;
   found_.clear();
@@ -259,28 +297,56 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
 
 ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, const contact::Outlines& outlines,
                                                  const Pair& pair) {
-  Meeting meeting{mover_at(model, outlines, pair.first), {}, 0};
-  if (model.bodies[pair.second].kind != BodyKind::static_) meeting.second = mover_at(model, outlines, pair.second);
-  meeting.size = meeting.second ? std::min(meeting.first.reach, meeting.second->reach) : meeting.first.reach;
+  Meeting meeting{&mover_at(model, outlines, pair.first), nullptr, 0};
+  if (model.bodies[pair.second].kind != BodyKind::static_) meeting.second = &mover_at(model, outlines, pair.second);
+  meeting.size = meeting.second ? std::min(meeting.first->reach, meeting.second->reach) : meeting.first->reach;
   return meeting;
 }
 
-void ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting) {
+double ContactFinder::Meeting::speed() const {
+  return second ? norm(first->velocity - second->velocity) + first->spread + second->spread
+                : norm(first->velocity) + first->spread;
+}
+
+const contact::Outline& ContactFinder::placed(contact::Outlines& outlines, Mover& mover) {
+  return std::exchange(mover.is_placed, true) ? outlines.described(mover.body) : outlines.placed(mover.body);
+}
+
+bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeting) {
+  const auto is = [&](Mover* mover) {
+    if (!mover) return false;
+    if (!mover->of_sweeps) mover->of_sweeps = ingredient::Contacts::is_of_sweeps(model, mover->body);
+    return *mover->of_sweeps;
+  };
+  return is(meeting.first) || is(meeting.second);
+}
+
+bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting,
+                          std::span<const std::uint32_t> former) {
   const auto [first, second] = pair;
   const auto& [mover, other, size] = meeting;
   // Only a body with three dimensions carries a spin.
-  const auto spin = [&](std::uint32_t body) {
-    return model.bodies[body].rank == 4 ? model::body_angular_velocity(model, body) : Vec3{};
+  const auto spin = [&](Mover* of) {
+    if (!of || model.bodies[of->body].rank != 4) return Vec3{};
+    if (!of->spin) of->spin = model::body_angular_velocity(model, of->body);
+    return *of->spin;
   };
-  const Vec3 spins[2] = {spin(first), other ? spin(second) : Vec3{}};
+  const auto basis = [&](Mover* of) -> const model::BasisWeights* {
+    if (!of) return nullptr;
+    if (!of->basis) of->basis.emplace(model, of->body);
+    return &*of->basis;
+  };
+  const Vec3 spins[2] = {spin(mover), spin(other)};
   found_.clear();
-  const contact::Outline& outline = outlines.placed(first);
-  if (other) (void)outlines.placed(second);
-  const Vec3 way = h_ * (other ? mover.velocity - other->velocity : mover.velocity);
-  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(mover, other ? &*other : nullptr),
-                found_, way);
+  const contact::Outline& outline = placed(outlines, *mover);
+  if (other) (void)placed(outlines, *other);
+  const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
+  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(*mover, other), found_, way);
   keep_the_outermost(found_, size);
-  ingredient::Contacts::take(model, first, second, found_, {size, {spins[0], spins[1]}, h_});
+  if (found_.empty()) return false;
+  ingredient::Contacts::take(model, first, second, former, found_,
+                             {size, {spins[0], spins[1]}, h_, {basis(mover), basis(other)}});
+  return true;
 }
 
 contact::Motion ContactFinder::motion_of(const model::Model& model, const contact::Outlines& outlines,
@@ -304,17 +370,19 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
   constexpr double never = std::numeric_limits<double>::infinity();
   const auto [first, second] = pair;
   const auto& [mover, other, size] = meeting;
-  const double speed = other ? norm(mover.velocity - other->velocity) + mover.spread + other->spread
-                             : norm(mover.velocity) + mover.spread;
+  const double speed = meeting.speed();
+  if (h_ * speed > near_in_sweeps * size && !(step_ * speed > Heap::most_sub_steps * far * size) &&
+      is_of_sweeps(model, meeting))
+    return {0, std::max(h_ / std::ceil(h_ * speed / (near_in_sweeps * size)), shortest_)};
   if (!(h_ * speed > far * size)) return {0, never};
-  const contact::Outline& outline = outlines.placed(first);
-  if (other) (void)outlines.placed(second);
+  const contact::Outline& outline = placed(outlines, *mover);
+  if (other) (void)placed(outlines, *other);
   const contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
   const contact::Outline& other_outline = outlines.described(second);
   const double time = approaches_.time(outline, motions[0], other_outline, motions[1], of_size * size, h_);
   if (time > least * h_) return {time, time};
   found_.clear();
-  touches_.find(outline, {}, other_outline, {}, within(mover, other ? &*other : nullptr), found_);
+  touches_.find(outline, {}, other_outline, {}, within(*mover, other), found_);
   double approach = 0, swing = 0;
   for (const contact::Touch& touch : found_) {
     const Vec3 swings[2] = {cross(motions[0].spin, touch.center - motions[0].center),
@@ -346,19 +414,28 @@ void ContactFinder::list_pairs_of(const model::Model& model, const contact::Outl
 
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,
                                                std::span<const std::uint32_t> bodies, double left, const Part& which) {
+  const std::size_t most_parts = std::max<std::size_t>(2, most_in_parts / bodies.size());
+  shortest_ = step_ / static_cast<double>(std::min<std::size_t>(most_parts, Heap::most_sub_steps));
+  begin_look(model, left);
   list_pairs_of(model, outlines, bodies);
-  set_time(model, left);
   double part = left;
   if (which.may_cut)
     for (auto& [pair, meeting, apart] : listed_) {
       const Ahead ahead = look_ahead(model, outlines, pair, meeting);
       apart = ahead.apart, part = std::min(part, ahead.part);
     }
-  set_time(model, part);
-  ingredient::Contacts::begin_part(model, bodies, which.is_first);
-  for (const auto& [pair, meeting, apart] : listed_)
-    if (apart < part) touch(model, outlines, pair, meeting);
-  ingredient::Contacts::end_part(model, bodies);
+  if (left - part < least * step_) part = left;  // the rest is round-off
+  h_ = part, fall_ = part * norm(model.acting_gravity());
+  known_.look(model, bodies);
+  ingredient::Contacts::begin_part(model, known_.all(), which.is_first);
+  for (const auto& [pair, meeting, apart] : listed_) {
+    if (!(apart < part)) continue;
+    const std::span<const std::uint32_t> former = known_.of(pair);
+    const bool is_calm = step_ * meeting.speed() < still * meeting.size;
+    if (!which.of_sweeps || !(is_calm || which.is_first) || !ingredient::Contacts::keep(model, former))
+      (void)touch(model, outlines, pair, meeting, former);
+  }
+  ingredient::Contacts::end_part(model, known_.all());
   return part < left ? std::optional(part) : std::nullopt;
 }
 

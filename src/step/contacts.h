@@ -5,6 +5,7 @@
 #include "contact/outlines.h"
 #include "contact/touches.h"
 #include "ingredient/model.h"
+#include "model/basis_weights.h"
 
 #include <optional>
 #include <span>
@@ -30,7 +31,7 @@ class ContactFinder {
   /// Articulates of bodies that meet others so fast on their way that their islands take the step in parts.
   const std::vector<std::uint32_t>& hasty() const { return hasty_; }
   struct Part {
-    bool is_first, may_cut;
+    bool is_first, may_cut, of_sweeps;
   };
   /// The contacts of an island for the next part of its step, of which `left` seconds are left: those of pairs that `find`
   /// has listed. Returns the length of the part, s, if it is not the last one: the next body is met at its end, or it is so
@@ -51,29 +52,39 @@ class ContactFinder {
   /// A body that may touch others.
   struct Mover {
     std::uint32_t body = 0;
-    double reach = 0;      ///< m
-    Vec3 place, velocity;  ///< of its first particle; mean
-    double spread = 0;     ///< of the velocities of its points, m/s
-    double steps = 1;      ///< that it may take at once
+    double reach = 0;          ///< m
+    Vec3 place, velocity;      ///< of its first particle; mean
+    double spread = 0;         ///< of the velocities of its points, m/s
+    double steps = 1;          ///< that it may take at once
+    std::uint64_t look = 0;    ///< in which it was measured
+    bool is_placed = false;    ///< its outline is where the body is now; this and the following: where asked for
+    std::optional<Vec3> spin;  ///< rad/s
+    std::optional<model::BasisWeights> basis;
+    std::optional<bool> of_sweeps;  ///< see ingredient::Contacts::is_of_sweeps
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
   void list_obstacles(model::Model&, contact::Outlines&);
-  static Mover mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
+  /// Of the time of this look, at the begin of the step or of a part of it.
+  Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
+  void begin_look(const model::Model&, double h);
   void list_movers(model::Model&, const contact::Outlines&);
-  void find_obstacles(model::Model&);
+  void find_obstacles(model::Model&, const contact::Outlines&);
   void find_pairs(model::Model&, contact::Outlines&);
   /// A pair as it moves now, measured once for a step or a part of it.
   struct Meeting {
-    Mover first;
-    std::optional<Mover> second;  ///< of what moves
-    double size;                  ///< of the smaller one that moves, m
+    Mover* first;
+    Mover* second;  ///< of what moves
+    double size;    ///< of the smaller one that moves, m
+    double speed() const;
   };
-  static Meeting meeting_of(const model::Model&, const contact::Outlines&, const Pair&);
-  void touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  const contact::Outline& placed(contact::Outlines&, Mover&);
+  bool is_of_sweeps(const model::Model&, const Meeting&);
+  Meeting meeting_of(const model::Model&, const contact::Outlines&, const Pair&);
+  /// former: the contacts that they have. False: they do not touch.
+  bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;
-  void set_time(const model::Model&, double h);
 
   /// A pair on its way.
   struct Ahead {
@@ -86,11 +97,27 @@ class ContactFinder {
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
-  bool is_any_extended_ = false;  ///< more than a particle
-  double h_ = 0, fall_ = 0;       ///< s; speed that gravity gives in this time, m/s
+  bool is_any_extended_ = false;    ///< more than a particle
+  double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s
+  double h_ = 0, fall_ = 0;         ///< of the step or the rest of it, s; speed that gravity gives in this time, m/s
+  /// The contacts of some bodies by their pairs, for questions about pairs in their order.
+  class Known {
+   public:
+    void look(const model::Model&, std::span<const std::uint32_t> bodies);
+    std::span<const std::uint32_t> of(const Pair&);  ///< not before the last one asked for
+    std::span<const std::uint32_t> all() const { return slots_; }
+
+   private:
+    std::vector<std::pair<Pair, std::uint32_t>> items_;
+    std::vector<std::uint32_t> slots_;
+    std::size_t at_ = 0;
+  };
   // Scratch, kept for its capacity.
+  Known known_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Mover> movers_;  ///< those that are awake
+  std::vector<Mover> all_movers_;  ///< by body slot
+  std::uint64_t look_ = 0;
+  std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;

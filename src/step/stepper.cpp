@@ -110,6 +110,15 @@ void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t gra
 
 }  // namespace
 
+namespace {
+
+bool is_of_sweeps(const model::Model& model, const island::Island& island) {
+  return std::ranges::any_of(island.bodies(),
+                             [&](std::uint32_t body) { return ingredient::Contacts::is_of_sweeps(model, body); });
+}
+
+}  // namespace
+
 // 3a. An island of which a body would pass or hit another one far along its way takes the step in parts, each with contacts
 // of its own: up to the place where they meet, then a short one, and so on. The last part is taken with all other islands. At
 // first a part was a share of the same step, in which a contact began: a second law for each row, which made energy.
@@ -125,17 +134,18 @@ void Stepper::advance_in_parts(StepReport& report) {
     parts_.clear();
     for (const std::uint32_t leader : hasty_) {
       const island::Island& island = *islands.of_articulate(leader);
-      const bool may_cut =
-          round < most && static_cast<std::size_t>(round) * island.size() <= most_points && !island.is_driven(model);
+      const bool of_sweeps = is_of_sweeps(model, island);
+      const bool may_cut = round < most && !island.is_driven(model) &&
+                           (of_sweeps || static_cast<std::size_t>(round) * island.size() <= most_points);
       parts_.push_back(contacts_.find_part(model, outlines_, island.bodies(), report.dt - islands.ahead(model, island),
-                                           {.is_first = round == 0, .may_cut = may_cut}));
+                                           {.is_first = round == 0, .may_cut = may_cut, .of_sweeps = of_sweeps}));
     }
     islands.update(model, editor_.parallel);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < hasty_.size(); ++i) {
       island::Island* const island = islands.of_articulate(hasty_[i]);
       if (!parts_[i] || !island) continue;
-      add(islands.advance_part(model, *island, *parts_[i], deadline_), report);
+      add(islands.advance_part(model, *island, *parts_[i], report.dt, deadline_), report);
       hasty_[kept++] = hasty_[i];
     }
     hasty_.resize(kept);
