@@ -466,13 +466,19 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         }
       }
     }
+    [[maybe_unused]] double g[C::rows] = {};
+    if constexpr (Laws && !is_cone) {
+      const RowLaw* const law = pool.law(k);
+      if (std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.is_compliant(); }))
+        pool.value(k, x, stage.fraction, g);
+    }
     for (int r = 0; r < C::rows; ++r) {
       double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
       if constexpr (is_cone) {
         for (int q = 0; q < C::rows; ++q) diagonals[slots.diagonal + r * slots.stride + q] = cone.by_multiplier[r][q];
         if (pool.is_equation(k, r)) diagonal -= compliances[r] * give;
       } else if constexpr (Laws) {
-        diagonal = pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, 0, stage).softness : -1;
+        diagonal = pool.is_equation(k, r) ? -compliances[r] * give - equation_of(pool, k, r, g[r], stage).softness : -1;
       } else {
         diagonal = -compliance * give;
       }

@@ -138,12 +138,13 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, const double
     for (int r = 0; r < C::rows; ++r) {
       const RowLaw& law = pool.law(k)[r];
       const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
+      const double stretched = law.stretch(after[r]) - law.stretch(before[r]);
       const bool is_free = pool.is_equation(k, r);
       if (law == RowLaw{} || law.is_off()) continue;
       if (law.hold)
         energy.dissipated += lambda * (moved - law.rate * stage.h);
       else if (law.is_compliant())
-        energy.dissipated += is_free ? law.damping / stage.h * moved * moved
+        energy.dissipated += is_free ? law.damping / stage.h * stretched * stretched
                                      : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
       else if (pool.states.has_been_met(k * C::rows + static_cast<std::size_t>(r)))
         energy.impact += lambda * (stage.is_mid_point() ? moved : stage.h * mean_speed_across(pool.items[k], r));

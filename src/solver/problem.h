@@ -47,8 +47,13 @@ struct RowLaw {
   double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
   /// Distance of g into the forbidden side.
   double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
+  /// Whether only values of one sign have a force: a rope that yields, a soft stop.
+  bool is_one_sided() const { return (lower == 0) != (upper == 0); }
+  /// The value as far as it has a force: that of a slack rope is 0. Its dashpot does not act before its spring.
+  double stretch(double g) const { return !is_one_sided() ? g : lower == 0 ? std::max(g, 0.0) : std::min(g, 0.0); }
   /// Of a compliant row, by its value and its rate, N.
   double spring_force(double g, double speed) const {
+    if (g != 0 && stretch(g) == 0) return 0;
     return std::clamp(g / compliance + damping * speed, lower, upper);
   }
   /// Energy that a spring row stores, J; a pure dashpot stores none.

@@ -4,12 +4,33 @@
 #include "solver/problem.h"
 #include "solver/stage.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace iota::solver {
 
 /// The equation of a free row: value - softness * lambda = 0.
 struct RowEquation {
   double value, softness;
 };
+
+/// The equation of a one-sided spring in a step of the mid-point rule that begins or ends slack. Only the stretched part of
+/// the way takes work, with the stretch e:
+///   lambda (g1 - g0) = (e1 - e0) (k (e0 + e1)/2 + c (e1 - e0)/h)
+/// Divided by d lambda/d g1, since the matrix has the gradient of g1. With g0 instead of e0 a rope of 5e-6 m/N, whose dashpot
+/// acted while it was slack by 0.1 m, made 1000 J. stiffness: k/2, damping: c/h.
+inline RowEquation equation_at_slack(double g0, double e0, double g, double stiffness, double damping) {
+  constexpr double flattest = 1e-3;  // of the slack: where it begins, lambda has no slope
+  if (e0 == 0) {
+    const double sign = g0 < 0 ? 1 : -1, slack = std::abs(g0);
+    const double stretch = std::max(sign * g, flattest * slack), way = stretch + slack;
+    const double lambda = (stiffness + damping) * stretch * stretch / way;
+    const double slope = (stiffness + damping) * stretch * (stretch + 2 * slack) / (way * way);
+    return {g + sign * (lambda / slope - stretch), 1 / slope};
+  }
+  const double part = e0 / (e0 - g);
+  return {e0 / part, 1 / ((stiffness - damping) * part * part)};
+}
 
 /// The equation of row r of item i, where its value is g. In the mid-point scheme a spring uses its mean stretch, so that
 /// its energy is kept exactly.
@@ -22,13 +43,26 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   const double part = stage.is_mid_point() ? 0.5 : 1;
   const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
   const double total = part * stiffness + damping;
-  const double before = law.hold ? 0 : start;
+  const double before = law.hold ? 0 : law.stretch(start);
+  if (stage.is_mid_point() && !law.hold && law.is_one_sided()) {
+    const bool becomes_taut = before == 0 && start != 0;
+    const bool becomes_slack = before != 0 && law.stretch(g) == 0 && g != 0 && part * stiffness > damping;
+    if (becomes_taut || becomes_slack) return equation_at_slack(start, before, g, part * stiffness, damping);
+  }
   return {g + ((1 - part) * stiffness - damping) / total * before, 1 / total};
 }
 
 /// Rows that are eliminated before their points by their own compliance need as much of it where that of forces is nothing: else
 /// balls that met had 1e-4 rad/s of round-off. Only in the matrix: what it leaves is removed by another pass.
 inline constexpr double softness_of_projections = 1e-8;
+
+/// The way of tangential row r in a (sub-)step in which it sticks, m: the integral of its rate, 0 over a whole step.
+template <ConeConstraint C>
+double way_of([[maybe_unused]] const C& c, [[maybe_unused]] int r, const Stage& stage) {
+  double rates = 0;
+  if constexpr (BouncingConstraint<C>) rates = c.rate_of(r, stage.fraction_start) + c.rate_of(r, stage.fraction);
+  return 0.5 * stage.h * rates;
+}
 
 /// The equations of a cone's rows, where their values are g; `mobilities`: sum |G|^2 / m of each. Positions and impulses, on
 /// which finite forces have no effect, have no friction.
@@ -38,6 +72,7 @@ ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const d
   double values[C::rows], natural[C::rows];
   for (int r = 0; r < C::rows; ++r) {
     values[r] = g[r] - (C::is_tangent(r) ? pool.states.start(i * C::rows + static_cast<std::size_t>(r)) : 0);
+    if (!stage.is_projection()) values[r] -= way_of(pool.items[i], static_cast<int>(r), stage);
     natural[r] = mobilities[r] / stage.inertia;
   }
   ConeState state = pool.states.cone(i * C::rows);

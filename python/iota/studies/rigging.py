@@ -95,7 +95,6 @@ def build() -> iota.World:
 def make_world() -> iota.World:
     """A world without the derrick."""
     system = iota.System(damping=0.08)
-    system.mode = "plausible"  # in which ropes with changing loads are calm
     return iota.World(system, title="rigging: a mast of 4.4 m", dt=1 / 240, ground=-0.4)
 
 

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ropes that yield: nothing acts before they are taut, and no energy is made, by places and velocities alone."""
+
+from __future__ import annotations
+
+import random
+from typing import Literal
+
+import numpy as np
+import pytest
+from amount import sampled
+
+import iota
+
+Mode = Literal["energy_keeping", "robust", "plausible", "accurate"]
+MODES: tuple[Mode, ...] = ("energy_keeping", "robust", "plausible", "accurate")
+STIFF, DAMPED, SOFT = (5e-6, 0.0, 0.0), (5e-6, 0.0, 0.05), (1e-3, 0.0, 0.05)
+
+
+def thrown(mode: Mode, compliance: tuple[float, float, float]) -> tuple[iota.System, iota.Particle, iota.Constraint]:
+    """A mass at 2 m/s on a rope of 1 m that is slack by 0.1 m."""
+    system = iota.System(gravity=(0, 0, 0), mode=mode)
+    nail = system.body().particle((0, 0, 0))
+    nail.nail()
+    mass = system.body().particle((0.9, 0, 0), mass=10, velocity=(2, 0.3, 0))
+    rope = system.rope(nail, mass)
+    rope.length, rope.compliance = 1.0, compliance
+    return system, mass, rope
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("compliance", [STIFF, DAMPED, SOFT])
+def test_a_slack_rope_that_yields_acts_on_nothing(mode: Mode, compliance: tuple[float, float, float]) -> None:
+    system, mass, rope = thrown(mode, compliance)
+    for k in range(11):  # 2/240 m a step: it is taut in the 12th
+        system.step(1 / 240)
+        assert mass.position == pytest.approx((0.9 + 2 * (k + 1) / 240, 0.3 * (k + 1) / 240, 0), abs=1e-12)
+        assert abs(rope.force) == 0
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("compliance", [STIFF, DAMPED, SOFT])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
+def test_a_rope_that_catches_a_mass_makes_no_energy(
+    mode: Mode, compliance: tuple[float, float, float], dt: float
+) -> None:
+    system, mass, _ = thrown(mode, compliance)
+    before, highest = 0.5 * 10 * abs(mass.velocity) ** 2, 0.0
+    for _ in range(round(1 / dt)):
+        system.step(dt)
+        highest = max(highest, 0.5 * 10 * abs(mass.velocity) ** 2)
+        assert abs(system.energy.balance) < 1e-6
+    assert highest <= before * (1 + 1e-9)
+    assert system.energy.made < 1e-9
+    assert system.energy.dissipated <= before * (1 + 1e-9)
+    if compliance == STIFF and mode in ("energy_keeping", "accurate"):
+        assert 0.5 * 10 * abs(mass.velocity) ** 2 == pytest.approx(before, rel=1e-6), "a spring gives back what it took"
+
+
+@pytest.mark.parametrize("seed", range(sampled(200)))
+def test_random_ropes_and_tackles_of_changing_length_make_no_energy(seed: int) -> None:
+    """Masses on ropes that yield and on a tackle, of which some are hauled, in any mode and step."""
+    dice = random.Random(seed)
+    mode, dt = dice.choice(MODES), dice.choice((1 / 60, 1 / 120, 1 / 240))
+    system = iota.System(mode=mode)
+    nails = [system.body().particle((x, 3, 0)) for x in (-1.0, 0.0, 1.0)]
+    for nail in nails:
+        nail.nail()
+    masses = [
+        system.body().particle(
+            (dice.uniform(-1, 1), dice.uniform(0, 2), dice.uniform(-1, 1)),
+            mass=10 ** dice.uniform(-1, 2),
+            velocity=[dice.uniform(-3, 3) for _ in range(3)],
+        )
+        for _ in range(3)
+    ]
+    ropes = []
+    for mass in masses:
+        for end in dice.sample([*nails, *(other for other in masses if other is not mass)], 2):
+            rope = system.rope(mass, end)
+            rope.length = abs(mass.position - end.position) * dice.uniform(0.9, 1.3)
+            rope.compliance = (10 ** dice.uniform(-6, -3), 0.0, dice.choice((0.0, 0.01, 0.05)))
+            ropes.append(rope)
+    spans = [system.span(nail, masses[0]) for nail in nails[:2]]
+    system.couple([(span.slide, 1.0) for span in spans], one_sided=True)
+    hauled = dice.sample(ropes, 2) if dice.random() < 0.5 else []
+    speed = dice.uniform(-0.3, 0.3)
+    for _ in range(round(1 / dt)):
+        for rope in hauled:
+            rope.length = max(0.2, rope.length + speed * dt)
+        report = system.step(dt)
+        assert not [warning for warning in report.warnings if "energy.made" in warning]
+    energy = system.energy
+    assert energy.made <= 1e-6 * (energy.kinetic + abs(energy.potential) + 1)
+    assert np.isfinite(energy.kinetic)
+
+
+def test_a_drawer_at_rest_in_mode_accurate_warns_of_nothing() -> None:
+    system = iota.System(mode="accurate")
+    world = iota.World(system, dt=1 / 120)
+    drawer = world.drawer((0, 1, 0))
+    drawer.use()
+    for _ in range(360):
+        drawer.act()
+        assert system.step(1 / 120).warnings == []
