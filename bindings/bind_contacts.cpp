@@ -80,10 +80,14 @@ nb::object party_object(const nb::object& system_object, SystemObject* system, c
 constexpr const char* material_doc =
     "How the outline of a body touches others: see `Body.material` and `System.usual_material`.\n\n"
     "friction: Coulomb's coefficient; of two bodies that touch the geometric mean counts.\n"
+    "static_friction: the coefficient until a body slides, at least `friction`, which counts while it does; 0: the same one.\n"
     "restitution: speed at which two bodies leave each other after an impact, of that at which they met, 0 to 1; of two\n"
     "bodies the larger one counts.\n"
     "rolling: coefficient of rolling resistance; the torque against rolling is at most this times the normal force and the\n"
     "radius, so that a ball on level ground slows down by 5/7 rolling g. Of two bodies the larger one counts.\n"
+    "spinning: coefficient of friction against spinning on the spot; the torque about the normal is at most this times the\n"
+    "normal force and the radius. A ball of radius R with friction mu that touches with a disk of radius r has 2/3 mu r/R. Of two\n"
+    "bodies the larger one counts.\n"
     "surface_velocity: of the surface against its body, in the world, m/s: a belt. Friction drives what lies on it.\n"
     "touches: 'all' bodies, 'obstacles' (those that never move), or 'nothing'. Two bodies touch if both agree.\n"
     "'sensor': it feels and gives no force; `World.on_contact` and `System.watch_contacts` tell what enters and leaves it.\n\n"
@@ -91,33 +95,45 @@ constexpr const char* material_doc =
     "    rubber = iota.Material(friction=0.9, restitution=0.8, rolling=0.01)\n"
     "    rink = system.obstacle(iota.HalfSpace((0, 1, 0)), material=ice)\n"
     "    puck.material = ice\n\n"
-    "Raises ValueError for a negative or infinite coefficient and for a restitution above 1.";
+    "Raises ValueError for a negative or infinite coefficient, for a restitution above 1 and for a static friction below the\n"
+    "friction.";
 
 void bind_material(nb::module_& module) {
   nb::class_<Material> type(module, "Material", material_doc);
   const auto make = [](Material* self, double friction, double restitution, double rolling, const TouchesWord& touches,
-                       VectorArgument surface_velocity) {
+                       VectorArgument surface_velocity, double static_friction, double spinning) {
     if (finite_not_negative(restitution, "restitution", "") > 1)
       throw std::invalid_argument(text("restitution must be at most 1, not ", restitution));
-    new (self) Material{finite_not_negative(friction, "friction", ""), to_touches(touches), restitution,
-                        finite_not_negative(rolling, "rolling", ""), to_vec3(surface_velocity, "surface_velocity")};
+    if (finite_not_negative(static_friction, "static_friction", "") != 0 && static_friction < friction)
+      throw std::invalid_argument(text("static_friction must be at least the friction ", friction,
+                                       ", or 0 for the same, not ", static_friction));
+    new (self) Material{finite_not_negative(friction, "friction", ""),
+                        to_touches(touches),
+                        restitution,
+                        finite_not_negative(rolling, "rolling", ""),
+                        to_vec3(surface_velocity, "surface_velocity"),
+                        static_friction,
+                        finite_not_negative(spinning, "spinning", "")};
   };
   const auto touches_of = [](const Material& self) { return TouchesWord{to_word(touches_words, self.touches)}; };
   type.def("__init__", make, nb::kw_only(), "friction"_a = Material{}.friction,
            "restitution"_a = Material{}.restitution, "rolling"_a = Material{}.rolling, "touches"_a = TouchesWord{"all"},
-           "surface_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0))
+           "surface_velocity"_a = nb::make_tuple(0.0, 0.0, 0.0), "static_friction"_a = Material{}.static_friction,
+           "spinning"_a = Material{}.spinning)
       .def(
           "__getstate__",
           [touches_of](const Material& self) {
             return nb::make_tuple(self.friction, self.restitution, self.rolling, touches_of(self),
-                                  self.surface_velocity);
+                                  self.surface_velocity, self.static_friction, self.spinning);
           },
           nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
       .def(
           "__setstate__",
-          [make](Material& self, const std::tuple<double, double, double, TouchesWord, nb::object>& state) {
-            const auto& [friction, restitution, rolling, touches, surface_velocity] = state;
-            make(&self, friction, restitution, rolling, touches, VectorArgument{surface_velocity});
+          [make](Material& self,
+                 const std::tuple<double, double, double, TouchesWord, nb::object, double, double>& state) {
+            const auto& [friction, restitution, rolling, touches, surface_velocity, static_friction, spinning] = state;
+            make(&self, friction, restitution, rolling, touches, VectorArgument{surface_velocity}, static_friction,
+                 spinning);
           },
           nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def_ro("friction", &Material::friction)
@@ -125,6 +141,8 @@ void bind_material(nb::module_& module) {
       .def_ro("rolling", &Material::rolling)
       .def_prop_ro("touches", touches_of)
       .def_ro("surface_velocity", &Material::surface_velocity)
+      .def_ro("static_friction", &Material::static_friction)
+      .def_ro("spinning", &Material::spinning)
       .def(
           "__eq__", [](const Material& a, const Material& b) { return a == b; }, nb::is_operator(),
           nb::sig("def __eq__(self, other: object, /) -> bool"))
@@ -138,7 +156,9 @@ void bind_material(nb::module_& module) {
         const Vec3& v = self.surface_velocity;
         const std::string belt = v == Vec3{} ? "" : text(", surface_velocity=(", v.x, ", ", v.y, ", ", v.z, ")");
         return text("Material(friction=", self.friction, unless_usual("restitution", self.restitution),
-                    unless_usual("rolling", self.rolling), touches, belt, ")");
+                    unless_usual("rolling", self.rolling), touches, belt,
+                    unless_usual("static_friction", self.static_friction), unless_usual("spinning", self.spinning),
+                    ")");
       });
 }
 

@@ -17,7 +17,7 @@ enum class Touches : std::uint64_t { all, obstacles, nothing, sensor };
 
 /// How the outline of a body touches others. A body without a material touches nothing.
 struct Material {
-  /// Coulomb's coefficient. Of two bodies that touch the geometric mean counts.
+  /// Coulomb's coefficient, while one slides. Of two bodies that touch the geometric mean counts.
   double friction = 0.5;
   Touches touches = Touches::all;
   /// The speed at which two bodies leave each other after an impact, of that at which they met: 0 to 1. Two bodies have the
@@ -28,6 +28,14 @@ struct Material {
   double rolling = 0;
   /// The velocity of the surface against its body, in the world, m/s: a belt, or an escalator. Friction drives what lies on it.
   Vec3 surface_velocity;
+
+  /// Coulomb's coefficient until one slides, at least `friction`; 0: the same. The geometric mean counts.
+  double static_friction = 0;
+  /// The coefficient of friction against spinning on the spot: the torque about the normal is at most this times the normal
+  /// force and the radius. Two bodies have the larger one.
+  double spinning = 0;
+
+  double largest_friction() const { return static_friction > friction ? static_friction : friction; }
 
   friend bool operator==(const Material&, const Material&) = default;
 };

@@ -8,7 +8,7 @@
 namespace iota {
 
 // A field that is missing here is lost between versions; padding is.
-IOTA_FIELDS(Material, friction, touches, restitution, rolling, surface_velocity)
+IOTA_FIELDS(Material, friction, touches, restitution, rolling, surface_velocity, static_friction, spinning)
 IOTA_FIELDS(AttributeKey, life, radius, color)
 IOTA_FIELDS(ContactParty, body, group)
 IOTA_FIELDS(BreakLimits, force, torque)
@@ -49,7 +49,8 @@ IOTA_FIELDS(ingredient::IgnoredPair, a, b)
 IOTA_FIELDS(ingredient::Contact, p, q, next, previous, part, feature, other_part, other_feature, form, turns,
             slips_turn, is_of_sweeps, is_off, continues, points, point_count, of_p, roll_rows, weights, center, place,
             normal, first, second, axis, bends, radius, friction, restitution, ball, drift, rolling, carried, roller,
-            roll_first, roll_second, torque, depth, push, drag, energy, duration, impulse, approach, found_in)
+            roll_first, roll_second, torque, pivot, static_friction, spin_rows, spinning, spinner, spin_second, twist,
+            depth, push, drag, energy, duration, impulse, approach, found_in)
 IOTA_FIELDS(ingredient::PairForce, law, group, other, active, shifted, cutoff, parameters)
 IOTA_FIELDS(ingredient::Closing, p, q, next, previous, distance, duration, elapsed, multiplier)
 IOTA_FIELDS(ingredient::Law, kind, number, parameter_count, uses, function, standard, parameters, name, text)

@@ -44,7 +44,9 @@ ContactPoint read(const Model& model, const Contact& c, std::uint32_t body, Carr
   const Vec3 relative = carriers[0].velocity(model, body, point.position) -
                         carriers[1].velocity(model, other, point.position) - sign * c.drift;
   point.slip = norm(relative - dot(relative, c.normal) * c.normal);
-  point.slides = norm(c.drag) >= (1 - of_limit) * c.friction * c.push;
+  const double edge = c.friction * c.push, drag = norm(c.drag);
+  const bool holds = c.static_friction > c.friction && drag > (1 + of_limit) * edge;
+  point.slides = drag >= (1 - of_limit) * edge && !holds;
   return point;
 }
 

@@ -26,6 +26,9 @@ constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// left alone.
 constexpr double easing_time = 0.1, deepest = 0.1, deepest_of_moving = 0.3;
 
+/// The part of a contact in the key of its row against spinning; 0 and 1 are those against rolling.
+constexpr std::uint8_t spin_row = 2;
+
 enum Arm : std::size_t { center, place, turned, first_tangent, second_tangent };
 
 /// The sum of f(point) over some points, by their weights in an arm.
@@ -227,30 +230,51 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
     else
       places.other_point += 0.5 * h * along;
   }
+  // The place of contact runs over q's surface, and leaves behind the point that touched in the middle of the step.
+  const Vec3 closing = relative_velocity(model, c);
+  Vec3 run = closing - dot(closing, t.normal) * t.normal;
+  if (is_round && t.radius > 0)
+    run = ((t.radius - c.ball) / t.radius) * run - (t.radius - c.ball) * cross(spin_q, t.normal);
+  // A scripted body goes straight and turns between its steps: its points have no rate to count with.
+  const bool is_driven = p.kind == BodyKind::scripted || q.kind == BodyKind::scripted;
+  c.pivot = (is_driven ? 0 : -0.5 * h * dot(spin_p - spin_q, t.normal)) * cross(t.normal, run);
   places.set_others(c, p, q, sides);
 }
 
 /// Whether it has a spin, or stands.
 bool has_orientation(const model::Body& body) { return !has_points(body) || body.rank == 4; }
 
-/// Rolling resistance acts at the first place where two bodies touch, by the force at all of them in the last step. At one
-/// place it may roll in two directions, along a line in one, on a face in none.
-void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double coefficient,
+struct Resistance {
+  double rolling, spinning;  ///< coefficients
+};
+
+/// Resistance acts at the first place where two bodies touch, by the force at all of them in the last step. At one place it may
+/// roll in two directions and spin, along a line it may roll in one, on a face in none.
+void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Resistance& by,
                     const Contacts::Motion& motion, std::uint32_t first) {
   double push = 0;
   for (const std::uint32_t slot : slots) push += model.contacts[slot].energy != 0 ? model.contacts[slot].push : 0;
   for (const std::uint32_t slot : slots) {
     Contact& c = model.contacts[slot];
     const double radius = std::max(c.ball, c.radius - c.ball);
-    const bool resists = slot == slots[0] && slots.size() <= 2 && coefficient > 0 && radius > 0 &&
-                         has_orientation(model.bodies[c.p]) && has_orientation(model.bodies[c.q]);
-    const std::uint32_t before = std::exchange(c.roll_rows, resists ? 3 - static_cast<std::uint32_t>(slots.size()) : 0);
-    if (c.roll_rows != before) touch(model, c, true);
-    if (!resists) {
-      c.rolling = c.carried = 0, c.torque = {};
-      continue;
-    }
+    const bool resists = slot == slots[0] && slots.size() <= 2 && radius > 0 && has_orientation(model.bodies[c.p]) &&
+                         has_orientation(model.bodies[c.q]);
+    const bool rolls = resists && by.rolling > 0, spins = resists && by.spinning > 0 && slots.size() == 1;
+    const std::uint32_t rolls_before =
+        std::exchange(c.roll_rows, rolls ? 3 - static_cast<std::uint32_t>(slots.size()) : 0);
+    const std::uint32_t spins_before = std::exchange(c.spin_rows, spins ? 1 : 0);
+    if (c.roll_rows != rolls_before || c.spin_rows != spins_before) touch(model, c, true);
+    if (!rolls) c.rolling = 0, c.torque = {};
+    if (!spins) c.spinning = c.twist = 0;
+    c.carried = rolls || spins ? std::max(0.0, push) : 0;  // it pulls where a step was not solved
+    if (!rolls && !spins) continue;
     const Vec3 &spin_p = motion.spins[c.p != first], &spin_q = motion.spins[c.p == first];
+    const HalfTurn turn_of_p(spin_p, motion.h), turn_of_q(spin_q, motion.h);
+    if (spins) {
+      c.spinner = turn_of_p.back(c.first), c.spin_second = turn_of_q.back(c.second);
+      c.spinning = by.spinning * radius;
+    }
+    if (!rolls) continue;
     // A slow roll keeps its direction: that of a ball at rest would be noise.
     const Vec3 way = motion.h * cross(spin_p - spin_q, c.normal);
     Vec3 along = norm(way) > 1e-6 ? way : c.roll_first;
@@ -258,10 +282,9 @@ void resist_rolling(Model& model, std::span<const std::uint32_t> slots, double c
       along = cross(Contacts::place(model, model.contacts[slots[1]]) - Contacts::place(model, c), c.normal);
     c.roll_first = unit_or(along - dot(along, c.normal) * c.normal, c.first),
     c.roll_second = cross(c.normal, c.roll_first);
-    c.roller = HalfTurn(spin_p, motion.h).back(c.normal);
-    const HalfTurn turn_of_q(spin_q, motion.h);
+    c.roller = turn_of_p.back(c.normal);
     c.roll_first = turn_of_q.back(c.roll_first), c.roll_second = turn_of_q.back(c.roll_second);
-    c.rolling = coefficient * radius, c.carried = std::max(0.0, push);  // it pulls where a step was not solved
+    c.rolling = by.rolling * radius;
   }
 }
 
@@ -297,6 +320,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const bool has_changed = by_motion || !has_basis(c, model.bodies[p], model.bodies[q]);
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
     c.friction = std::sqrt(one.friction * other.friction);
+    c.static_friction = std::sqrt(one.largest_friction() * other.largest_friction());
     c.restitution = std::max(one.restitution, other.restitution);
     c.drift = (t.is_turned ? 1.0 : -1.0) * (one.surface_velocity - other.surface_velocity);
     c.found_in = model.step + 1;
@@ -310,7 +334,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     if (has_changed) touch(model, c, by_motion);
     taken.push_back(slot);
   }
-  resist_rolling(model, taken, std::max(one.rolling, other.rolling), motion, first);
+  resist_turning(model, taken, {std::max(one.rolling, other.rolling), std::max(one.spinning, other.spinning)}, motion,
+                 first);
 }
 
 namespace {
@@ -358,7 +383,7 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> slots) {
     c.found_in = model.step + 1, c.continues = 0;
     if (std::exchange(c.is_off, 1)) continue;
     c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
-    if (c.roll_rows > 0) c.roll_rows = 0;
+    c.roll_rows = c.spin_rows = 0, c.twist = 0;
     touch(model, c, true);
   }
 }
@@ -449,7 +474,8 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     solver::BilinearConstraint roll;
     roll.nodes = row.nodes, roll.count = row.count, roll.first_side = row.first_side;
     for (std::uint8_t k = 0; k < c.roll_rows; ++k) problem.add(roll, {owner, {k}, slot});
-    if (c.roll_rows > 0) (void)problem.pool_of<solver::BilinearConstraint>().law(0);
+    if (c.spin_rows > 0) problem.add(roll, {owner, {spin_row}, slot});
+    if (c.roll_rows + c.spin_rows > 0) (void)problem.pool_of<solver::BilinearConstraint>().law(0);
   }
 }
 
@@ -499,15 +525,16 @@ double stopping_force(const Model& model, const Contact& c, std::span<const std:
   return compliance > 0 ? std::max(0.0, -gap / compliance) : 0;
 }
 
-/// The rows against rolling: the angle between a direction of p and one of q is held, up to a torque.
-void load_rolling(std::uint8_t owner, const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
+/// The rows against rolling and spinning: the angle between a direction of p and one of q is held, up to a torque.
+void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
   if (!problem.has_used<solver::BilinearConstraint>()) return;
   auto& rows = problem.pool_of<solver::BilinearConstraint>();
   for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
     solver::BilinearConstraint& row = rows.items[i];
     Sides sides(model, c.p, c.q);
-    const Vec3& along = key.part[0] == 0 ? c.roll_first : c.roll_second;
+    const bool spins = key.part[0] == spin_row;
+    const Vec3& along = spins ? c.spin_second : key.part[0] == 0 ? c.roll_first : c.roll_second;
     row.weights = {};
     const auto set_arm = [&](std::size_t arm, const Vec3& direction, bool of_q) {
       const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
@@ -516,10 +543,11 @@ void load_rolling(std::uint8_t owner, const Model& model, const IslandNodes& nod
       const std::array<double, 4> start = sides.of(of_q, origin), end = sides.of(of_q, origin + direction);
       for (std::uint32_t k = 0; k < count; ++k) row.weights[arm][first + k] = end[k] - start[k];
     };
-    set_arm(0, c.roller, false), set_arm(1, along, true);
+    set_arm(0, spins ? c.spinner : c.roller, false), set_arm(1, along, true);
     const double force = c.carried > 0 ? c.carried : stopping_force(model, c, row.nodes, nodes, h, problem);
-    rows.law(i)[0] = {.lower = -c.rolling * force, .upper = c.rolling * force, .hold = true};
-    *rows.multiplier(i) = dot(c.torque, along);
+    const double most = (spins ? c.spinning : c.rolling) * force;
+    rows.law(i)[0] = {.lower = -most, .upper = most, .hold = true};
+    *rows.multiplier(i) = spins ? c.twist : dot(c.torque, along);
   });
 }
 
@@ -527,7 +555,7 @@ void load_rolling(std::uint8_t owner, const Model& model, const IslandNodes& nod
 
 void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
   if (!problem.has_used<solver::ContactConstraint>()) return;
-  load_rolling(owner, model, nodes, h, problem);
+  load_resistance(owner, model, nodes, h, problem);
   auto& rows = problem.pool_of<solver::ContactConstraint>();
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
@@ -545,7 +573,8 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
                         constant(c.slips_turn, c.second)});
     row.radius = c.radius + c.depth;
     row.is_of_sweeps = c.is_of_sweeps;
-    row.friction = c.friction, row.restitution = c.restitution;
+    row.pivots[0] = dot(c.pivot, c.first), row.pivots[1] = dot(c.pivot, c.second);
+    row.friction = c.friction, row.static_friction = c.static_friction, row.restitution = c.restitution;
     const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;
     row.compliance = tangent_softness * of_place;
@@ -555,6 +584,11 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const double kept = c.duration < h ? c.duration * c.duration / (h * h) : 1;
     double* const l = rows.multiplier(i);
     l[0] = -kept * c.push, l[1] = -kept * dot(c.drag, c.first), l[2] = -kept * dot(c.drag, c.second);
+    const bool slipped = c.static_friction > c.friction && row.state_of(l).slips();
+    row.drag_before[0] = slipped ? l[1] : 0, row.drag_before[1] = slipped ? l[2] : 0;
+    // To come to rest may have taken more than what holds it: it would begin to slip again before it is solved.
+    const double drag = std::hypot(l[1], l[2]), most = row.largest_hold(l);
+    if (c.static_friction > c.friction && drag > most) l[1] *= most / drag, l[2] *= most / drag;
     if (c.energy == 0) std::fill_n(l, 3, 0.0);  // it has left
   });
 }
@@ -578,13 +612,16 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
     c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
     const Vec3 before = std::exchange(c.continues, 0) ? c.impulse : Vec3{};
     c.impulse = before - (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
-    c.torque = {};
+    c.torque = {}, c.twist = 0;
   });
   if (!problem.has_used<solver::BilinearConstraint>()) return;
   const auto& rolls = problem.pool_of<solver::BilinearConstraint>();
   for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     Contact& c = model.contacts[key.slot];
-    c.torque += *rolls.multiplier(i) * (key.part[0] == 0 ? c.roll_first : c.roll_second);
+    if (key.part[0] == spin_row)
+      c.twist = *rolls.multiplier(i);
+    else
+      c.torque += *rolls.multiplier(i) * (key.part[0] == 0 ? c.roll_first : c.roll_second);
   });
 }
 
@@ -656,15 +693,18 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
            .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
                     c.weights[Arm::place][i] * c.drag,
            .part = part});
-    if (c.roll_rows == 0) return;
     const int side = c.p == body ? 0 : 1;
-    Sides sides(step.model, c.p, c.q);
-    const Vec3 origin = step.model.position(c.points[first]);
-    const std::array<double, 4> start = sides.of(side, origin), end = sides.of(side, origin + c.roller);
-    for (std::uint32_t i = first; i < last; ++i)
-      reader.take({.particle = c.points[i],
-                   .force = (side == 0 ? -1 : 1) * (end[i - first] - start[i - first]) * c.torque,
-                   .part = part});
+    const auto take_couple = [&](const Vec3& arm, const Vec3& force) {  // moment arm x force on q
+      Sides sides(step.model, c.p, c.q);
+      const Vec3 origin = step.model.position(c.points[first]);
+      const std::array<double, 4> start = sides.of(side, origin), end = sides.of(side, origin + arm);
+      for (std::uint32_t i = first; i < last; ++i)
+        reader.take({.particle = c.points[i],
+                     .force = (side == 0 ? -1 : 1) * (end[i - first] - start[i - first]) * force,
+                     .part = part});
+    };
+    if (c.roll_rows > 0) take_couple(c.roller, c.torque);
+    if (c.spin_rows > 0) take_couple(c.spinner, c.twist * c.spin_second);
   });
 }
 
@@ -687,8 +727,9 @@ void Contacts::validate(const Model& model, model::Audit& audit) {
       audit.require(model.particles[c.points[i]].body == (i < c.of_p ? c.p : c.q), "contact ", slot,
                     " refers to a particle of another body");
     audit.require(c.restitution >= 0 && c.restitution <= 1 && c.rolling >= 0 && c.carried >= 0 && is_finite(c.torque) &&
-                      c.roll_rows <= 2,
-                  "contact ", slot, " has no valid restitution or rolling resistance");
+                      c.roll_rows <= 2 && c.spin_rows <= 1 && c.spinning >= 0 && std::isfinite(c.twist) &&
+                      c.static_friction >= 0 && is_finite(c.pivot),
+                  "contact ", slot, " has no valid restitution, resistance or static friction");
     audit.require(is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 &&
                       c.friction >= 0 && c.depth <= 0,
                   "contact ", slot, " has no valid plane, force or friction");

@@ -24,19 +24,24 @@ struct Contact : model::Ends {
   std::array<std::uint32_t, 8> points{};    ///< the basis of p, then that of q, of those that are not static
   std::uint32_t point_count = 0, of_p = 0;  ///< all points, those of p
   std::uint32_t roll_rows = 0;              ///< of rolling resistance, at one of the places of two bodies
+  std::uint32_t spin_rows = 0;              ///< of friction against spinning on the spot
   /// The weights of the points in the arms of solver::ContactConstraint.
   std::array<std::array<double, 8>, 5> weights{};
   Vec3 center, place;             ///< of a static body instead: the constants of the first two arms, in the world
   Vec3 normal, first, second;     ///< now; they turn with a body, or keep their direction
   Vec3 axis;                      ///< of round things and wires, see contact::Touch
   std::array<double, 2> bends{};  ///< of wires
-  double radius = 0, friction = 0, restitution = 0;
+  double radius = 0, friction = 0, static_friction = 0, restitution = 0;
   double ball = 0;                       ///< part of the radius that is p's
   Vec3 drift;                            ///< of q's surface against p's, beyond their bodies' motion, m/s
   double rolling = 0;                    ///< bound of the torque against rolling, of the force, m
   double carried = 0;                    ///< by all places of both in the last step, N
   Vec3 roller;                           ///< the direction of p that will be the normal in the middle of the step
   Vec3 roll_first, roll_second, torque;  ///< the directions of q in which p may roll; the multipliers along them, N m
+  double spinning = 0;                   ///< bound of the torque against spinning, of the force, m
+  Vec3 spinner, spin_second;   ///< a direction of p and one of q, which in the middle of the step are along the plane
+  double twist = 0;            ///< the torque about the normal, N m
+  Vec3 pivot;                  ///< see solver::ContactConstraint::rate_of, m/s
   double depth = 0;            ///< of an overlap that was there before the contact, m, not positive: it only shrinks
   double push = 0;             ///< force along the normal on p in the last step, N
   Vec3 drag;                   ///< force of friction on it, N

@@ -53,6 +53,10 @@ inline void require_material(const Material& material) {
   if (!(material.restitution >= 0 && material.restitution <= 1))
     refuse("restitution", "be between 0 and 1", material.restitution);
   require_not_negative("rolling", material.rolling);
+  require_not_negative("spinning", material.spinning);
+  require_not_negative("static_friction", material.static_friction);
+  if (material.static_friction != 0 && material.static_friction < material.friction)
+    refuse("static_friction", "be 0 or at least the friction", material.static_friction);
   if (!is_finite(material.surface_velocity)) throw std::invalid_argument("surface_velocity must be finite");
 }
 

@@ -79,6 +79,9 @@ void Audit::check_links() {
     require(std::isfinite(m.friction) && m.friction >= 0, whose, " has friction ", m.friction);
     require(m.restitution >= 0 && m.restitution <= 1, whose, " has restitution ", m.restitution);
     require(std::isfinite(m.rolling) && m.rolling >= 0, whose, " has rolling resistance ", m.rolling);
+    require(std::isfinite(m.spinning) && m.spinning >= 0, whose, " has friction against spinning ", m.spinning);
+    require(std::isfinite(m.static_friction) && m.static_friction >= 0, whose, " has static friction ",
+            m.static_friction);
     require(is_finite(m.surface_velocity), whose, " has no finite surface velocity");
     require(m.touches <= Touches::sensor, whose, " touches unknown bodies");
   };

@@ -81,7 +81,9 @@ void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem
   for (int r = 0; r < C::rows; ++r) {
     RowStates::Row& state = pool.states.rows_[k * C::rows + r];
     state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side;
-    state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, 0, stage);
+    double rate = 0;
+    if constexpr (BouncingConstraint<C>) rate = c.rate_of(r, stage.fraction_start);
+    state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, rate, stage);
     if constexpr (BouncingConstraint<C>)
       if (c.meets && !C::is_tangent(r)) state.side_before = 1;
   }
@@ -94,7 +96,10 @@ ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, 
   double g[C::rows];
   pool.value(k, x, stage.fraction, g);
   for (int r = 0; r < C::rows; ++r)
-    if (C::is_tangent(r)) g[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r));
+    if (C::is_tangent(r)) {
+      g[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r));
+      if (!stage.is_projection()) g[r] -= way_of(c, r, stage);
+    }
   const ConeState next =
       c.switch_state(pool.states.cone(k * C::rows), pool.multiplier(k), g,
                      natural_compliances(problem, c, stage, x).data(), stage.tolerance * c.reference_length());

@@ -58,7 +58,7 @@ Newton::Wanted Newton::begin_after_step(Problem& problem, const Stage& stage, co
   if (has_laws_) ActiveSet::begin_impulses_after_step(problem);
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
-  return {.h = known.drives_rows ? whole_step : 0, .is_after_step = true};
+  return {.h = known.drives_rows ? whole_step : 0, .is_after_step = true, .end = stage.fraction};
 }
 
 std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
@@ -218,6 +218,8 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
         gradients.of_node(i, rows);
         for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], problem.velocity[c.nodes[i]]);
       }
+      if constexpr (BouncingConstraint<C>)
+        for (int r = 0; wanted.is_after_step && r < C::rows; ++r) row[r] -= c.rate_of(r, wanted.end);
       if constexpr (BouncingConstraint<C>)
         if (wanted.has_impacts && c.rebound > 0) row[0] = rate_in_the_middle(c, problem.velocity) - c.rebound;
       if (pool.has_laws())

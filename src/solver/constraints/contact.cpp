@@ -28,7 +28,11 @@ ConeState ContactConstraint::state_of(const double* multipliers) const {
   constexpr double at_edge = 1 - 1e-6;
   if (!(multipliers[0] < 0)) return {ConeState::Mode::open};
   const double size = std::hypot(multipliers[1], multipliers[2]);
-  return size < at_edge * largest_friction(multipliers) ? ConeState{} : slips;
+  const double edge = largest_friction(multipliers);
+  if (size < at_edge * edge) return {};
+  // What slips has the friction of the edge: with more of it it sticks, if static friction allows that at all.
+  const bool holds = size > edge / at_edge || size == 0;
+  return holds && static_friction > friction ? ConeState{} : slips;
 }
 
 // A contact that closes without a slip sticks: noise would be the direction of its friction.
@@ -38,9 +42,14 @@ ConeState ContactConstraint::switch_state(ConeState now, const double* multiplie
   const double push = -multipliers[0];
   if (natural[0] * push - (g[0] + compliance_of(0) * push) < -tolerance) return {ConeState::Mode::open};
   const TrialFriction trial(*this, multipliers, g, natural);
-  const double beyond = trial.natural * (trial.size - largest_friction(multipliers));
-  if (now.slips()) return beyond < -tolerance ? ConeState{} : now;
-  return beyond > tolerance ? slips : ConeState{};
+  // What comes to rest and would turn back may be held by static friction. It came to rest within the step before, after which
+  // friction and load moved it on: at most by the speed that these give in half a step.
+  const bool turns = drag_before[0] * trial.force[0] + drag_before[1] * trial.force[1] < 0;
+  const double hold = turns ? 2 * largest_hold(multipliers) + largest_friction(multipliers) : largest_hold(multipliers);
+  if (now.slips())
+    return trial.natural * (trial.size - (turns ? hold : largest_friction(multipliers))) < -tolerance ? ConeState{}
+                                                                                                      : now;
+  return trial.natural * (trial.size - hold) > tolerance ? slips : ConeState{};
 }
 
 ConeEquations ContactConstraint::equations(ConeState state, const double* multipliers, const double* g,

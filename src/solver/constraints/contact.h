@@ -17,7 +17,7 @@ namespace iota::solver {
 ///               g_k = tangent_k . arm 1,  k = 1, 2   (m)
 ///   cone        N = -lambda_0 >= 0,  |(lambda_1, lambda_2)| <= mu N   (N)
 ///     open      all multipliers are zero, g_0 >= 0
-///     sticks    g_0 = c_n lambda_0,  s_k = c_t lambda_k,  s_k the slip since it began to stick
+///     sticks    g_0 = c_n lambda_0,  s_k = c_t lambda_k,  s_k the slip since it began to stick; up to |lambda_t| = mu_s N
 ///     slips     (lambda_1, lambda_2) = mu N z / |z|,  z = lambda + s / k the trial force, k its natural compliance
 /// The center and the point differ for what is round: the ball's center keeps its height while the point turns under it.
 /// All rows are quadratic in the points, so that the mid-point rule counts the work of friction exactly; but for an axis
@@ -30,10 +30,13 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double radius = 0;                             ///< m
   double floor = 0;                              ///< g_0 that an impact leaves at the end of the step, m
   double restitution = 0;                        ///< e: the normal speed after an impact, of that before
-  double friction = 0;                           ///< mu
+  double friction = 0;                           ///< mu, of what slips
+  double static_friction = 0;                    ///< mu_s, of what sticks, if that is above mu
+  double drag_before[2] = {};                    ///< friction of the step before if it slipped and mu_s is above mu, N
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
   double reference = 1;
+  double pivots[2] = {};  ///< rates of the tangential rows at the end of a step in which they stick, see rate_of, m/s
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
   double rebound = 0;               ///< the normal speed at which an impact ends, while velocities are settled, m/s
   double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
@@ -112,8 +115,15 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   static constexpr bool is_tangent(int r) { return r > 0; }
   static constexpr bool is_one_sided(int r) { return r == 0; }
   double compliance_of(int r) const { return r == 0 ? softening * normal_compliance : compliance; }
-  /// The friction that the normal force allows, N.
+  /// The rate of a row that sticks, at a fraction of the step, m/s. The point that touches in the middle of the step does not
+  /// rest before and after it if the bodies turn about their normal while they roll: a coin in a circle, or a tilted disk.
+  double rate_of(int r, double fraction) const { return is_tangent(r) ? (2 * fraction - 1) * pivots[r - 1] : 0; }
+  /// The friction of what slips, N.
   double largest_friction(const double* multipliers) const { return friction * std::max(0.0, -multipliers[0]); }
+  /// The friction beyond which what sticks begins to slip, N.
+  double largest_hold(const double* multipliers) const {
+    return std::max(friction, static_friction) * std::max(0.0, -multipliers[0]);
+  }
 
   /// The state in which multipliers would be a solution.
   ConeState state_of(const double* multipliers) const;

@@ -213,6 +213,41 @@ ContactConstraint random_contact(std::mt19937& random, bool is_round) {
   return c;
 }
 
+TEST(Contact, sticks_up_to_its_static_friction_and_slips_with_the_kinetic_one) {
+  using Mode = ConeState::Mode;
+  ContactConstraint c;
+  c.friction = 0.3, c.static_friction = 0.5;
+  const double natural[3] = {1e-4, 1e-4, 1e-4}, gap[3] = {0, 0, 0}, tolerance = 1e-12;
+  const auto after = [&](Mode mode, double share) {
+    const double multipliers[3] = {-10, share * 10, 0};
+    return c.switch_state({mode, mode == Mode::slips ? 1 : 0}, multipliers, gap, natural, tolerance).mode;
+  };
+  EXPECT_EQ(after(Mode::sticks, 0.49), Mode::sticks);
+  EXPECT_EQ(after(Mode::sticks, 0.51), Mode::slips);
+  EXPECT_EQ(after(Mode::slips, 0.31), Mode::slips);
+  EXPECT_EQ(after(Mode::slips, 0.29), Mode::sticks);
+  c.drag_before[0] = -3;  // it would turn back, after it was moved on from its rest
+  EXPECT_EQ(after(Mode::slips, 1.29), Mode::sticks);
+  EXPECT_EQ(after(Mode::sticks, 1.29), Mode::sticks);
+  EXPECT_EQ(after(Mode::sticks, 1.31), Mode::slips);
+  c.drag_before[0] = 0;
+  const auto at_start = [&](double share) {
+    const double multipliers[3] = {-10, share * 10, 0};
+    return c.state_of(multipliers).mode;
+  };
+  for (const double share : {0.0, 0.29, 0.31, 0.49, 0.9}) EXPECT_EQ(at_start(share), Mode::sticks) << share;
+  EXPECT_EQ(at_start(0.3), Mode::slips);
+}
+
+TEST(Contact, has_a_rate_of_its_sticking_point_before_and_after_the_middle_of_a_step) {
+  ContactConstraint c;
+  c.pivots[0] = 0.2, c.pivots[1] = -0.1;
+  EXPECT_EQ(c.rate_of(0, 1), 0);
+  EXPECT_EQ(c.rate_of(1, 1), 0.2);
+  EXPECT_EQ(c.rate_of(1, 0), -0.2);
+  EXPECT_EQ(c.rate_of(2, 0.5), 0);
+}
+
 TEST(ContactRows, have_the_gradients_and_the_curvature_of_their_values) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
