@@ -29,6 +29,11 @@ def integrate(rate: Callable[[float, Array], Array], start: Sequence[float] | Ar
     return np.asarray(solution.y.T)
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Of two vectors of three numbers: much faster than NumPy's."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
 def still(position: Sequence[float]) -> Path:
     zero = np.zeros(2)
     place = np.array(position, dtype=float)

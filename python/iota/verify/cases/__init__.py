@@ -7,11 +7,14 @@ from iota.verify.cases import (
     classical,
     conservation,
     contact,
+    friction,
+    gyres,
     held,
     linkages,
     newton,
     sizes,
     sleep,
+    stacks,
     tops,
 )
 from iota.verify.run import Case
@@ -46,5 +49,8 @@ CASES = [
         sizes.conflicts,
         sleep.sleep,
         contact.contact,
+        friction.friction,
+        stacks.stacks,
+        gyres.spinning,
     )
 ]
