@@ -22,11 +22,12 @@ class Turning {
     sine_ += weight * dot(axis_, cross(before, now)), cosine_ += weight * across(before, now);
     moment_ += weight * dot(axis_, cross(now, velocity - velocity_)), inertia_ += weight * across(now, now);
   }
-  /// The angle that is missing, rad; 0 if it is little.
+  /// The angle that is missing, rad; 0 if it is little, or so large that the points are at one place but for round-off: masses on
+  /// ropes that are slack turned by 1e9 rad, in parts of a radian.
   double rest() const {
-    constexpr double little = 1e-6;
+    constexpr double little = 1e-6, most = 1e3;
     const double said = h_ * moment_ / inertia_, turned = std::atan2(sine_, cosine_), rest = said - turned;
-    return said * turned > 0 && rest * said > 0 && std::abs(rest) > little ? rest : 0;
+    return said * turned > 0 && rest * said > 0 && std::abs(rest) > little && std::abs(rest) < most ? rest : 0;
   }
   void turn(double angle, Vec3& place, Vec3& velocity) const {
     const double s = std::sin(angle), c = 1 - std::cos(angle);

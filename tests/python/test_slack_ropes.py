@@ -57,7 +57,7 @@ def test_a_rope_that_catches_a_mass_makes_no_energy(
         assert 0.5 * 10 * abs(mass.velocity) ** 2 == pytest.approx(before, rel=1e-6), "a spring gives back what it took"
 
 
-@pytest.mark.parametrize("seed", range(sampled(200)))
+@pytest.mark.parametrize("seed", sorted({*range(sampled(200)), 98, 101}))  # two once took minutes for a step
 def test_random_ropes_and_tackles_of_changing_length_make_no_energy(seed: int) -> None:
     """Masses on ropes that yield and on a tackle, of which some are hauled, in any mode and step."""
     dice = random.Random(seed)
