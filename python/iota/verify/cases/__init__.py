@@ -10,6 +10,7 @@ from iota.verify.cases import (
     friction,
     gyres,
     held,
+    impacts,
     linkages,
     newton,
     sizes,
@@ -50,6 +51,7 @@ CASES = [
         sleep.sleep,
         contact.contact,
         friction.friction,
+        impacts.impacts,
         stacks.stacks,
         gyres.spinning,
     )
