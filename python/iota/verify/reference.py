@@ -30,7 +30,7 @@ def integrate(rate: Callable[[float, Array], Array], start: Sequence[float] | Ar
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Of two vectors of three numbers: much faster than NumPy's."""
+    """The product of two vectors of three numbers, much faster than NumPy's."""
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 

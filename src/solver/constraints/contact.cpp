@@ -30,7 +30,7 @@ ConeState ContactConstraint::state_of(const double* multipliers) const {
   const double size = std::hypot(multipliers[1], multipliers[2]);
   const double edge = largest_friction(multipliers);
   if (size < at_edge * edge) return {};
-  // What slips has the friction of the edge: with more of it it sticks, if static friction allows that at all.
+  // A place that slips has the friction of the edge. With more of it, it sticks, if static friction allows that at all.
   const bool holds = size > edge / at_edge || size == 0;
   return holds && static_friction > friction ? ConeState{} : slips;
 }
@@ -42,7 +42,7 @@ ConeState ContactConstraint::switch_state(ConeState now, const double* multiplie
   const double push = -multipliers[0];
   if (natural[0] * push - (g[0] + compliance_of(0) * push) < -tolerance) return {ConeState::Mode::open};
   const TrialFriction trial(*this, multipliers, g, natural);
-  // What comes to rest and would turn back may be held by static friction. It came to rest within the step before, after which
+  // Static friction may hold a place that comes to rest and would turn back. It came to rest within the step before, after which
   // friction and load moved it on: at most by the speed that these give in half a step.
   const bool turns = drag_before[0] * trial.force[0] + drag_before[1] * trial.force[1] < 0;
   const double hold = turns ? 2 * largest_hold(multipliers) + largest_friction(multipliers) : largest_hold(multipliers);

@@ -33,7 +33,7 @@ def steps(system: iota.System, body: iota.Body, seconds: float, dt: float) -> Ar
 
 
 def acceleration(places: Array, dt: float) -> Array:
-    """Of a uniform motion, by the places after one, two and three thirds of the time, m/s^2."""
+    """The acceleration of a uniform motion, by the places after one, two and three thirds of the time, m/s^2."""
     n = len(places) // 3
     return np.asarray((places[3 * n - 1] - 2 * places[2 * n - 1] + places[n - 1]) / (n * dt) ** 2)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands and falls by friction and geometry alone."""
+"""Stacks that stand or fall by friction and geometry alone."""
 
 from __future__ import annotations
 
