@@ -21,7 +21,8 @@ def stacks(run: Run) -> None:
     Two cards that lean on each other by an angle p from the vertical stand if the friction of the floor is at least tan(p)/2,
     less t/(2 l) for their thickness. A semicircular arch of n voussoirs stands above a thickness at which its line of thrust
     no longer fits: by linear programming (limit analysis, hinges at the edges). Blocks reach beyond each other by 1/(2 k) of
-    their length. Ten cubes carry a thousand times their weight. A rod that is thrown with its lower end in front jams where
+    their length. Ten cubes carry a thousand times their weight, and a chain of tori that hold each other by contact alone has the
+    pitch 2 R - 2 r under a thousand times theirs. A rod that is thrown with its lower end in front jams where
     friction exceeds 4/3 (Painleve): its motion stays finite, and no step gains energy.
     """
     _cards(run)
@@ -29,6 +30,7 @@ def stacks(run: Run) -> None:
     run.progress(0.6)
     _overhang(run)
     _tower(run)
+    _links(run)
     _painleve(run)
 
 
@@ -195,6 +197,29 @@ def _tower(run: Run) -> None:
         force = sum(point.force.y for point in tower[below].contacts if point.position.y < 0.2 * below + 0.1)
         above = weight + sum(body.mass for body in tower[below:-1]) * G
         run.near(f"force below cube {below}, of the weight above it", force / above, 1, 1e-6)
+
+
+def _links(run: Run) -> None:
+    count, radius, tube = run.size(64, 8), 0.04, 0.005
+    pitch = 2 * (radius - tube)
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.3)
+    links = [
+        system.body(
+            shape=iota.Torus(radius, tube), density=7800, position=(0, -pitch * k, 0), orientation=("y", 90 * (k % 2))
+        )
+        for k in range(count)
+    ]
+    links[0].kind, links[0].material = "static", system.usual_material
+    links[-1].particle(links[-1].position, mass=999 * links[-1].mass)
+    heights = []
+    for _ in range(2 * 60):
+        assert system.step(1 / 60).unconverged == 0
+        heights.append([link.position.y for link in links])
+    track = np.array(heights)
+    name = f"{count} torus links under a thousand times the mass of one, 60 Hz:"
+    run.at_most(f"{name} largest error of the pitch, m", float(np.abs(np.diff(track[-1]) + pitch).max()), 1e-6)
+    run.at_most(f"{name} motion in the last second, m", float(np.ptp(track[60:], axis=0).max()), 1e-9)
 
 
 def _painleve(run: Run) -> None:
