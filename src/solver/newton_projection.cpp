@@ -58,7 +58,11 @@ Newton::Wanted Newton::begin_after_step(Problem& problem, const Stage& stage, co
   if (has_laws_) ActiveSet::begin_impulses_after_step(problem);
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
-  return {.h = known.drives_rows ? whole_step : 0, .is_after_step = true, .end = stage.fraction};
+  constexpr double noise = 10 * round_off;
+  return {.h = known.drives_rows ? whole_step : 0,
+          .is_after_step = true,
+          .still = noise * reference_length() / whole_step,
+          .end = stage.fraction};
 }
 
 std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
@@ -234,7 +238,7 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
   });
   Largest speed;
   for (const Vec3& v : problem.velocity) speed.add(largest_component(v));
-  return worst.value <= wanted.tolerance() * speed.value ? 0 : worst.value;
+  return worst.value <= std::max(wanted.tolerance() * speed.value, wanted.still) ? 0 : worst.value;
 }
 
 void Newton::add_step_to_velocities(Problem& problem) {
