@@ -56,7 +56,7 @@ def test_a_study_runs_from_its_first_visitor_to_some_time_after_its_last(gallery
     assert gallery.running == []
     with PageClient(gallery.url_of("chain")) as first, PageClient(gallery.url_of("molecule")) as other:
         assert sorted(gallery.running) == ["chain", "molecule"]
-        first.wait_for(lambda: first.last["world_settings"]["title"] == "chain: 1.8 m long")
+        first.wait_for(lambda: first.last["world_settings"]["title"].startswith("chain: "))
         other.wait_for(lambda: other.last["world_settings"]["title"].startswith("molecule"))
         first.wait_for(lambda: first.last["poses"]["step"] > 60)
     wait_until(lambda: gallery.running == [])

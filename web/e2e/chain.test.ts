@@ -60,7 +60,7 @@ describe("the page of a chain", () => {
       return Math.hypot(...now.map((value, axis) => value - was[axis])) > 0.02;
     }, [lowest, before] as const);
     expect(await tab.articulates()).toBe(1);
-    expect(await tab.page.title()).toBe("chain: 1.8 m long · Iota");
+    expect(await tab.page.title()).toBe("chain · Iota");
     expect(tab.complaints).toEqual([]);
   });
 

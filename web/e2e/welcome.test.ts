@@ -45,3 +45,26 @@ it("lies on nothing that is drawn, and on no control, at any size of the window"
     await server.stop();
   }
 }, 120_000);
+
+it("says what the world is, and the sign for help stays when the bar hides", async () => {
+  const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: "cradle" });
+  try {
+    const tab = await browser.open(server.url);
+    await tab.drawn();
+    const about = tab.page.locator("#about");
+    await about.waitFor();
+    expect(await about.textContent()).toMatch(/^cradle as many balls leave as arrive/);
+    await tab.page.evaluate(() => document.body.classList.add("idle"));
+    await tab.untilShown();
+    const seen = await tab.page.evaluate(() => Array.from(document.querySelectorAll("#bar > *"), (item) => [item.id, getComputedStyle(item).opacity]));
+    expect(Object.fromEntries(seen)).toMatchObject({ "open-help": "1", reset: "0" });
+    await tab.page.mouse.click(...(await tab.page.locator("#open-help").evaluate((item) => {
+      const { left, top, width, height } = item.getBoundingClientRect();
+      return [left + width / 2, top + height / 2] as const;
+    })));
+    await tab.page.locator("#help[open]").waitFor();
+    expect(tab.complaints).toEqual([]);
+  } finally {
+    await server.stop();
+  }
+}, 60_000);

@@ -19,7 +19,9 @@ def build() -> iota.World:
     particle2 = body1.particle((30, 0, 0))
     # Something to be seen between them; the body is rigid without it.
     system.cosmetic_bond(particle1, particle2)
-    return present(iota.World(system, title=f"Appendix E.1: {SCALE}", ground=GROUND))
+    return present(
+        iota.World(system, title=f"Appendix E.1: a rigid body of two particles falls; {SCALE}", ground=GROUND)
+    )
 
 
 def present(world: iota.World) -> iota.World:

@@ -13,7 +13,7 @@ def build() -> iota.World:
     particle1 = system.body().particle()
     particle2 = system.body().particle((30, 0, 0))
     system.bond(particle1, particle2, force_function1)
-    world = present(iota.World(system, title=f"Appendix E.2: {SCALE}", ground=GROUND))
+    world = present(iota.World(system, title=f"Appendix E.2: a force swings two particles; {SCALE}", ground=GROUND))
     world.drawings.line(particle1, particle2)
     return world
 

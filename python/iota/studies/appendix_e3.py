@@ -20,4 +20,4 @@ def build() -> iota.World:
     system.cosmetic_bond(particle2, particle2a)
     # A hinge. The two need not be at one place: they meet at once and stay together.
     particle1.combine(particle2)
-    return present(iota.World(system, title=f"Appendix E.3: {SCALE}", ground=GROUND))
+    return present(iota.World(system, title=f"Appendix E.3: two bodies on a hinge fold; {SCALE}", ground=GROUND))

@@ -14,7 +14,7 @@ TEAR = 6.0  # N, what a thread carries
 def build() -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", damping=0.2)
-    world = iota.World(system, title="cloth: 1.2 m wide")
+    world = iota.World(system, title="cloth: it hangs in the wind, and rips where it is pulled; 1.2 m wide")
     cloth = iota.builder.cloth(COLUMNS, ROWS, SPACING, CORNER, mass=0.3, stiffness=120, damping=0.05, tear=TEAR)
     cloth.points.radius[:] = 0.003
     made = cloth.realize(system)

@@ -40,7 +40,7 @@ def make_world() -> iota.World:
     """Board and pegs. A chain that hangs still for half a second sleeps."""
     system = iota.System()
     system.rest_after = 0.5
-    world = iota.World(system, title="links: each is 12 cm long")
+    world = iota.World(system, title="links: steel rings hold each other by contact alone; each is 12 cm long")
     present(world)
     return world
 

@@ -22,7 +22,7 @@ SHAFT, BAR = 0.2, 0.13  # m: from one cross to the next, and the bar between two
 
 def build() -> iota.World:
     """The world of the study."""
-    world = iota.World(iota.System(), title="mechanisms: the bench is 2.5 m long")
+    world = iota.World(iota.System(), title="mechanisms: joints, gears and ropes on a bench of 2.5 m")
     world.system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # links are drawn through each other
     present(world)
     engine(world, iota.Vec3(-0.78, BENCH + 0.24, 0))

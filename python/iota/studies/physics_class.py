@@ -19,7 +19,7 @@ START = -0.5  # rad, of the pendulum: outwards
 def build() -> iota.World:
     """The world of the study."""
     system = iota.System(gravity=(0, 0, 0))
-    world = iota.World(system, title="physics class: 2.6 m wide")
+    world = iota.World(system, title="physics class: pendulum, orbit and spring beside their formulas; 2.6 m wide")
     heavy = system.group("heavy")
     field = system.field("energy = m*g*y", group=heavy, g=9.81)
     gravity = world.controls.slider("gravity", 0.5, 25, 9.81, unit="m/s²", help="on pendulum and weight")

@@ -38,7 +38,7 @@ def make_world() -> iota.World:
     system = iota.System()
     system.rest_after, system.rest_speed = 0.5, 0.04
     system.budget_contacts = 1e6  # sweeps: equations of so many places of contact take up to 0.1 s in a blow
-    world = iota.World(system, title="pour: the tray is 0.5 m wide")
+    world = iota.World(system, title="pour: grains run out of a hopper into a heap; the tray is 0.5 m wide")
     world.dt = STEP
     present(world)
     return world

@@ -95,7 +95,9 @@ def build() -> iota.World:
 def make_world() -> iota.World:
     """A world without the derrick."""
     system = iota.System(damping=0.08)
-    return iota.World(system, title="rigging: a mast of 4.4 m", dt=1 / 240, ground=-0.4)
+    return iota.World(
+        system, title="rigging: ropes of a derrick show their forces; the mast is 4.4 m high", dt=1 / 240, ground=-0.4
+    )
 
 
 class Derrick:

@@ -30,7 +30,9 @@ BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
-    world = iota.World(system, title="shoal: a fish is 0.3 m long", dt=1 / 60)
+    world = iota.World(
+        system, title="shoal: a thousand fish follow their leader and flee a hunter; a fish is 0.3 m long", dt=1 / 60
+    )
     school = School(world, fish, leader_at)
     present(world)
 

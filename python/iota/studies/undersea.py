@@ -27,7 +27,12 @@ def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
     system.usual_material = iota.Material(friction=0.6, touches="obstacles")
-    world = iota.World(system, title="undersea: a fish is 0.3 m long", dt=1 / 60, ground=0.0)
+    world = iota.World(
+        system,
+        title="undersea: an orange fish leaves its shoal for a meal; a fish is 0.3 m long",
+        dt=1 / 60,
+        ground=0.0,
+    )
     school = School(world, fish, leader_at, spread=0.8)
     weed = system.group("weed")
     system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))

@@ -20,7 +20,10 @@ WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
 
 def build() -> iota.World:
     """The world of the study."""
-    world = iota.World(iota.System(mode="robust", damping=0.05), title="weather: the flag is 0.8 m long")
+    world = iota.World(
+        iota.System(mode="robust", damping=0.05),
+        title="weather: a flag, a fountain and a bowl of beads in a wind; the flag is 0.8 m long",
+    )
     flag(world, iota.Vec3(-1.15, 1.9, 0))
     fountain(world, iota.Vec3(0.3, 0.75, 0.1))
     beads(world, MIDDLE)

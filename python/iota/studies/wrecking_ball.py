@@ -31,7 +31,7 @@ def make_world() -> iota.World:
     system = iota.System()
     system.rest_after = 0.5
     system.usual_material = iota.Material(friction=0.5)
-    world = iota.World(system, title="wrecking ball: the pillars are 0.9 m high")
+    world = iota.World(system, title="wrecking ball: it swings into a hall of pillars, each 0.9 m high")
     present(world)
     return world
 

@@ -91,7 +91,7 @@ ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 class World:
     """Runs a system in real time and serves a page that shows it.
 
-    system: a System, or any other Simulator. title: on the page. dt: length of a step, s. style: the style of
+    system: a System, or any other Simulator. title: on the page; what follows ": " is a line that says what the world is. dt: length of a step, s. style: the style of
     drawing that pages start with, one of those in `draw`; checked when the world begins. ground: height of the ground, m, a static body that supports falling
     ones (not those of another Simulator); "auto": 0, or below bodies that start or hang lower; None for none. camera: the first view,
     None: everything is visible.

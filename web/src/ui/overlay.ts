@@ -142,7 +142,13 @@ export class Overlay implements PageListener, FramePart {
 
   changed(what: Change | "selection"): void {
     const { title } = this.page_.world.settings;
-    if (what === "settings") document.title = title === "" ? "Iota" : `${title} · Iota`;
+    if (what === "settings") {
+      // "NAME: LINE" says what the world is, too.
+      const [name, line = ""] = title.split(/: (.*)/);
+      document.title = name === "" ? "Iota" : `${name} · Iota`;
+      byId("about", HTMLElement).replaceChildren(make("b", "", name), ` ${line}`);
+      this.reserve_();
+    }
     if (what === "selection") {
       this.closeMenu_();
       this.refreshStrip_();
@@ -265,7 +271,7 @@ export class Overlay implements PageListener, FramePart {
   private takeRole_(role: Role): void {
     if (role === this.role_) return;
     this.role_ = role;
-    if (role === Role.viewer) this.welcome_.textContent = watcherWelcome;
+    if (role === Role.viewer) this.welcome_.lastElementChild!.textContent = watcherWelcome;
     this.takeCommands_();
   }
 

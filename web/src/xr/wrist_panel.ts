@@ -202,7 +202,7 @@ export class WristPanel {
     context.fillStyle = colors.ink;
     context.font = `600 42px ${font}`;
     const middle = headHeight / 2 + 2;
-    context.fillText(fitText(context, world.settings.title, 360), 36, middle);
+    context.fillText(fitText(context, world.settings.title.split(": ")[0], 360), 36, middle);
     const body = world.entities.body.nameOf(this.body_);
     const grab = gestures.grabs.at(-1);
     const text = grab === undefined
