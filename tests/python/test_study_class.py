@@ -135,7 +135,7 @@ def test_rockets_climb_burst_at_their_top_and_stand_in_their_tubes_again() -> No
     for _ in range(2):  # what has been carried back to its tube climbs again
         world._state.actions["finale"].hook.function()
         tops, sparks = np.zeros(len(rockets)), 0
-        for _ in range(round(2.5 / world.dt)):
+        for _ in range(round(2.9 / world.dt)):
             world.step()
             tops = np.maximum(tops, [rocket.position.y for rocket in rockets])
             sparks = max(sparks, sum(body.is_spark for body in system.bodies))
@@ -145,8 +145,29 @@ def test_rockets_climb_burst_at_their_top_and_stand_in_their_tubes_again() -> No
         assert sparks > 1000
         assert all(rocket.body.kind == "scripted" for rocket in rockets)
         assert all(abs(rocket.position.y - fireworks.TUBE) < 1e-9 for rocket in rockets)
-    run(world, 1.4)
-    assert sum(body.is_spark for body in system.bodies) < 400, "stars die; the fires go on"
+
+
+def test_stars_are_braked_leave_trails_light_the_ground_and_end_there() -> None:
+    world = fireworks.build()
+    system = world.system
+    lamps = [thing for thing in world.drawings.things if type(thing).__name__ == "Light"][: fireworks.LAMPS]
+    lowest, most, bright, speeds, embers = 0.0, 0, [], [], 0
+    world._state.actions["fire"].hook.function()  # the story waits
+    for _ in range(round(5.0 / world.dt)):
+        world.step()
+        places = system.positions
+        lowest, most = min(lowest, places[:, 1].min()), max(most, len(places))
+        bright.append(max(lamp.intensity for lamp in lamps))
+        stars = np.array([abs(p.velocity) for p in system.particles if p.body.is_spark and p.position.y > 6])
+        if len(stars) > 50:
+            speeds.append(np.quantile(stars, 0.9))
+            embers = max(embers, int((stars < 0.4).sum()))
+    assert lowest > -0.5, "none falls through the ground for longer than four steps"
+    assert 300 < most < 6000 and len(system.positions) < 0.4 * most, "they die; the fires go on"
+    assert max(speeds) > 5 and min(speeds) < 3, "fast at first, and soon slow"
+    assert embers > 100, "they hang where the comets were"
+    assert max(bright) == pytest.approx(fireworks.BRIGHT, rel=0.1) and bright[0] == 0
+    assert bright[-1] < 0.05 * max(bright), "it is night again"
 
 
 def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:

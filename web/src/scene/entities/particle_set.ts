@@ -39,7 +39,7 @@ function makeGlow(): ShaderMaterial {
       varying vec3 vColor;
       void main() {
         float radius = length(vPlace);
-        float ball = 1.0 - smoothstep(0.85, 1.05, radius);
+        float ball = 1.0 - smoothstep(0.2, 1.1, radius);
         float halo = glow * pow(max(1.0 - radius / 3.0, 0.0), 2.5);
         float hot = max(1.0 - radius, 0.0);
         vec3 shown = ball * mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r) + halo * vColor;
