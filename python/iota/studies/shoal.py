@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A thousand fish keep together and apart, follow a leader, and drift with a current; c turns the current off, x scatters them."""
+"""A thousand fish keep together and apart, follow the golden one, or one in your hand, and flee a hunter; k calls it, x scatters them."""
 
 from __future__ import annotations
 
@@ -20,8 +20,13 @@ FOLLOW = 0.9  # m/s^2, towards the leader
 LEVEL = np.array([0.0, 1.0, 0.0])  # 1/s, how soon a fish swims level again
 BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
-MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
-WAY = np.array([2.2, 0.5, 1.8])  # how far it goes from there, m
+MIDDLE = np.array([0.0, 2.9, 0.0])  # of the leader's path, m
+WAY = np.array([1.7, 0.4, 1.6])  # how far it goes from there, m
+LOOP = 24.0  # s, of its path
+FLEE, FEAR = 14.0, 2.2  # m/s^2 beside the hunter; m, from where on they flee
+HUNTER = 6.0  # times as long as a fish
+HUNT, PAUSE, FIRST = 7.0, 14.0, 4.0  # s: how long it hunts and rests, and when it comes for the first time
+HOME = np.array([-11.0, 3.2, -11.0])  # where it rests, in the haze, m
 ROOM = np.array([0.12, 0.14, 0.45])  # across, up and along: between two fish at the start, m
 # The outline of a fish: places along it, half its height and half its width there, m.
 BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
@@ -34,7 +39,13 @@ def build(fish: int = FISH) -> iota.World:
         system, title="shoal: a thousand fish follow their leader and flee a hunter; a fish is 0.3 m long", dt=1 / 60
     )
     school = School(world, fish, leader_at)
+    lead(world, school)
+    hunter = Hunter(world, school)
     present(world)
+
+    @world.action("hunt", key="k", help="calls the hunter, or sends it away", on="world")
+    def hunt() -> None:
+        hunter.call()
 
     @world.action("current", key="c", button="a", help="turns the current off and on", on="world")
     def turn() -> None:
@@ -42,14 +53,14 @@ def build(fish: int = FISH) -> iota.World:
 
     @world.action("scatter", key="x", button="b", help="scatters the shoal", on="world")
     def scatter() -> None:
-        system.velocities = system.velocities + np.random.default_rng(0).normal(size=(fish, 3)) * 3
+        school.scatter()
 
     return world
 
 
 def leader_at(time: float) -> Any:
-    """The place that the fish swim to, m: a loop in half a minute, at first across the view."""
-    turn = 2 * math.pi * time / 30
+    """The place that the leader swims to, m: a loop, at first across the view."""
+    turn = 2 * math.pi * time / LOOP
     return MIDDLE + WAY * np.array([math.sin(turn), math.sin(2 * turn), math.cos(turn)])
 
 
@@ -58,7 +69,8 @@ class School:
     current. A fish that is taken out of `group` no longer swims by itself."""
 
     def __init__(self, world: iota.World, fish: int, leader: Callable[[float], Any], spread: float = 1.5) -> None:
-        self._system, self._leader = world.system, leader
+        self._system, self.leader = world.system, leader
+        self.hunter: iota.Particle | None = None  # that they flee
         random = np.random.default_rng(5)
         self._phase = random.uniform(0, 2 * math.pi, fish)
         shoal = iota.builder.Structure()
@@ -88,10 +100,14 @@ class School:
     def _swim(self, batch: iota.types.ParticleBatch) -> Any:
         """Each keeps its speed along its way and turns towards the leader, by its own strength, whatever it has to carry."""
         speed = np.linalg.norm(batch.velocity, axis=1, keepdims=True)
-        to_leader = self._leader(batch.time) - batch.position
+        to_leader = self.leader(batch.time) - batch.position
         distance = np.linalg.norm(to_leader, axis=1, keepdims=True)
         push = (KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) - LEVEL) * batch.velocity
         push[:, 1] += 8 * np.maximum(BED - batch.position[:, 1], 0)
+        if self.hunter is not None:
+            away = batch.position - np.array(tuple(self.hunter.position))
+            near = np.linalg.norm(away, axis=1, keepdims=True)
+            push += FLEE * np.maximum(1 - near / FEAR, 0) * away / np.maximum(near, 0.1)
         return MASS * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
 
     def _forget(self) -> None:
@@ -105,19 +121,92 @@ class School:
             self._turn += self._between / LEAN * (turn - self._turn)  # rad/s, to the left
             self._bodies.orientations = self.headings()
 
+    def scatter(self) -> None:
+        """Each gets a velocity of its own, about 3 m/s more."""
+        self._bodies.velocities = (
+            self._bodies.velocities + np.random.default_rng(0).normal(size=(len(self.fish), 3)) * 3
+        )
+
+    def middle(self) -> Any:
+        """The mean place of all, m."""
+        return self._bodies.positions.mean(axis=0)
+
     def headings(self) -> Any:
         """Quaternions along each fish's way, level but for a bank into its turn, wagging from side to side: (n, 4)."""
-        time, velocity = self._system.time, self._bodies.velocities
-        speed = np.maximum(np.linalg.norm(velocity, axis=1), 1e-6)
-        wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(self._phase)) * time + self._phase)
-        yaw = np.arctan2(-velocity[:, 2], velocity[:, 0]) + wag
-        pitch = np.arcsin(np.clip(velocity[:, 1] / speed, -0.9, 0.9))
-        roll = -0.6 * np.tanh(self._turn)
-        (cy, cp, cr), (sy, sp, sr) = ([f(angle / 2) for angle in (yaw, pitch, roll)] for f in (np.cos, np.sin))
-        # Roll about x, then pitch about z, then yaw about y.
-        x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
-        z, w = cr * sp * cy - sr * cp * sy, cr * cp * cy - sr * sp * sy
-        return np.stack([x, y, z, w], axis=1)
+        wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(self._phase)) * self._system.time + self._phase)
+        return aim(self._bodies.velocities, wag, -0.6 * np.tanh(self._turn))
+
+
+def aim(velocity: Any, wag: Any, roll: Any) -> Any:
+    """Quaternions that point x along velocities (n, 3), with angles to the side and about the way, rad: (n, 4)."""
+    speed = np.maximum(np.linalg.norm(velocity, axis=1), 1e-6)
+    yaw = np.arctan2(-velocity[:, 2], velocity[:, 0]) + wag
+    pitch = np.arcsin(np.clip(velocity[:, 1] / speed, -0.9, 0.9))
+    (cy, cp, cr), (sy, sp, sr) = ([f(angle / 2) for angle in (yaw, pitch, roll)] for f in (np.cos, np.sin))
+    # Roll about x, then pitch about z, then yaw about y.
+    x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
+    z, w = cr * sp * cy - sr * cp * sy, cr * cp * cy - sr * sp * sy
+    return np.stack([x, y, z, w], axis=1)
+
+
+def lead(world: iota.World, school: School) -> None:
+    """The golden fish goes round its path; the others follow it, or the one that somebody holds."""
+    golden = min(school.fish, key=lambda fish: abs(fish.position - iota.Vec3(*leader_at(0))))
+    school.group.remove(golden)
+    alone = world.system.group("leader")
+    alone.add(golden)
+    world.draw(golden.body, fish_looks("#ffb01e", "#e0401a", 1.6))
+    golden.body.name = "leader"
+    place = [np.array(tuple(golden.position))]
+
+    def swim(batch: iota.types.ParticleBatch) -> Any:
+        """Towards its path, as fast as a fish in a hurry."""
+        way = leader_at(batch.time + 0.3) - batch.position
+        far = np.linalg.norm(way, axis=1, keepdims=True)
+        return batch.mass[:, None] * 3 * (way * np.minimum(2 * CRUISE / np.maximum(far, 1e-6), 3) - batch.velocity)
+
+    def look() -> None:
+        held = world.users.held()
+        place[0] = np.array(tuple(golden.position if held is None else held.center_of_mass))
+
+    world.system.field(swim, group=alone)
+    world.on_step(look)
+    school.leader = lambda time: place[0]
+
+
+class Hunter:
+    """A large fish that comes out of the haze, goes for the middle of the shoal, and leaves again."""
+
+    def __init__(self, world: iota.World, school: School) -> None:
+        self._world, self._school = world, school
+        self.fish = school.hunter = world.system.body().particle(tuple(HOME), mass=60)
+        self.fish.body.kind, self.fish.body.name = "scripted", "hunter"
+        self._pose = world.system.array([self.fish.body])
+        world.draw(self.fish.body, fish_looks("#3b4a52", "#2c3a40", HUNTER))
+        self._start()
+        world.on_step(self._swim)
+        world.on_reset(self._start)
+
+    def _start(self) -> None:
+        self._velocity, self.hunts, self._until = np.array([1.0, 0.0, 1.0]), False, FIRST
+
+    def call(self) -> None:
+        """It comes, or goes."""
+        self.hunts = not self.hunts
+        self._until = self._world.system.time + (HUNT if self.hunts else PAUSE)
+
+    def _swim(self) -> None:
+        """It turns slowly: what it goes for gets out of its way."""
+        time, dt = self._world.system.time, self._world.dt
+        if time >= self._until:
+            self.call()
+        place = np.array(tuple(self.fish.position))
+        way = (self._school.middle() if self.hunts else HOME) - place
+        far = max(float(np.linalg.norm(way)), 1e-6)
+        wanted = way / far * min(4.0 if self.hunts else 2.5, 0.8 * far)
+        self._velocity = self._velocity + dt / 0.7 * (wanted - self._velocity)
+        turn = aim(self._velocity[None], np.array([0.15 * math.sin(5 * time)]), np.zeros(1))
+        self._pose.poses = np.hstack([(place + dt * self._velocity)[None], turn])
 
 
 def apart(random: np.random.Generator, fish: int, spread: float) -> Any:
@@ -132,8 +221,8 @@ def apart(random: np.random.Generator, fish: int, spread: float) -> Any:
     return places
 
 
-def fish_looks() -> list[looks.Look]:
-    """A body and a tail, 54 triangles: a thousand fish are drawn at once."""
+def fish_looks(color: str = "#5b86a8", tail_color: str = "#e0a040", size: float = 1.0) -> list[looks.Look]:
+    """A body and a tail, 54 triangles: a thousand fish are drawn at once. size: times the usual one."""
     around = np.pi / 4 * np.arange(8)
     rings = [[(x, h * np.cos(a), w * np.sin(a)) for a in around] for x, h, w in BODY]
     body = [(0.14, 0.0, 0.0), *(place for ring in rings for place in ring), (-0.12, 0.0, 0.0)]
@@ -144,7 +233,8 @@ def fish_looks() -> list[looks.Look]:
     faces += [(len(body) - 1, k + 8 + b, k + 8 + a) for a, b in sides]
     tail = [(-0.1, 0, 0.006), (-0.1, 0, -0.006), (-0.19, 0.06, 0), (-0.16, 0, 0), (-0.19, -0.06, 0)]
     fins = [(0, 2, 3), (0, 3, 4), (1, 3, 2), (1, 4, 3), (0, 1, 2), (0, 4, 1)]
-    return [looks.mesh(body, faces, color="#5b86a8"), looks.mesh(tail, fins, color="#e0a040")]
+    parts = ((body, faces, color), (tail, fins, tail_color))
+    return [looks.mesh(np.multiply(size, vertices), triangles, color=color) for vertices, triangles, color in parts]
 
 
 def present(world: iota.World) -> None:
@@ -153,4 +243,4 @@ def present(world: iota.World) -> None:
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.drawings.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
-    world.camera = iota.Camera(position=(0, 2.0, 15.0), target=(0, 3.4, 0))
+    world.camera = iota.Camera(position=(0, 2.3, 8.6), target=(0, 2.8, 0))
