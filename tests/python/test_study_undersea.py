@@ -61,6 +61,7 @@ def test_the_story_tells_itself_from_leaving_to_rejoining() -> None:
     run(world, BEGIN + 0.1)
     fish = meal.fish
     assert fish is not None and fish not in school.group and meal.lure is not None
+    assert fish == meal.hero and meal._label.at == fish and meal._label.offset[1] > 0.4, "the label is above, not on it"
     run(world, TEAR - 1.5)
     near = []
     for _ in range(60):
@@ -85,6 +86,28 @@ def test_the_story_tells_itself_from_leaving_to_rejoining() -> None:
     assert laden < 0.8 and free > 0.9, "heavier, it could not keep up; now it swims as the others do"
     middle = np.mean([tuple(one.position) for one in school.fish], axis=0)
     assert np.linalg.norm(np.array(fish.position) - middle) < 3
+
+
+def test_the_fish_of_the_story_has_a_color_of_its_own_and_is_larger_than_the_others() -> None:
+    world, meal, school = build()
+    look, *others = (world.scene.look_of(fish.body)["*"] for fish in (meal.hero, *school.fish))
+    other = next(each for each in others if each != look)
+    assert look[0].color != other[0].color
+    lengths = [
+        max(x for x, _, _ in one[0].shape.vertices) - min(x for x, _, _ in one[0].shape.vertices)
+        for one in (look, other)
+    ]
+    assert lengths[0] > 1.4 * lengths[1]
+    assert sum(world.scene.look_of(fish.body)["*"] == look for fish in school.fish) == 1
+
+
+def test_the_kelps_sway_by_more_than_a_hand_and_the_shoal_goes_by() -> None:
+    world, meal, _ = build()
+    tips = []
+    for _ in range(8):
+        run(world, world.system.time + 0.9)
+        tips.append([tuple(kelp[-1].particles[-1].position) for kelp in meal._kelps])
+    assert np.ptp(tips, axis=0)[:, 0].min() > 0.5
 
 
 def test_a_touch_stops_the_story_and_each_event_can_be_done_by_hand() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fish leaves its shoal, feeds on seaweed, tears a piece off, lags behind with it, lets go and rejoins; n goes on by hand."""
+"""An orange fish leaves its shoal, feeds on seaweed, tears a piece off, lags behind with it, lets go and rejoins; n goes on by hand."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ import numpy as np
 import iota
 from iota import looks
 from iota.studies._story import Story
-from iota.studies.shoal import School, present
+from iota.studies.shoal import School, fish_looks, present
 
 FISH = 120
 KELPS = ((-1.5, -0.8), (1.7, -1.5), (0.5, 0.9))  # where they grow, m
 NODES, LENGTH = 16, 3.6  # of a kelp; m
 PIECE = 3  # links that a fish tears off
 BUOYANCY = 1.6  # m/s^2, upwards
+SWELL = 0.22  # 1/s^2 and m above the bed: waves far above push to and fro what grows high
+FIRST = iota.Vec3(1.5, 3.0, 1.5)  # m: the fish that is nearest to it at the start has the story
+HERO = 1.6  # times as long as the others
 HIGHEST = 9.0  # m: what drifts away is gone there
 LURE = "force = -3*(r - r0 - 0.05*sin(7*t))/(r + 0.3) - 0.5*v; drag = 0.25"  # towards the food, and nibbling there
 
@@ -29,14 +32,15 @@ def build(fish: int = FISH) -> iota.World:
     system.usual_material = iota.Material(friction=0.6, touches="obstacles")
     world = iota.World(
         system,
-        title="undersea: an orange fish leaves its shoal for a meal; a fish is 0.3 m long",
+        title="undersea: an orange fish leaves its shoal for a meal; the others are 0.3 m long",
         dt=1 / 60,
         ground=0.0,
     )
     school = School(world, fish, leader_at, spread=0.8)
     weed = system.group("weed")
     system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))
-    system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.4, size=1.5, octaves=2, evolution=0.4)
+    system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.5, size=1.5, octaves=2, evolution=0.4)
+    system.field("fx = a*m*y*sin(1.3*t + 0.5*x); fz = 0.5*a*m*y*sin(0.9*t + 0.7*z)", group=weed, a=SWELL)
     school.current.set(speed=0.3)
     soft = system.group("soft")
     system.pair_force("soft_repulsion", cutoff=0.09, group=soft, stiffness=6, length=0.09)
@@ -46,7 +50,7 @@ def build(fish: int = FISH) -> iota.World:
     for x, z in ((-0.2, 0.0), (0.6, -0.9), (-2.6, -0.5)):
         ribbon(world, weed, (x, 0, z))
     present(world)
-    world.camera = iota.Camera(position=(0, 1.5, 9.0), target=(0, 2.5, 0))
+    world.camera = iota.Camera(position=(0.4, 1.9, 7.4), target=(0.1, 2.4, 0))
     bubbles(world)
     world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
     meal = Meal(world, school, kelps)
@@ -65,12 +69,13 @@ def build(fish: int = FISH) -> iota.World:
 
 def leader_at(time: float) -> Any:
     """The place that the shoal swims to, m: round the seaweed, nearly as fast as a fish can swim."""
-    turn = 2 * math.pi * time / 16
+    turn = 2 * math.pi * (time + 1.0) / 16
     return np.array([1.9 * math.cos(turn), 2.7 + 0.5 * math.sin(3 * turn), 2.2 * math.sin(turn) - 0.4])
 
 
 class Meal:
-    """The story of a fish, an event at a time: it leaves and feeds; tears a piece off and takes it along; lets go."""
+    """The story of one fish, an event at a time: it leaves and feeds; tears a piece off and takes it along; lets go. It has a color of
+    its own, so that one sees where it is among the others."""
 
     def __init__(self, world: iota.World, school: School, kelps: list[list[iota.Body]]) -> None:
         self._world, self._school, self._kelps = world, school, kelps
@@ -78,7 +83,10 @@ class Meal:
         # The load is as heavy as water, and drags.
         self._load = world.system.group("load")
         world.system.field("wind", group=self._load, drag=0.16)
-        self._label = world.label("", offset=(0, 0.3, 0))
+        self.hero = min(school.fish, key=lambda fish: abs(fish.position - FIRST))
+        world.draw(self.hero.body, fish_looks("#ff6a1a", "#ffd23c", HERO))
+        self.hero.body.name = "orange fish"
+        self._label = world.label("", offset=(0, 0.5, 0))
         self._start()
         world.on_reset(self._start)
         world.every(1.0)(self._clear)
@@ -101,15 +109,16 @@ class Meal:
             self.let_go()
 
     def leave(self) -> None:
-        """The fish nearest to the food forgets the shoal; a force draws it to the food instead."""
+        """The fish forgets the shoal; a force draws it to the nearest food instead."""
         if all(len(kelp) <= 2 * PIECE for kelp in self._left):
             self._world.reset()
             return
-        kelp = max(self._left, key=len)
-        tip = kelp[-1].particles[-1]
-        self.fish = min(self._school.fish, key=lambda fish: abs(fish.position - tip.position))
+        self.fish = self.hero
+        longest = max(len(kelp) for kelp in self._left)
+        tips = [kelp[-1].particles[-1] for kelp in self._left if len(kelp) == longest]
+        tip = min(tips, key=lambda tip: abs(tip.position - self.hero.position))
         self._school.group.remove(self.fish)
-        self._say("feeds")
+        self._say("feeds on the kelp")
         self.lure = self._world.system.bond(self.fish, tip, LURE, r0=0.18)
 
     def tear(self) -> None:
@@ -119,7 +128,7 @@ class Meal:
         self.piece = [kelp.pop() for _ in range(PIECE)][::-1]
         kelp[-1].particles[-1].separate(self.piece[0].particles[0])
         self.fish.combine(self.piece[-1].particles[-1], over=0.5)
-        self._say("lags behind")
+        self._say("carries its meal, and lags behind")
         self._weed.remove(*self.piece)
         self._load.add(*self.piece)
         self._end_lure()
@@ -227,8 +236,8 @@ def strand(
 
 def bubbles(world: iota.World) -> None:
     """They rise from between the stones."""
-    for x, z, rate in ((-2.2, 0.2, 9), (1.3, 1.6, 6)):
+    for x, z, rate in ((-2.2, 0.2, 6), (1.3, 1.6, 4)):
         world.system.emitter(
             rate=rate, source=iota.Sphere(0.08), position=(x, 0.4, z), velocity=(0, 0.7, 0), velocity_spread=0.12, mass=0.001,
-            lifetime=11, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],
+            lifetime=11, lifetime_spread=1, curve=[(0, 0.005, (0.45, 0.68, 0.76)), (1, 0.016, (0.55, 0.76, 0.82))],
         )  # fmt: skip
