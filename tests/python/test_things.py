@@ -597,8 +597,14 @@ def test_surfaces_lose_the_triangles_whose_thread_is_gone(run_world: Runner) -> 
         seen = entity(page, "surface")
         assert seen["triangles"] == [0, 1, 2, 1, 3, 2] and seen["bodies"] == slots
         assert seen["color"] == 0x7FFF8000, "half is seen through it"
-        world.call(threads[2].destroy)
+        world.call(lambda: setattr(threads[2], "active", False))
         page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [0, 1, 2])
+        world.call(lambda: setattr(threads[2], "active", True))
+        page.wait_for(lambda: len(page.entities["surface"][0]["triangles"]) == 6)
+        world.call(lambda: setattr(threads[2], "break_force", 0.1))
+        world.call(lambda: setattr(knots[3], "velocity", (0, 1, 0)))
+        page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [0, 1, 2])
+        world.call(threads[2].destroy)
         world.call(threads[4].destroy)
         page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [])
         world.call(lambda: setattr(surface, "triangles", [(0, 1, 4)]))

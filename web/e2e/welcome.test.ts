@@ -53,7 +53,7 @@ it("says what the world is, and the sign for help stays when the bar hides", asy
     await tab.drawn();
     const about = tab.page.locator("#about");
     await about.waitFor();
-    expect(await about.textContent()).toMatch(/^cradle as many balls leave as arrive/);
+    expect(await about.textContent()).toMatch(/^cradle of 24 mm balls as many leave/);
     await tab.page.evaluate(() => document.body.classList.add("idle"));
     await tab.untilShown();
     const seen = await tab.page.evaluate(() => Array.from(document.querySelectorAll("#bar > *"), (item) => [item.id, getComputedStyle(item).opacity]));

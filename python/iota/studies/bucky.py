@@ -26,7 +26,7 @@ SHARE = 0.5  # of the stiffness against breathing is the center's, the rest that
 def build() -> iota.World:
     """The world of the study."""
     system = iota.System(gravity=(0, 0, 0), damping=TIRES)
-    world = iota.World(system, title="bucky: sixty carbon atoms on springs breathe; 1 m is 0.71 nm")
+    world = iota.World(system, title="bucky: sixty carbon atoms breathe; 1 m is 0.71 nm")
     cage = shapelib.polyhedron("fullerene 60", "soft", scale=RADIUS, mass=0.72, at=CENTER, damping=0.0, radius=0.035)
     tune(cage)
     middle = cage.point(CENTER, mass=1.0)

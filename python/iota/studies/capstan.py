@@ -34,9 +34,7 @@ def make_world() -> iota.World:
     """Weights that hang still for half a second sleep."""
     system = iota.System()
     system.rest_after = 0.5
-    world = iota.World(
-        system, title="capstan: a few turns of rope about a beam hold a heavy weight; the beam is 20 cm thick"
-    )
+    world = iota.World(system, title="capstan: turns of rope about a beam of 20 cm hold a weight")
     world.dt = STEP
     present(world)
     return world

@@ -19,9 +19,7 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
     chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.2, -0.9, 0.35)).realize(system).bodies
     system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # its parts are joined again
-    world = iota.World(
-        system, title=f"chain: it hangs on a nail, to be pulled and broken; {LENGTH:g} m long", style="rope"
-    )
+    world = iota.World(system, title=f"chain: {LENGTH:g} m to be pulled, broken and joined", style="rope")
     present(world, chain)
 
     world.offer("break", "join")

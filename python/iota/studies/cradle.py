@@ -24,9 +24,7 @@ PLACE, UP = iota.Vec3(0, 0, 0), iota.Vec3(0, 1, 0)
 
 def build(left: int = 1, right: int = 0, balls: int = BALLS) -> iota.World:
     """The world of the study. left, right: how many of the balls are lifted at first."""
-    world = iota.World(
-        iota.System(), title="cradle: as many balls leave as arrive; they are 24 mm thick", dt=1 / 240, ground=0.0
-    )
+    world = iota.World(iota.System(), title="cradle: of 24 mm balls as many leave as arrive", dt=1 / 240, ground=0.0)
     cradle = Cradle(world, balls=balls)
     add_actions(world, cradle, left, right)
     world.camera = iota.Camera(position=(0.11, 0.2, 0.42), target=(0, 0.08, 0))

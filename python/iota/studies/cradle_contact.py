@@ -53,10 +53,7 @@ def build(left: int = 1, right: int = 0) -> iota.World:
 def make_world() -> iota.World:
     """A table without a cradle."""
     world = iota.World(
-        iota.System(),
-        title="cradles by contact: impacts go from ball to ball; they are 24 mm thick",
-        dt=1 / 240,
-        ground=0.0,
+        iota.System(), title="cradles by contact: impacts run through 24 mm balls", dt=1 / 240, ground=0.0
     )
     world.camera = iota.Camera(position=(0.1, 0.22, 0.56), target=(0, 0.09, 0))
     return world

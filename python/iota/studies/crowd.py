@@ -33,11 +33,7 @@ def build(count: int = COUNT, budget_ms: float | None = BUDGET) -> iota.World:
     system = iota.System(damping=0.02)
     system.usual_material = iota.Material(touches="obstacles")  # their own legs do not matter from afar
     length = APART * math.ceil(count / ROWS)
-    world = iota.World(
-        system,
-        title=f"crowd: only what is near a walking lamp is simulated in full; the valley is {length:.0f} m long",
-        ground=0.0,
-    )
+    world = iota.World(system, title=f"crowd: a lamp walks through a valley of {length:.0f} m", ground=0.0)
     world.camera = iota.Camera(position=(-4.2, 2.3, 4.9), target=(4, 1.9, -0.5))
     crowd = Crowd(world, count)
     world.levels.viewers = lambda: [crowd.eye()]

@@ -96,10 +96,7 @@ def build(people: int = 50) -> iota.World:
     """The world of the study. people: in each of the four rooms."""
     plan = house(people)
     world = iota.World(
-        iota.System(gravity=(0, 0, 0)),
-        title="evacuation: people leave a building of 20 m by its doors",
-        dt=1 / 60,
-        ground=0.0,
+        iota.System(gravity=(0, 0, 0)), title="evacuation: people leave a house of 20 m", dt=1 / 60, ground=0.0
     )
     world.camera = iota.Camera(position=(1.2, 16.0, 15.0), target=(1.2, 0, 0.3))
     for gate in plan.gates:

@@ -30,9 +30,7 @@ def build() -> iota.World:
 
 
 def make_world() -> iota.World:
-    world = iota.World(
-        iota.System(), title="grasp: two grippers hand a bar over by friction; it is 20 cm long", dt=1 / 240, ground=0.0
-    )
+    world = iota.World(iota.System(), title="grasp: two grippers hand over a bar of 20 cm", dt=1 / 240, ground=0.0)
     world.camera = iota.Camera(position=(0.22, 0.8, 1.6), target=(0, 0.42, 0))
     return world
 

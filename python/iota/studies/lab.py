@@ -19,9 +19,7 @@ VIEWS = (
 
 def build() -> iota.World:
     """The world of the study."""
-    world = iota.World(
-        iota.System(damping=0.06), title="lab: a room of 9 x 7 m with two toys to play with", dt=1 / 240, ground=None
-    )
+    world = iota.World(iota.System(damping=0.06), title="lab: two toys in a room of 9 x 7 m", dt=1 / 240, ground=None)
     room = _laboratory.Furniture()
     _laboratory.screen(room, (LADDER.x, TOP, LADDER.z - 0.07), 0.44, 0.7, lift=0.1)
     room.show(world)

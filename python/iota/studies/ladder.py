@@ -27,11 +27,7 @@ BLOCK = looks.solid("wood", "#fff1dc")
 
 def build(blocks: int = 7) -> iota.World:
     """The world of the study. blocks: how many; five to nine is usual."""
-    world = iota.World(
-        iota.System(damping=0.25),
-        title="ladder: Jacob's ladder, whose blocks seem to tumble down; a block is 6 cm long",
-        dt=1 / 240,
-    )
+    world = iota.World(iota.System(damping=0.25), title="ladder: blocks of 6 cm that seem to tumble", dt=1 / 240)
     add_actions(world, Ladder(world, blocks))
     present(world)
     return world

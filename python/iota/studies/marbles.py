@@ -27,9 +27,7 @@ COLORS = ("#cc4033", "#3373b3", "#e6b333", "#4d9959")
 
 def build() -> iota.World:
     """The world of the study."""
-    world = iota.World(
-        iota.System(), title="marbles: they roll down gutters, and a flap sorts them; a marble is 6 cm thick"
-    )
+    world = iota.World(iota.System(), title="marbles: balls of 6 cm roll down gutters, and a flap sorts them")
     present(world)
     Run(world)
     return world

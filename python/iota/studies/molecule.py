@@ -20,7 +20,7 @@ TIMES = (6.0, 9.0)  # s, when they break if nobody touches anything
 def build(repeat: bool = True) -> iota.World:
     """The world of the study. repeat: begins anew some seconds after the ring has broken."""
     system = iota.System(damping=0.02)
-    world = iota.World(system, title="molecule: a ring of carbon swings on a nail and breaks, C8H16; 1 m is 0.77 nm")
+    world = iota.World(system, title="molecule: a ring of C8H16 swings and breaks; 1 m is 0.77 nm")
     ring = shapelib.molecule(FILE, "rigid", scale=SCALE)
     made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
     made.points[1].nail()

@@ -25,9 +25,7 @@ NAME = re.compile(r"[\w-]+")  # of a file, without its ending
 def build(folder: Path | None = None) -> iota.World:
     """The world of the study. folder: where files go, None: the current one."""
     system = iota.System(damping=0.1)
-    world = iota.World(
-        system, title="playground: place things, join them, and let them go; a ball is 0.2 m thick", camera=CAMERA
-    )
+    world = iota.World(system, title="playground: build with balls of 0.2 m, boxes and ropes", camera=CAMERA)
     start(world)
     world.offer()
     placing(world)

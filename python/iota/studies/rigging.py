@@ -95,9 +95,7 @@ def build() -> iota.World:
 def make_world() -> iota.World:
     """A world without the derrick."""
     system = iota.System(damping=0.08)
-    return iota.World(
-        system, title="rigging: ropes of a derrick show their forces; the mast is 4.4 m high", dt=1 / 240, ground=-0.4
-    )
+    return iota.World(system, title="rigging: ropes of a 4.4 m mast show their forces", dt=1 / 240, ground=-0.4)
 
 
 class Derrick:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A thousand fish keep together and apart, follow the golden one, or one in your hand, and flee a hunter; k calls it, x scatters them."""
+"""A thousand fish keep together and apart, follow the golden one, or one in a hand, and flee a hunter; x scatters them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,7 @@ FOLLOW = 0.9  # m/s^2, towards the leader
 LEVEL = np.array([0.0, 1.0, 0.0])  # 1/s, how soon a fish swims level again
 BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
-MIDDLE = np.array([0.0, 2.9, 0.0])  # of the leader's path, m
-WAY = np.array([1.7, 0.4, 1.6])  # how far it goes from there, m
-LOOP = 24.0  # s, of its path
-FLEE, FEAR = 14.0, 2.2  # m/s^2 beside the hunter; m, from where on they flee
-HUNTER = 6.0  # times as long as a fish
+FLEE, FEAR = 3.0, 2.2  # N/m; m from the hunter, where they begin to flee
 HUNT, PAUSE, FIRST = 7.0, 14.0, 4.0  # s: how long it hunts and rests, and when it comes for the first time
 HOME = np.array([-11.0, 3.2, -11.0])  # where it rests, in the haze, m
 ROOM = np.array([0.12, 0.14, 0.45])  # across, up and along: between two fish at the start, m
@@ -35,17 +31,11 @@ BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
-    world = iota.World(
-        system, title="shoal: a thousand fish follow their leader and flee a hunter; a fish is 0.3 m long", dt=1 / 60
-    )
+    world = iota.World(system, title="shoal: fish of 0.3 m follow a leader and flee a hunter", dt=1 / 60)
     school = School(world, fish, leader_at)
-    lead(world, school)
-    hunter = Hunter(world, school)
+    add_leader(world, school)
+    add_hunter(world, school)
     present(world)
-
-    @world.action("hunt", key="k", help="calls the hunter, or sends it away", on="world")
-    def hunt() -> None:
-        hunter.call()
 
     @world.action("current", key="c", button="a", help="turns the current off and on", on="world")
     def turn() -> None:
@@ -53,15 +43,15 @@ def build(fish: int = FISH) -> iota.World:
 
     @world.action("scatter", key="x", button="b", help="scatters the shoal", on="world")
     def scatter() -> None:
-        school.scatter()
+        system.velocities = system.velocities + np.random.default_rng(0).normal(size=(fish + 1, 3)) * 3
 
     return world
 
 
 def leader_at(time: float) -> Any:
     """The place that the leader swims to, m: a loop, at first across the view."""
-    turn = 2 * math.pi * time / LOOP
-    return MIDDLE + WAY * np.array([math.sin(turn), math.sin(2 * turn), math.cos(turn)])
+    turn = 2 * math.pi * time / 24
+    return np.array([1.7 * math.sin(turn), 2.9 + 0.4 * math.sin(2 * turn), 1.6 * math.cos(turn)])
 
 
 class School:
@@ -70,7 +60,6 @@ class School:
 
     def __init__(self, world: iota.World, fish: int, leader: Callable[[float], Any], spread: float = 1.5) -> None:
         self._system, self.leader = world.system, leader
-        self.hunter: iota.Particle | None = None  # that they flee
         random = np.random.default_rng(5)
         self._phase = random.uniform(0, 2 * math.pi, fish)
         shoal = iota.builder.Structure()
@@ -81,7 +70,7 @@ class School:
         shoal.group("shoal", range(fish))
         made = shoal.realize(world.system)
         self.fish, self.group = made.points, made.groups["shoal"]
-        self._bodies = world.system.array([fish.body for fish in self.fish])
+        self.bodies = world.system.array([fish.body for fish in self.fish])
         world.system.pair_force(
             "attract_repel", cutoff=0.9, group=self.group, attraction=0.03, attraction_range=0.8, repulsion=0.4,
             repulsion_range=0.15, alignment=0.02,
@@ -93,7 +82,7 @@ class School:
         world.draw([fish.body for fish in self.fish], fish_looks())
         self._between = 2 * world.dt  # s, between two looks at the way
         self._forget()
-        self._bodies.orientations = self.headings()
+        self.bodies.orientations = self.headings()
         world.on_step(self._steer)
         world.on_reset(self._forget)
 
@@ -104,37 +93,23 @@ class School:
         distance = np.linalg.norm(to_leader, axis=1, keepdims=True)
         push = (KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) - LEVEL) * batch.velocity
         push[:, 1] += 8 * np.maximum(BED - batch.position[:, 1], 0)
-        if self.hunter is not None:
-            away = batch.position - np.array(tuple(self.hunter.position))
-            near = np.linalg.norm(away, axis=1, keepdims=True)
-            push += FLEE * np.maximum(1 - near / FEAR, 0) * away / np.maximum(near, 0.1)
         return MASS * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
 
     def _forget(self) -> None:
-        self._way, self._turn = self._bodies.velocities, np.zeros(len(self._bodies.velocities))
+        self._way, self._turn = self.bodies.velocities, np.zeros(len(self.bodies.velocities))
 
     def _steer(self) -> None:
         """Fish look along their way: every other step is enough."""
         if self._system.step_count % 2 == 0:
-            before, self._way = self._way, self._bodies.velocities
+            before, self._way = self._way, self.bodies.velocities
             turn = np.cross(before, self._way)[:, 1] / np.maximum((self._way**2).sum(axis=1), 1e-6) / self._between
             self._turn += self._between / LEAN * (turn - self._turn)  # rad/s, to the left
-            self._bodies.orientations = self.headings()
-
-    def scatter(self) -> None:
-        """Each gets a velocity of its own, about 3 m/s more."""
-        self._bodies.velocities = (
-            self._bodies.velocities + np.random.default_rng(0).normal(size=(len(self.fish), 3)) * 3
-        )
-
-    def middle(self) -> Any:
-        """The mean place of all, m."""
-        return self._bodies.positions.mean(axis=0)
+            self.bodies.orientations = self.headings()
 
     def headings(self) -> Any:
         """Quaternions along each fish's way, level but for a bank into its turn, wagging from side to side: (n, 4)."""
         wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(self._phase)) * self._system.time + self._phase)
-        return aim(self._bodies.velocities, wag, -0.6 * np.tanh(self._turn))
+        return aim(self.bodies.velocities, wag, -0.6 * np.tanh(self._turn))
 
 
 def aim(velocity: Any, wag: Any, roll: Any) -> Any:
@@ -149,64 +124,49 @@ def aim(velocity: Any, wag: Any, roll: Any) -> Any:
     return np.stack([x, y, z, w], axis=1)
 
 
-def lead(world: iota.World, school: School) -> None:
-    """The golden fish goes round its path; the others follow it, or the one that somebody holds."""
-    golden = min(school.fish, key=lambda fish: abs(fish.position - iota.Vec3(*leader_at(0))))
-    school.group.remove(golden)
-    alone = world.system.group("leader")
-    alone.add(golden)
-    world.draw(golden.body, fish_looks("#ffb01e", "#e0401a", 1.6))
-    golden.body.name = "leader"
-    place = [np.array(tuple(golden.position))]
+def drive(
+    world: iota.World, fish: iota.Particle, goal: Callable[[float], Any], speed: float, keen: float
+) -> iota.Group:
+    """It swims by itself to where the function says. speed: m/s. keen: 1/s, how soon it has turned there."""
+    alone = world.system.group(fish.body.name)
+    alone.add(fish)
 
     def swim(batch: iota.types.ParticleBatch) -> Any:
-        """Towards its path, as fast as a fish in a hurry."""
-        way = leader_at(batch.time + 0.3) - batch.position
-        far = np.linalg.norm(way, axis=1, keepdims=True)
-        return batch.mass[:, None] * 3 * (way * np.minimum(2 * CRUISE / np.maximum(far, 1e-6), 3) - batch.velocity)
-
-    def look() -> None:
-        held = world.users.held()
-        place[0] = np.array(tuple(golden.position if held is None else held.center_of_mass))
+        way = goal(batch.time) - batch.position
+        pace = min(speed / max(float(np.linalg.norm(way)), 1e-6), 3.0)
+        return keen * fish.mass * (pace * way - batch.velocity)
 
     world.system.field(swim, group=alone)
-    world.on_step(look)
-    school.leader = lambda time: place[0]
+    return alone
 
 
-class Hunter:
+def add_leader(world: iota.World, school: School) -> None:
+    """The golden fish goes round its path; the others follow it, or the one that somebody holds."""
+    golden = min(school.fish, key=lambda fish: abs(fish.position - iota.Vec3(*leader_at(0))))
+    golden.body.name = "leader"
+    world.draw(golden.body, fish_looks("#ffb01e", "#e0401a", 1.6))
+    school.group.remove(golden)
+    drive(world, golden, lambda time: leader_at(time + 0.3), 2 * CRUISE, 3.0)
+
+    @world.on_step
+    def follow() -> None:
+        place = np.array(tuple((world.users.held() or golden.body).center_of_mass))
+        school.leader = lambda _: place
+
+
+def add_hunter(world: iota.World, school: School) -> None:
     """A large fish that comes out of the haze, goes for the middle of the shoal, and leaves again."""
+    body = world.system.body(damping=3.0, material=iota.Material(touches="nothing"))
+    tail, nose = (body.particle(tuple(HOME + (x, 0, 0)), mass=30) for x in (-1, 1))
+    tail.body.name = "hunter"
+    world.draw(tail.body, fish_looks("#3b4a52", "#2c3a40", 6.0))
 
-    def __init__(self, world: iota.World, school: School) -> None:
-        self._world, self._school = world, school
-        self.fish = school.hunter = world.system.body().particle(tuple(HOME), mass=60)
-        self.fish.body.kind, self.fish.body.name = "scripted", "hunter"
-        self._pose = world.system.array([self.fish.body])
-        world.draw(self.fish.body, fish_looks("#3b4a52", "#2c3a40", HUNTER))
-        self._start()
-        world.on_step(self._swim)
-        world.on_reset(self._start)
+    def goal(time: float) -> Any:
+        hunts = time >= FIRST and (time - FIRST) % (HUNT + PAUSE) < HUNT
+        return school.bodies.positions.mean(axis=0) if hunts else HOME
 
-    def _start(self) -> None:
-        self._velocity, self.hunts, self._until = np.array([1.0, 0.0, 1.0]), False, FIRST
-
-    def call(self) -> None:
-        """It comes, or goes."""
-        self.hunts = not self.hunts
-        self._until = self._world.system.time + (HUNT if self.hunts else PAUSE)
-
-    def _swim(self) -> None:
-        """It turns slowly: what it goes for gets out of its way."""
-        time, dt = self._world.system.time, self._world.dt
-        if time >= self._until:
-            self.call()
-        place = np.array(tuple(self.fish.position))
-        way = (self._school.middle() if self.hunts else HOME) - place
-        far = max(float(np.linalg.norm(way)), 1e-6)
-        wanted = way / far * min(4.0 if self.hunts else 2.5, 0.8 * far)
-        self._velocity = self._velocity + dt / 0.7 * (wanted - self._velocity)
-        turn = aim(self._velocity[None], np.array([0.15 * math.sin(5 * time)]), np.zeros(1))
-        self._pose.poses = np.hstack([(place + dt * self._velocity)[None], turn])
+    group = drive(world, nose, goal, 6.0, 9.0)
+    world.system.pair_force("soft_repulsion", cutoff=FEAR, group=school.group, other=group, stiffness=FLEE, length=FEAR)
 
 
 def apart(random: np.random.Generator, fish: int, spread: float) -> Any:

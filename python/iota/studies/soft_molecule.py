@@ -16,9 +16,7 @@ ROOM = 0.22  # m, a little more than a bond: nearer, atoms without one push each
 def build() -> iota.World:
     """The world of the study."""
     system = iota.System(damping=0.3)
-    world = iota.World(
-        system, title="soft molecule: the same ring on springs hangs longer than a rigid one, C8H16; 1 m is 0.77 nm"
-    )
+    world = iota.World(system, title="soft molecule: C8H16 on springs hangs longer; 1 m is 0.77 nm")
     ring = shapelib.molecule(FILE, "soft", scale=SCALE, damping=0.02)
     made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
     made.points[1].nail()

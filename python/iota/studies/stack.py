@@ -26,9 +26,7 @@ def build() -> iota.World:
     """The world of the study: what stands falls asleep after half a second, and costs nothing until it is touched."""
     system = iota.System()
     system.rest_after = 0.5
-    world = iota.World(
-        system, title="stack: piles and towers that stand until they are pushed; the table is 2.3 m long"
-    )
+    world = iota.World(system, title="stack: towers on a table of 2.3 m stand until they are pushed")
     present(world)
     Stacks(world)
     return world

@@ -19,9 +19,7 @@ KELPS = ((-1.5, -0.8), (1.7, -1.5), (0.5, 0.9))  # where they grow, m
 NODES, LENGTH = 16, 3.6  # of a kelp; m
 PIECE = 3  # links that a fish tears off
 BUOYANCY = 1.6  # m/s^2, upwards
-SWELL = 0.22  # 1/s^2 and m above the bed: waves far above push to and fro what grows high
 FIRST = iota.Vec3(1.5, 3.0, 1.5)  # m: the fish that is nearest to it at the start has the story
-HERO = 1.6  # times as long as the others
 HIGHEST = 9.0  # m: what drifts away is gone there
 LURE = "force = -3*(r - r0 - 0.05*sin(7*t))/(r + 0.3) - 0.5*v; drag = 0.25"  # towards the food, and nibbling there
 
@@ -30,17 +28,13 @@ def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
     system.usual_material = iota.Material(friction=0.6, touches="obstacles")
-    world = iota.World(
-        system,
-        title="undersea: an orange fish leaves its shoal for a meal; the others are 0.3 m long",
-        dt=1 / 60,
-        ground=0.0,
-    )
+    world = iota.World(system, title="undersea: one of many fish of 0.3 m goes to feed", dt=1 / 60, ground=0.0)
     school = School(world, fish, leader_at, spread=0.8)
     weed = system.group("weed")
     system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))
     system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.5, size=1.5, octaves=2, evolution=0.4)
-    system.field("fx = a*m*y*sin(1.3*t + 0.5*x); fz = 0.5*a*m*y*sin(0.9*t + 0.7*z)", group=weed, a=SWELL)
+    # A swell: waves far above push to and fro what grows high.
+    system.field("fx = a*m*y*sin(1.3*t + 0.5*x); fz = 0.5*a*m*y*sin(0.9*t + 0.7*z)", group=weed, a=0.22)
     school.current.set(speed=0.3)
     soft = system.group("soft")
     system.pair_force("soft_repulsion", cutoff=0.09, group=soft, stiffness=6, length=0.09)
@@ -84,9 +78,9 @@ class Meal:
         self._load = world.system.group("load")
         world.system.field("wind", group=self._load, drag=0.16)
         self.hero = min(school.fish, key=lambda fish: abs(fish.position - FIRST))
-        world.draw(self.hero.body, fish_looks("#ff6a1a", "#ffd23c", HERO))
+        world.draw(self.hero.body, fish_looks("#ff6a1a", "#ffd23c", 1.6))
         self.hero.body.name = "orange fish"
-        self._label = world.label("", offset=(0, 0.5, 0))
+        self._label = world.label("", self.hero, offset=(0, 0.5, 0))
         self._start()
         world.on_reset(self._start)
         world.every(1.0)(self._clear)
@@ -109,14 +103,12 @@ class Meal:
             self.let_go()
 
     def leave(self) -> None:
-        """The fish forgets the shoal; a force draws it to the nearest food instead."""
+        """The fish forgets the shoal; a force draws it to the food instead."""
         if all(len(kelp) <= 2 * PIECE for kelp in self._left):
             self._world.reset()
             return
         self.fish = self.hero
-        longest = max(len(kelp) for kelp in self._left)
-        tips = [kelp[-1].particles[-1] for kelp in self._left if len(kelp) == longest]
-        tip = min(tips, key=lambda tip: abs(tip.position - self.hero.position))
+        tip = max(self._left, key=len)[-1].particles[-1]
         self._school.group.remove(self.fish)
         self._say("feeds on the kelp")
         self.lure = self._world.system.bond(self.fish, tip, LURE, r0=0.18)
@@ -153,9 +145,7 @@ class Meal:
 
     def _say(self, text: str) -> None:
         """Labels the fish with what it does; an empty text removes the label."""
-        self._label.visible = text != ""
-        if self.fish is not None:
-            self._label.text, self._label.at = text, self.fish
+        self._label.text, self._label.visible = text, text != ""
 
     def _tip(self) -> iota.Particle:
         assert self.lure is not None

@@ -21,8 +21,7 @@ WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
 def build() -> iota.World:
     """The world of the study."""
     world = iota.World(
-        iota.System(mode="robust", damping=0.05),
-        title="weather: a flag, a fountain and a bowl of beads in a wind; the flag is 0.8 m long",
+        iota.System(mode="robust", damping=0.05), title="weather: wind in a flag of 0.8 m, a fountain, beads"
     )
     flag(world, iota.Vec3(-1.15, 1.9, 0))
     fountain(world, iota.Vec3(0.3, 0.75, 0.1))
@@ -54,7 +53,7 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
     made = cloth.realize(system)
     cells = [(int(knots[r, c]), int(knots[r + 1, c])) for r in range(ROWS - 1) for c in range(COLUMNS - 1)]
     triangles = [t for k, below in cells for t in ((k, below, k + 1), (k + 1, below, below + 1))]
-    world.surface(list(made.points), triangles, threads=made.bonds, color="#c8842c")
+    world.surface(list(made.points), triangles, threads=made.bonds, material="rubber", color="#c8842c")
     world.draw_ties("spring", [])
     wind = system.field(
         "current", group=made.groups["cloth"], velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5

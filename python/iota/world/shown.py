@@ -327,7 +327,7 @@ class Shapes(Thing):
 class Surface(Thing):
     """Triangles, visible from both sides. points: an array (n, 3) in the frame of `at`, m, or particles, bodies and
     places, with which it bends. triangles: (k, 3) indices of points. threads: springs or ropes: a triangle is removed
-    with a thread along one of its edges. texture: an image, see `iota.looks`. coordinates: its place at each point,
+    with a thread along one of its edges, also when that breaks. texture: an image, see `iota.looks`. coordinates: its place at each point,
     (n, 2), from the lower left corner (0, 0) to (1, 1); None: it is laid once over the points, along their shortest axis,
     where they are when it is assigned."""
 
@@ -402,7 +402,7 @@ class Surface(Thing):
         return self.triangles[kept]
 
     def _torn(self) -> set[frozenset[int]]:
-        """Edges whose thread no longer exists."""
+        """Edges whose thread no longer exists, is broken or switched off."""
         if isinstance(self.points, np.ndarray) or not self.threads:
             return set()
         if self._edges is None:
@@ -411,7 +411,7 @@ class Surface(Thing):
                 (thread, {number[end.body] for end in thread.ends if end.body in number}) for thread in self.threads
             )
             self._edges = [(thread, frozenset(pair)) for thread, pair in ends if len(pair) == 2]
-        return {edge for thread, edge in self._edges if not thread.alive}
+        return {edge for thread, edge in self._edges if not (thread.alive and thread.active)}
 
     _edges: list[tuple[Any, frozenset[int]]] | None = None
 
