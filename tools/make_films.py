@@ -28,7 +28,7 @@ SCRIPTS = {
     "chain": """from iota import looks
 from iota.studies import chain
 
-world = chain.build(demonstrate=True)
+world = chain.build()
 links = world.system.bodies
 world.at(8.5)(lambda: world.draw(links, looks.chain_link(chain.LENGTH / len(links))))
 world.run()

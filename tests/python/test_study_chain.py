@@ -14,7 +14,7 @@ def run(world: iota.World, seconds: float) -> iota.types.RunSummary:
 
 
 def test_it_breaks_and_mends_itself_by_forces() -> None:
-    world = study.build(demonstrate=True)
+    world = study.build()
     system = world.system
     parts: dict[float, int] = {}
     bonds: dict[float, int] = {}
@@ -44,23 +44,32 @@ def test_it_is_alive_at_once_and_the_same_each_time() -> None:
     assert world.system.energy.kinetic > 0.5
 
 
-def test_nothing_happens_by_itself_and_the_user_can_ask_for_it() -> None:
+def test_it_tells_its_story_again_and_waits_for_those_who_touch_it(monkeypatch: pytest.MonkeyPatch) -> None:
     world = study.build()
-    run(world, 10)
-    assert world.system.articulate_count == 1 and not world.system.bonds
+    falls = []
+    world.on_step(lambda: falls.append(world.system.articulate_count == 2))
+    run(world, 30)
+    begins = [step / 120 for step in range(1, len(falls)) if falls[step] and not falls[step - 1]]
+    assert begins == pytest.approx([4, 17], abs=0.3), "5 s of story, 8 s of rest"
     world = study.build()
-    world.at(1.0)(world._state.actions["fall apart"].hook.function)
+    monkeypatch.setattr(type(world.users), "held", lambda *_: world.system.bodies[3] if world.system.time < 9 else None)
+    run(world, 16)
+    assert world.system.articulate_count == 1 and not world.system.bonds, "8 s after the hand"
     run(world, 2)
     assert world.system.articulate_count == 2
-    world = study.build()
-    world.at(1.0)(world._state.actions["fall apart"].hook.function)
-    run(world, 10)
-    assert world.system.articulate_count == 1
+
+
+def test_the_user_can_ask_for_it() -> None:
+    for seconds, parts in ((2, 2), (8, 1)):
+        world = study.build()
+        world.at(1.0)(world._state.actions["fall apart"].hook.function)
+        run(world, seconds)
+        assert world.system.articulate_count == parts
 
 
 @pytest.mark.parametrize("links", [1, 2, 3, 60])
 def test_it_runs_with_any_number_of_links(links: int) -> None:
-    world = study.build(links=links, demonstrate=True)
+    world = study.build(links=links)
     summary = run(world, 9)
     assert summary.steps == 1080 and summary.articulates == 1  # broken at 4 s, whole again at 8 s
     assert summary.worst_gap_m < 1e-9 and world.system.validate() == []

@@ -226,6 +226,13 @@ def test_fish_bank_into_their_turns_and_undulate_each_by_itself(swimming: tuple[
         assert np.corrcoef(pull, np.mean(rolls[since : since + 30], axis=0))[0, 1] > 0.6
 
 
+def test_they_scatter_on_request() -> None:
+    world = shoal.build(fish=50)
+    before = world.system.energy.kinetic
+    world._state.actions["scatter"].hook.function()
+    assert world.system.energy.kinetic > 3 * before
+
+
 def test_a_thousand_fish_are_drawn_of_few_triangles() -> None:
     looks = shoal.fish_looks()
     assert all(look.shape.mass_properties.volume > 0 for look in looks if isinstance(look.shape, iota.Mesh))

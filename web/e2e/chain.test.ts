@@ -65,7 +65,7 @@ describe("the page of a chain", () => {
   });
 
   it("switches styles live and keeps links interlocked, each turned against its neighbors", async () => {
-    const [first] = await tab.page.evaluate(() => iota.styles);
+    const first = await tab.page.evaluate(() => iota.style);
     const other = await tab.page.evaluate((style) => iota.styles.find((name) => name !== style), first);
     await tab.press("#style");
     await tab.until("it is in the other style", (wanted) => iota.style === wanted, other);

@@ -10,7 +10,7 @@ from iota.studies import chain
 
 
 def build(links: int = 24) -> iota.World:
-    chain.script_break = lambda world, links, demonstrate: None  # the tests break it themselves
+    chain.script_break = lambda world, links: None  # the tests break it themselves
     world = chain.build(links)
     world.system.damping = 2.0  # comes to rest in seconds: what the tests aim at is then where it was
     world.on_key("u")(world.undo)

@@ -26,7 +26,7 @@ def build() -> iota.World:
 
 def present(world: iota.World) -> iota.World:
     """The look of all three scripts of the appendix: balls with sticks between them, before a frame that shows how far
-    they fall."""
+    they fall; a while after they have landed, they begin anew."""
     system = world.system
     world.draw([body for body in system.bodies if len(body.particles) > 1], looks.capsule(0.5, "brass"))
     for particle, color in zip(system.particles, ((0.9, 0.3, 0.2), (0.15, 0.5, 0.55)) * 2, strict=False):
@@ -41,5 +41,6 @@ def present(world: iota.World) -> iota.World:
             world.add_strut((x, foot, -20), (x, foot + PIECE, -20), piece)
     world.add_strut((left - 1, 20, -20), (right + 1, 20, -20), looks.cylinder(0.8, "wood"))
     middle = (left + right) / 2
+    world.every(12.0)(lambda: None if world.users.held() else world.reset())
     world.camera = iota.Camera(position=(middle + 10, -5, 90), target=(middle, -13, 0))
     return world

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A chain on a nail: drag it, break it with b, rejoin it with c; with t it falls apart and mends itself."""
+"""A chain on a nail: drag it, break it with b, rejoin it with c; while nobody does, it falls apart and mends itself, as with t."""
 
 from __future__ import annotations
 
@@ -7,23 +7,24 @@ import math
 
 import iota
 from iota import looks
+from iota.studies._story import Story
 
 NAIL = (0.0, 2.1, 0.0)
 LENGTH = 1.8
 
 
-def build(links: int = 24, demonstrate: bool = False) -> iota.World:
-    """The world of the study. demonstrate: whether the chain falls apart and mends itself at 4 s, without being asked.
+def build(links: int = 24) -> iota.World:
+    """The world of the study.
 
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
     chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.2, -0.9, 0.35)).realize(system).bodies
     system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # its parts are joined again
-    world = iota.World(system, title=f"chain: {LENGTH:g} m to be pulled, broken and joined", style="rope")
+    world = iota.World(system, title=f"chain: {LENGTH:g} m to be pulled, broken and joined", style="chain")
     present(world, chain)
 
     world.offer("break", "join")
-    script_break(world, chain, demonstrate)
+    script_break(world, chain)
     return world
 
 
@@ -40,11 +41,12 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.05, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
     world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
+    world.stage("room")
     world.camera = iota.Camera(position=(0.5, 1.35, 3.8), target=(0, 1.06, 0))
 
 
-def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -> None:
-    """Thesis 5.1.2, on request or once at 4 s: the lower part falls off, is kept near by a force, pulled close by a second
+def script_break(world: iota.World, chain: list[iota.Body]) -> None:
+    """Thesis 5.1.2, on request or while nobody touches it: the lower part falls off, is kept near by a force, pulled close by a second
     one, and rejoined."""
     cut = len(chain) * 2 // 3
     if cut == 0:
@@ -76,11 +78,14 @@ def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -
 
     system = world.system
     world.on_reset(bonds.clear)
-    world.action("fall apart", key="t", help="the lower part falls off and is pulled back by forces", on="world")(
-        fall_off
-    )
-    if demonstrate:
-        world.at(4.0)(fall_off)
+    story = Story(world, wait=8.0, first=4.0)
+    story.at(0.0)(fall_off)
+    story.at(5.0)(lambda: None)
+
+    @world.action("fall apart", key="t", help="the lower part falls off and is pulled back by forces", on="world")
+    def ask() -> None:
+        story.touch()
+        fall_off()
 
 
 if __name__ == "__main__":

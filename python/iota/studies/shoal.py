@@ -22,7 +22,7 @@ BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
 FLEE, FEAR = 3.0, 2.2  # N/m; m from the hunter, where they begin to flee
 HUNT, PAUSE, FIRST = 7.0, 14.0, 4.0  # s: how long it hunts and rests, and when it comes for the first time
-HOME = np.array([-11.0, 3.2, -11.0])  # where it rests, in the haze, m
+HOME = np.array([-3.0, 3.2, -15.0])  # where it rests, in the haze, m
 ROOM = np.array([0.12, 0.14, 0.45])  # across, up and along: between two fish at the start, m
 # The outline of a fish: places along it, half its height and half its width there, m.
 BODY = ((0.09, 0.034, 0.017), (0.02, 0.05, 0.025), (-0.06, 0.03, 0.014))
@@ -43,7 +43,7 @@ def build(fish: int = FISH) -> iota.World:
 
     @world.action("scatter", key="x", button="b", help="scatters the shoal", on="world")
     def scatter() -> None:
-        system.velocities = system.velocities + np.random.default_rng(0).normal(size=(fish + 1, 3)) * 3
+        school.bodies.velocities += np.random.default_rng(0).normal(size=(fish, 3)) * 3
 
     return world
 
@@ -173,7 +173,7 @@ def apart(random: np.random.Generator, fish: int, spread: float) -> Any:
     """Places of fish that swim along z, dense in the middle, none in another one: (fish, 3)."""
     places = np.empty((0, 3))
     while len(places) < fish:
-        place = random.normal(size=3) * [spread, 0.5 * spread, spread]
+        place = random.normal(size=3).clip(-1.8, 1.8) * [spread, 0.5 * spread, spread]
         if (np.linalg.norm((places - place) / ROOM, axis=1) > 1).all():
             places = np.vstack([places, place])
         else:
@@ -203,4 +203,4 @@ def present(world: iota.World) -> None:
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.drawings.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
-    world.camera = iota.Camera(position=(0, 2.3, 8.6), target=(0, 2.8, 0))
+    world.camera = iota.Camera(position=(0, 2.4, 9.4), target=(0, 2.9, 0))
