@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each script of the first hour shows what it says, by poses."""
+"""Each script of the first hour shows what it says, by poses; web/e2e/first_hour.test.ts looks at its pictures."""
 
 from __future__ import annotations
 
@@ -163,6 +163,51 @@ def test_a_box_that_is_pushed_by_hand_pushes_the_other_one(run_world: Any) -> No
         grip.move((-0.3 + 0.008 * step, 0.9, 0))
         push.go_on(1 / 30)
     assert right.position.x > 0.25 and right.position.x - left.position.x > 0.199, "none goes into the other"
+
+
+def grab(world: iota.World, page: PageClient, body: iota.Body) -> None:
+    slot, at = world.call(lambda: (body.slot, body.center_of_mass))
+    page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=tuple(at))
+
+
+def test_the_door_opens_by_its_handle_only(run_world: Any) -> None:
+    script = Script("door", 0.3)
+    leaf, handle, _ = script.door.bodies
+    assert script.sign.text == "shut" and script.door.is_latched
+    at = handle.position
+    with PageClient(run_world(script.world)) as page:
+        grab(script.world, page, handle)
+        page.wait_for(lambda: not script.world.call(lambda: script.door.is_latched))
+        page.send("grab_move", hold=1, target=(at.x, at.y, at.z + 0.6))
+        page.wait_for(lambda: script.world.call(lambda: script.door.angle) > 0.3)
+        assert script.world.call(lambda: script.sign.text) == "open"
+
+
+def test_the_button_switches_the_lamp_each_time_it_is_pressed(run_world: Any) -> None:
+    script = Script("button", 0.3)
+    dark = script.lamp.color
+    with PageClient(run_world(script.world)) as page:
+        for times in (1, 2):
+            grab(script.world, page, script.button.bodies[0])
+            page.wait_for(lambda n=times: script.world.call(lambda: script.presses.text) == f"{n} times")
+            assert script.world.call(lambda: script.light.intensity) == times % 2
+            assert (script.world.call(lambda: script.lamp.color) == dark) == (times == 2)
+            page.send("grab_end", hold=1)
+            page.wait_for(lambda: not script.world.call(lambda: script.button.pressed))
+
+
+def test_the_plug_is_turned_and_drawn_into_its_socket(run_world: Any) -> None:
+    script = Script("plug", 1.0)
+    plug = script.lead.plug
+    assert plug.position.y > 0.75 and abs(plug.velocity) < 0.05 and script.power.text == "off", "it lies on the table"
+    with PageClient(run_world(script.world)) as page:
+        grab(script.world, page, plug)
+        page.send("grab_move", hold=1, target=(0.12, 1.0, -0.1))
+        page.wait_for(lambda: script.world.call(lambda: script.lead.is_near or script.lead.is_plugged))
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: script.world.call(lambda: script.lead.is_plugged))
+        page.wait_for(lambda: script.world.call(lambda: script.power.text) == "on")
+        page.wait_for(lambda: script.world.call(lambda: script.lead.apart) < 1e-3)
 
 
 @pytest.mark.parametrize("path", sorted(SCRIPTS.glob("*.py")), ids=lambda path: path.stem)

@@ -11,6 +11,7 @@ from iota.studies._story import Story
 
 NAIL = (0.0, 2.1, 0.0)
 LENGTH = 1.8
+APART = 0.05  # m: the ends do not pass through each other before they are joined
 
 
 def build(links: int = 24) -> iota.World:
@@ -56,13 +57,13 @@ def script_break(world: iota.World, chain: list[iota.Body]) -> None:
     bonds: list[iota.Bond] = []
 
     def pull(bond: iota.types.BondState) -> iota.Vec3:
-        return weight * min(10 * bond.distance, 2.5) * bond.direction
+        return weight * min(10 * (bond.distance - APART), 2.5) * bond.direction
 
     def fall_off() -> None:
         if system.articulate_count > 1 or bonds:
             return  # somebody is at it, or it is under way
         hook.separate(eye)
-        bonds.append(system.bond(hook, eye, "spring", stiffness=weight / 0.25, damping=weight / 3, length=0))
+        bonds.append(system.bond(hook, eye, "spring", stiffness=weight / 0.2, damping=weight / 3, length=APART))
         world.after(2.5)(come_close)
         world.after(4.0)(rejoin)
 

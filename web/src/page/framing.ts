@@ -71,6 +71,8 @@ export class Framing implements FramePart, PageListener {
   private chosen_: ReadonlySet<number> = new Set();
   private fixed_: readonly Item[] = [];
   private core_ = { center: [0, 0, 0] as readonly [number, number, number], radius: 1 };
+  /** Size of the whole scene, with what stands. */
+  private whole_ = 0;
   private ways_: Ways | null = null;
   private asked_ = false;
   private early_ = 0;
@@ -194,6 +196,7 @@ export class Framing implements FramePart, PageListener {
     this.small_ = 0;
     this.ways_?.clear();
     this.base_.clear();
+    this.whole_ = bounds?.radius ?? 0;
     this.addScene_(this.base_);
     this.framed_ = bounds;
     return bounds;
@@ -352,7 +355,7 @@ export class Framing implements FramePart, PageListener {
     const [right, up] = viewAxes(yaw, pitch);
     for (const moving of [false, true]) {
       this.world_.entities.label.forEachPlate(moving, ({ x, y, z }, width, height) => {
-        if (apart([x, y, z], this.core_.center) > (moving ? nearSize : labelSize) * Math.max(this.core_.radius, 1e-12)) return;
+        if (apart([x, y, z], this.core_.center) > (moving ? nearSize * this.core_.radius : this.labelReach_())) return;
         const [a, b] = [(width * distance) / 2, (height * distance) / 2];
         for (const [across, over] of [[a, b], [a, -b], [-a, b], [-a, -b]]) {
           points.add(x + across * right[0] + over * up[0], y + over * up[1], z + across * right[2] + over * up[2]);
@@ -449,6 +452,11 @@ export class Framing implements FramePart, PageListener {
     this.addSetting_(points);
   }
 
+  /** How far labels are that belong to the scene: a button may be small on its pedestal. */
+  private labelReach_(): number {
+    return Math.max(labelSize * this.core_.radius, nearSize * this.whole_, 1e-12);
+  }
+
   /** Adds what is part of the scene and does not move. */
   private addSetting_(points: Points): void {
     for (const item of this.fixed_) this.addItem_(item, points);
@@ -457,7 +465,7 @@ export class Framing implements FramePart, PageListener {
     this.addNear_(drawn, settingSize * Math.max(this.core_.radius, 1e-12), points);
     this.addHanging_(points);
     this.world_.entities.label.forEachPlate(false, ({ x, y, z }) => {
-      if (apart([x, y, z], this.core_.center) < labelSize * Math.max(this.core_.radius, 1e-12)) points.add(x, y, z);
+      if (apart([x, y, z], this.core_.center) < this.labelReach_()) points.add(x, y, z);
     });
   }
 

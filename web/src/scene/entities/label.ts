@@ -83,11 +83,11 @@ export class LabelView implements EntityView<LabelEntity> {
     label.texture?.dispose();
   }
 
-  /** The places of those with a constant size, and that size at a distance of 1. `moving`: of those on bodies, or of all others. */
+  /** The places of labels, and their sizes at a distance of 1 (0 for those with a height of their own). `moving`: of those on bodies, or of all others. */
   forEachPlate(moving: boolean, visit: (place: Vector3, width: number, height: number) => void): void {
-    const usual = this.usual_ / plateHeight;
     for (const { entity, canvas } of this.labels_.values()) {
-      if (entity.height > 0 || canvas.width === 0 || moves(entity.a) !== moving) continue;
+      if (canvas.width === 0 || moves(entity.a) !== moving) continue;
+      const usual = entity.height > 0 ? 0 : this.usual_ / plateHeight;
       if (this.placeOf_(entity, this.place_)) visit(this.place_, usual * canvas.width, usual * canvas.height);
     }
   }
