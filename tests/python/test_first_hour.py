@@ -172,7 +172,7 @@ def grab(world: iota.World, page: PageClient, body: iota.Body) -> None:
 
 def test_the_door_opens_by_its_handle_only(run_world: Any) -> None:
     script = Script("door", 0.3)
-    leaf, handle, _ = script.door.bodies
+    _, handle, _ = script.door.bodies
     assert script.sign.text == "shut" and script.door.is_latched
     at = handle.position
     with PageClient(run_world(script.world)) as page:
