@@ -59,7 +59,7 @@ MOMENT = {
     "playground": 0.6,
     "pour": 2.25,
     "rigging": 9.5,
-    "undersea": 6.4,
+    "undersea": 9.0,
     "wrecking-ball": 2.3,
 }
 USUAL_MOMENT = 2.0

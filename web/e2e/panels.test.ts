@@ -8,7 +8,7 @@ import { addressOf, compare, expectKept, isAlike, type Grid } from "./kept.ts";
 import { freePort, probe, WorldServer } from "./server.ts";
 
 /** About one button to a cell. */
-const barGrid: Grid = [8, 1];
+const barGrid: Grid = [6, 1];
 
 let chain: WorldServer;
 let things: WorldServer;

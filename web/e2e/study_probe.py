@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A study, named by IOTA_STUDY, for browser tests; prints what Python knows of it as JSON lines. With IOTA_PAUSED it stays at its
-start, for pictures of it."""
+start, or as it is after IOTA_AFTER seconds, for pictures of it."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ def build() -> iota.World:
     make = studies.module(NAME).build
     world: iota.World = make(Path(mkdtemp())) if NAME == "playground" else make()
     world.clock.paused = "IOTA_PAUSED" in os.environ
+    if "IOTA_AFTER" in os.environ:
+        world.advance(round(float(os.environ["IOTA_AFTER"]) / world.dt))
     watch(world)
     return world
 
