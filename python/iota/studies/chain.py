@@ -42,7 +42,8 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.05, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
     world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
-    world.stage("room")
+    world.wall((0, 0, -1.3), (9.0, 3.4), color="#b4c2ba")
+    world.stage(ground="#a98d70")
     world.camera = iota.Camera(position=(0.5, 1.35, 3.8), target=(0, 1.06, 0))
 
 
