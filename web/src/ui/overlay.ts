@@ -146,7 +146,7 @@ export class Overlay implements PageListener, FramePart {
       // "NAME: LINE" says what the world is, too.
       const [name, line = ""] = title.split(/: (.*)/);
       document.title = name === "" ? "Iota" : `${name} · Iota`;
-      byId("about", HTMLElement).replaceChildren(make("b", "", name), ` ${line}`);
+      byId("about", HTMLElement).replaceChildren(...(line === "" ? [] : [make("b", "", name), ` ${line}`]));
       this.reserve_();
     }
     if (what === "selection") {
