@@ -61,10 +61,11 @@ std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port,
                                     const std::string& token, const std::string& guest_token,
                                     const std::string& viewer_token, const std::vector<std::string>& host_tokens,
                                     double hello_time, const std::string& certificate, const std::string& key,
-                                    int listener, const std::string& public_origin) {
+                                    int listener, const std::string& public_origin, const std::string& gateway) {
   ServerOptions options;
   options.listener = listener;
   options.public_origin = public_origin;
+  options.gateway = gateway;
   options.certificate = {certificate, key};
   options.host = host;
   options.port = port;
@@ -104,9 +105,9 @@ void bind_request(nb::module_& module) {
           "role",
           [](const net::Request& self) {
             constexpr std::array names{"guest", "viewer", "host"};  // in the order of protocol::Role
-            return names.at(static_cast<std::size_t>(self.role));
+            return self.role ? names.at(static_cast<std::size_t>(*self.role)) : "";
           },
-          "Of its token: host, guest or viewer.");
+          "Of its token: host, guest or viewer; empty only for an open path.");
 }
 
 void bind_server(nb::module_& module) {
@@ -132,13 +133,13 @@ void bind_server(nb::module_& module) {
           [](ServerObject* self, const std::string& host, std::uint16_t port, const std::string& page_folder,
              const std::string& token, const std::string& guest_token, const std::string& viewer_token,
              const std::vector<std::string>& host_tokens, double hello_time, const std::string& certificate,
-             const std::string& key, int listener, const std::string& public_origin) {
+             const std::string& key, int listener, const std::string& public_origin, const std::string& gateway) {
             new (self) ServerObject{make_server(host, port, page_folder, token, guest_token, viewer_token, host_tokens,
-                                                hello_time, certificate, key, listener, public_origin)};
+                                                hello_time, certificate, key, listener, public_origin, gateway)};
           },
           nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a, "guest_token"_a = "",
           "viewer_token"_a = "", "host_tokens"_a = std::vector<std::string>(), "hello_time"_a = 10.0,
-          "certificate"_a = "", "key"_a = "", "listener"_a = -1, "public_origin"_a = "")
+          "certificate"_a = "", "key"_a = "", "listener"_a = -1, "public_origin"_a = "", "gateway"_a = "")
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
           "world"_a,
@@ -178,9 +179,12 @@ void bind_server(nb::module_& module) {
           "world"_a, "Clients that are passed on to such a world, or wait for it.")
       .def(
           "serve_requests",
-          [](ServerObject& self, std::vector<std::string> paths) { self.use().serve_requests(std::move(paths)); },
-          "paths"_a,
-          "Requests of HTTP for these paths wait for `take_requests` from now on, up to 5 s, if they have a token.")
+          [](ServerObject& self, std::vector<std::string> paths, bool is_open) {
+            self.use().serve_requests(std::move(paths), is_open);
+          },
+          "paths"_a, "is_open"_a = false,
+          "Requests of HTTP for these paths wait for `take_requests` from now on, up to 5 s, if they have a token.\n"
+          "is_open: also without one, and from pages of any origin.")
       .def(
           "take_requests", [](ServerObject& self) { return self.use().take_requests(); },
           "The requests since the last call. Each waits for its `answer`.")

@@ -539,7 +539,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         command_line(),
     ]
     if goal == "test":
-        steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film", "sweep"), beside=True))
+        steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film", "sweep", "ray"), beside=True))
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests")]
         steps += [python_environment("wheel"), wheel()]
     elif goal == "verify":

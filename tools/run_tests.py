@@ -46,7 +46,11 @@ CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
 SHOWN_SLOWEST = 10
 #: Patterns of tests that may be skipped here; all others run, or fail. Pictures to look at are taken by make test-all.
-EXPECTED_SKIPS: tuple[str, ...] = ("pictures.test.ts: pictures *", "xr.test.ts: pictures for people to look at *")
+EXPECTED_SKIPS: tuple[str, ...] = (
+    "pictures.test.ts: pictures *",
+    "xr.test.ts: pictures for people to look at *",
+    "tests.python.test_machines.*",  # there is no wheel of Ray for this Python
+)
 
 
 @dataclass
@@ -186,6 +190,11 @@ def drawn_by() -> list[Path]:
     return [*built(), *build.files_under(ROOT / "python" / "iota", skip=["page"]), *web_sources()]
 
 
+def placed_by() -> list[Path]:
+    """What rooms and sweeps on several machines depend on."""
+    return [*drawn_by(), ROOT / MACHINES, ROOT / "tests" / "python" / "test_rooms.py"]
+
+
 def installed_by() -> list[Path]:
     """What the wheel is made of and tested with; it is made again when one of its own inputs has changed."""
     return [*build.files_under(ROOT / "build" / "wheel"), ROOT / "tests" / "packaging" / "test_wheel.py"]
@@ -197,6 +206,7 @@ BROWSER = ["--config", "e2e/vitest.config.ts"]
 PICTURES = [f"e2e/{name}.test.ts" for name in ("studies", "first_pictures", "looks")]
 PACKAGES = ["e2e/packages.test.ts"]
 WHEEL = "tests/packaging/test_wheel.py"
+MACHINES = "tests/python/test_machines.py"
 DRAWING_CORES = 1 if CORES < 4 else 2
 OTHER_CORES = min(4, max(1, CORES - DRAWING_CORES))
 
@@ -209,9 +219,10 @@ SUITES = [
     # A few tests are long, so a worker that is done takes over tests of another. At least two workers: many tests wait
     # for a process or a browser, and so do those of the suite beside this one.
     Suite(
-        "python", pytest("tests/python", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
+        "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
         about_s=300, cores=OTHER_CORES,
     ),
+    Suite("machines", pytest(MACHINES), 600, read_junit, about_s=50, draws=True, inputs=placed_by),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
     Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),
     Suite(

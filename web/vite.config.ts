@@ -76,7 +76,7 @@ export default defineConfig({
     chunkSizeWarningLimit: 1200,
     // The minifier drops notices: the license texts of all bundled packages are in a separate file.
     rolldownOptions: {
-      input: ["index.html", "gallery.html", "rooms.html"],
+      input: ["index.html", "gallery.html", "rooms.html", "enter.html"],
       // Parts that are loaded later share three.js and picking with the page: one file, as each costs a header of its own.
       output: { codeSplitting: { groups: [{ name: "shared", test: /node_modules\/three\/|src\/interact\/picking/ }] } },
     },

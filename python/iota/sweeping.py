@@ -27,11 +27,13 @@ from iota import _core
 from iota._core import StepReport, System
 from iota.arguments import SHORT
 from iota.extras import how_to_get
+from iota.machines import ray_at
 from iota.saving import replacing
 
 __all__ = ["step_all", "sweep"]
 
 ERROR = "error"  # the last column: why a run has no results
+QUEUED = 4  # tasks for each core of a Ray cluster, so that none waits for this process
 TRIES = 2  # of a run whose process dies
 SCRIPT = "__iota__"  # run name of a script of which only functions are called
 GUARD = "put the call under `if __name__ == '__main__':`"
@@ -64,6 +66,7 @@ def sweep(
     file: str | Path | None = None,
     processes: int | None = None,
     progress: Progress | None = None,
+    ray: str | None = None,
 ) -> list[Row]:
     """Calls a function for each combination of values, in processes of their own, and returns the results as rows.
 
@@ -78,12 +81,14 @@ def sweep(
     argument, the last one changes fastest; or a list of arguments by name. file: a CSV file, to which each result is
     added at once; the next call with it goes on where this one was stopped, and tries again what failed. processes: None
     for one a core, 0 for none but this one. progress: called as progress(done, all, failed). A file that ends in .parquet is
-    written at the end, with pyarrow, and the CSV file beside it as above.
+    written at the end, with pyarrow, and the CSV file beside it as above. ray: the address of a Ray cluster on whose machines the
+    function is called instead, "auto": that of this machine; its module or script is at the same path on all.
 
     A row has the arguments, the results and `error`: empty, or why there are none; a run that raises, or whose process
     dies twice, is such a row. Rows are in the order of the grid, and the same for any number of processes if the
     function gives the same for the same arguments. Raises ValueError for a file of another sweep, TypeError for a
-    function that another process cannot find, OSError for a file that cannot be written.
+    function that another process cannot find, OSError for a file that cannot be written, ConnectionError without a Ray
+    cluster at `ray`.
     """
     runs = combinations(grid)
     path = None if file is None else Path(file)
@@ -96,7 +101,14 @@ def sweep(
         raise ValueError(f"processes must be 0 or more, not {processes}")
     tell = progress or (lambda done, all, failed: None)
     tell(table.done, len(runs), table.failed)
-    results = call_here(function, table.waiting()) if processes == 0 else call_there(function, table.waiting(), workers)
+    if ray is not None:
+        if processes is not None:
+            raise ValueError("a sweep is on processes of this machine or on Ray: give processes or ray, not both")
+        results = call_by_ray(function, table.waiting(), ray)
+    elif processes == 0:
+        results = call_here(function, table.waiting())
+    else:
+        results = call_there(function, table.waiting(), workers)
     for number, result, error in results:
         table.add(number, result, error)
         tell(table.done, len(runs), table.failed)
@@ -287,8 +299,7 @@ def call_here(function: Callable[..., Any], runs: Iterable[tuple[int, Inputs]]) 
 def call_there(function: Callable[..., Any], runs: Iterable[tuple[int, Inputs]], count: int) -> Iterator[Called]:
     """In processes, each of which a thread here asks. One that dies, as for want of memory, is replaced, and its run tried
     once more."""
-    if is_worker:
-        raise RuntimeError(f"iota.sweep is called while a process of a sweep reads the script: {GUARD}")
+    check_not_worker()
     place = place_of(function)
     waiting, lock = iter(runs), threading.Lock()
     answers: queue.SimpleQueue[Called | None] = queue.SimpleQueue()
@@ -344,6 +355,58 @@ def call_there(function: Callable[..., Any], runs: Iterable[tuple[int, Inputs]],
                 worker.kill()
         for thread in threads:
             thread.join()
+
+
+def call_by_ray(function: Callable[..., Any], runs: Iterable[tuple[int, Inputs]], address: str) -> Iterator[Called]:
+    """As tasks on the machines of a cluster. Ray tries a task whose process or machine dies once more."""
+    check_not_worker()
+    place = place_of(function)
+    ray = ray_at(address)
+    task = ray.remote(call_on_machine).options(max_retries=TRIES - 1, num_cpus=1)
+    words = ray.put((list(sys.path), str(Path.cwd()), place))
+    waiting = iter(runs)
+    asked: dict[Any, int] = {}
+    try:
+        while True:
+            most = QUEUED * max(1, int(ray.cluster_resources().get("CPU", 1)))
+            for number, inputs in itertools.islice(waiting, most - len(asked)):
+                asked[task.remote(words, number, inputs)] = number
+            if not asked:
+                return
+            ready, _ = ray.wait(list(asked), num_returns=1)
+            for answer in ray.wait(list(asked), num_returns=len(asked), timeout=0)[0] or ready:
+                number = asked.pop(answer)
+                try:
+                    yield ray.get(answer)
+                except ray.exceptions.RayError as error:
+                    yield number, None, f"its process died {TRIES} times, at last by {type(error).__name__}"
+    finally:
+        for answer in asked:
+            with suppress(Exception):
+                ray.cancel(answer, force=True)
+
+
+places: dict[tuple[str, str], Callable[..., Any]] = {}  # functions that a process of Ray has found
+
+
+def call_on_machine(words: tuple[list[str], str, tuple[str, str]], number: int, inputs: Inputs) -> Called:
+    """In a process of Ray."""
+    global is_worker
+    is_worker = True
+    paths, folder, place = words
+    try:
+        if place not in places:
+            sys.path[:0] = [path for path in paths if path not in sys.path]
+            os.chdir(folder)
+            places[place] = find(place)
+        return call(places[place], number, inputs)
+    except Exception as error:
+        return number, None, f"{type(error).__name__}: {error}"
+
+
+def check_not_worker() -> None:
+    if is_worker:
+        raise RuntimeError(f"iota.sweep is called while a process of a sweep reads the script: {GUARD}")
 
 
 class Worker:

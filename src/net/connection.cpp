@@ -49,14 +49,17 @@ constexpr std::size_t max_strangers = 128;  // of connections that are not welco
 
 /// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It uses
 /// only the WebSocket of this server, which 'self' does not include in every browser. Pages of others may frame it
-/// where they know the token (a notebook): who does not could only lay it invisibly under a click.
-std::string content_security_policy(Scheme scheme, std::string_view host, bool may_be_framed) {
+/// where they know the token (a notebook): who does not could only lay it invisibly under a click. The page asks the
+/// gateway where a world is that has moved.
+std::string content_security_policy(Scheme scheme, std::string_view host, bool may_be_framed,
+                                    const std::string& gateway) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::strchr(".-:[]", c);
   };
   std::string socket;  // empty for a request with a refused Host
   if (!host.empty() && std::ranges::all_of(host, is_plain))
     socket = std::string(scheme == Scheme::https ? " wss://" : " ws://").append(host);
+  if (!gateway.empty()) socket += " " + gateway;
   return "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self'" +
          socket +
          " blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
@@ -393,15 +396,17 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const bool is_post = request.method() == http::verb::post;
     if (!is_post && request.method() != http::verb::get && !is_head_)
       return send_text(http::status::method_not_allowed, "only GET, HEAD and POST");
-    if (const auto reason = refuse_by_origin(request)) return refuse(*reason);
-    if (!role_) return refuse(wrong_token);
+    is_open_ = context_.requests.is_open(target.path);
+    if (!is_open_) {
+      if (const auto reason = refuse_by_origin(request)) return refuse(*reason);
+      if (!role_) return refuse(wrong_token);
+    }
     is_served_ = true;
     stream_.expires_never();
-    const std::uint64_t number = context_.requests.add({0, target.path, target.query, *role_, is_post},
-                                                       [weak = weak_from_this()](Answer answer) {
-                                                         if (const auto self = weak.lock())
-                                                           self->pass_on(std::move(answer));
-                                                       });
+    const std::uint64_t number =
+        context_.requests.add({0, target.path, target.query, role_, is_post}, [weak = weak_from_this()](Answer answer) {
+          if (const auto self = weak.lock()) self->pass_on(std::move(answer));
+        });
     timer_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(context_.options.answer_time)));
     timer_.async_wait([self = shared_from_this(), number](error_code error) {  // keeps the session
@@ -415,6 +420,10 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     Response response = make_response(static_cast<http::status>(answer.status));
     response.set(http::field::content_type, answer.type);
     response.set(http::field::cache_control, "no-store");
+    if (is_open_) {
+      response.set(http::field::access_control_allow_origin, "*");
+      response.set("Cross-Origin-Resource-Policy", "cross-origin");
+    }
     response.body() = std::move(answer.body);
     send(std::move(response));
   }
@@ -498,8 +507,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const Request& request = parser_->get();
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
-    response.set("Content-Security-Policy",
-                 content_security_policy(page_scheme(), to_view(request[http::field::host]), role_.has_value()));
+    response.set("Content-Security-Policy", content_security_policy(page_scheme(), to_view(request[http::field::host]),
+                                                                    role_.has_value(), context_.options.gateway));
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");  // the page's URL contains the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
@@ -544,6 +553,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   std::optional<Response> response_;
   bool is_head_ = false;
   bool must_close_ = false;
+  bool is_open_ = false;                // the request is for an open path
   std::optional<protocol::Role> role_;  // of the request that is answered
   bool must_redirect_ = false;
   bool is_served_ = false;

@@ -2,18 +2,24 @@
 #include "net/requests.h"
 
 #include <algorithm>
-#include <iterator>
+#include <utility>
 
 namespace iota::net {
 
-void Requests::serve(std::vector<std::string> paths) {
+void Requests::serve(std::vector<std::string> paths, bool is_open) {
   const std::lock_guard lock(mutex_);
-  paths_.insert(std::make_move_iterator(paths.begin()), std::make_move_iterator(paths.end()));
+  for (std::string& path : paths) is_open_[std::move(path)] = is_open;
 }
 
 bool Requests::serves(const std::string& path) const {
   const std::lock_guard lock(mutex_);
-  return paths_.contains(path);
+  return is_open_.contains(path);
+}
+
+bool Requests::is_open(const std::string& path) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = is_open_.find(path);
+  return found != is_open_.end() && found->second;
 }
 
 std::uint64_t Requests::add(Request request, Take take) {

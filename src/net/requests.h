@@ -8,7 +8,6 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,8 +19,10 @@ class Requests {
  public:
   using Take = std::function<void(Answer)>;
 
-  void serve(std::vector<std::string> paths);
+  /// is_open: as of `Server::serve_requests`.
+  void serve(std::vector<std::string> paths, bool is_open = false);
   bool serves(const std::string& path) const;
+  bool is_open(const std::string& path) const;
 
   /// `take` is called with the answer on the server's thread, at most once. Returns the number of the request.
   std::uint64_t add(Request request, Take take);
@@ -35,7 +36,7 @@ class Requests {
 
  private:
   mutable std::mutex mutex_;
-  std::set<std::string> paths_;
+  std::map<std::string, bool> is_open_;  // by path
   std::vector<Request> untaken_;
   std::map<std::uint64_t, Take> waiting_;
   std::uint64_t last_ = 0;

@@ -48,7 +48,8 @@ std::string place_of(const ServerOptions& options) { return options.host + " por
 
 ServerOptions checked(ServerOptions options) {
   if (options.token.empty()) throw std::invalid_argument("the server needs a token");
-  if (!options.public_origin.empty()) options.public_origin = checked_origin(options.public_origin);
+  for (std::string* const origin : {&options.public_origin, &options.gateway})
+    if (!origin->empty()) *origin = checked_origin(*origin);
   return options;
 }
 
@@ -326,7 +327,9 @@ void Server::relay(const std::string& world, std::uint16_t port, const std::arra
 void Server::end_relay(const std::string& world) { implementation_->relays.remove(world); }
 int Server::visitors(const std::string& world) const { return implementation_->relays.visitors(world); }
 
-void Server::serve_requests(std::vector<std::string> paths) { implementation_->requests.serve(std::move(paths)); }
+void Server::serve_requests(std::vector<std::string> paths, bool is_open) {
+  implementation_->requests.serve(std::move(paths), is_open);
+}
 std::vector<Request> Server::take_requests() { return implementation_->requests.take(); }
 void Server::answer(std::uint64_t number, Answer answer) {
   asio::post(implementation_->io, [&requests = implementation_->requests, number, answer = std::move(answer)] {

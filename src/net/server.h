@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,15 +44,17 @@ struct ServerOptions {
   int listener = -1;
   /// The address under which a proxy serves this server's page, such as https://worlds.example.org; empty: none.
   std::string public_origin = {};
+  /// The origin of a server that knows where this one's world is when it has moved: pages may ask it. Empty: none.
+  std::string gateway = {};
   double answer_time = 5;  ///< s, in which the program has to answer a request
 };
 
-/// A request for one of the paths that the program answers. Its token was right.
+/// A request for one of the paths that the program answers.
 struct Request {
   std::uint64_t number = 0;
-  std::string path, query;  ///< the path without escapes, the query with them
-  protocol::Role role = protocol::Role::viewer;
-  bool is_post = false;  ///< asks for a change
+  std::string path, query;             ///< the path without escapes, the query with them
+  std::optional<protocol::Role> role;  ///< of its token; none only for an open path
+  bool is_post = false;                ///< asks for a change
 };
 
 /// type: of the body, as a Content-Type. A body is empty or complete.
@@ -198,8 +201,8 @@ class Server {
   int visitors(const std::string& world) const;
 
   /// Requests for these paths wait for the program, if their token is right. A POST comes from the server's own page and
-  /// has no body.
-  void serve_requests(std::vector<std::string> paths);
+  /// has no body. is_open: with any token and from pages of any origin; the program decides.
+  void serve_requests(std::vector<std::string> paths, bool is_open = false);
   /// The requests since the last call. Each has to be answered within `ServerOptions::answer_time`.
   std::vector<Request> take_requests();
   void answer(std::uint64_t number, Answer answer);

@@ -6,9 +6,9 @@ const room: Room = {
   name: "one", source: "chain", title: "", time: 0, state: "running", trouble: "", people: [], port: 8081,
   tokens: { host: "h", guest: "g", viewer: "v" }, picture: "",
 };
-const local = { base: "", is_proxied: false };
-const lan = { base: "https://192.168.0.2", is_proxied: false };
-const proxied = { base: "https://worlds.example.org", is_proxied: true };
+const local = { base: "", is_proxied: false, is_on_machines: false };
+const lan = { base: "https://192.168.0.2", is_proxied: false, is_on_machines: false };
+const proxied = { base: "https://worlds.example.org", is_proxied: true, is_on_machines: false };
 
 describe("rooms", () => {
   it("are at a port of the machine that served the page", () => {
@@ -24,6 +24,13 @@ describe("rooms", () => {
   it("behind a proxy are entered by it only if the page came that way", () => {
     expect(linkTo(room, "host", proxied, new URL("https://worlds.example.org/"), false)).toBe("https://worlds.example.org/8081/?token=h");
     expect(linkTo(room, "host", proxied, new URL("http://127.0.0.1:8080/"), false)).toBe("http://127.0.0.1:8081/?token=h");
+  });
+
+  it("on several machines have links that do not change when they move", () => {
+    const moving = { ...local, is_on_machines: true };
+    expect(linkTo(room, "guest", moving, new URL("http://10.0.0.1:8080/"), true)).toBe("http://10.0.0.1:8080/enter.html?token=g&room=one");
+    const behind = { ...proxied, is_on_machines: true };
+    expect(linkTo(room, "guest", behind, new URL("http://10.0.0.1:8080/"), true)).toBe("https://worlds.example.org/enter.html?token=g&room=one");
   });
 
   it("name who is there", () => {

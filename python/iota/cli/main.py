@@ -168,6 +168,23 @@ def make_parser() -> Parser:
     hosting.add_argument(
         "--public", metavar="https://NAME", help="the address of a proxy in front, which passes /PORT/ on to that port"
     )
+    hosting.add_argument(
+        "--ray",
+        nargs="?",
+        const="auto",
+        metavar="ADDRESS",
+        help="rooms on the machines of a Ray cluster, without an address the one of this machine; DIR is at the same path on all",
+    )
+    hosting.add_argument(
+        "--room-cores", type=positive, default=0.1, metavar="N", help="with --ray: cores for each room (default: 0.1)"
+    )
+    hosting.add_argument(
+        "--room-memory",
+        type=positive,
+        default=200.0,
+        metavar="MB",
+        help="with --ray: memory for each room (default: 200)",
+    )
     hosting.add_argument("--seconds", type=positive, help="stop after this time")
     hosting.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
     hosting.set_defaults(function=rooms.run)
@@ -213,6 +230,13 @@ def make_parser() -> Parser:
     )
     sweeping.add_argument("--plot", type=Path, metavar="FILE.png|svg|pdf", help="draw the results over what was varied")
     sweeping.add_argument("--processes", type=not_negative, help="0: in this one (default: one for each core)")
+    sweeping.add_argument(
+        "--ray",
+        nargs="?",
+        const="auto",
+        metavar="ADDRESS",
+        help="on the machines of a Ray cluster, without an address the one of this machine; FILE.py is at the same path on all",
+    )
     sweeping.set_defaults(function=sweep.run)
 
     playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")

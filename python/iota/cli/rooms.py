@@ -11,7 +11,7 @@ from contextlib import suppress
 
 from iota.cli.failure import Failure
 from iota.cli.run import can_show_a_page, lan, plain_failures
-from iota.rooms import Rooms
+from iota.rooms import Cluster, Rooms
 from iota.world.callbacks import is_terminal, print_on_terminal
 from iota.world.lan import announcement
 from iota.world.page import page_copy
@@ -24,6 +24,7 @@ def run(arguments: argparse.Namespace) -> None:
     end = time.monotonic() + (math.inf if arguments.seconds is None else arguments.seconds)
     with plain_failures(arguments.port), page_copy("rooms.html") as page:
         try:
+            cluster = connect(arguments)
             rooms = Rooms(
                 arguments.directory,
                 page,
@@ -32,8 +33,9 @@ def run(arguments: argparse.Namespace) -> None:
                 leave=60 * arguments.empty,
                 lan=lan(arguments),
                 public_origin=arguments.public or "",
+                cluster=cluster,
             )
-        except ValueError as error:
+        except (ValueError, ConnectionError) as error:
             raise Failure(str(error)) from None
         lines = [f"rooms in {arguments.directory}: {rooms.url}"]
         if (url := rooms.lan_url()) is not None and rooms.fingerprint is not None:
@@ -45,3 +47,10 @@ def run(arguments: argparse.Namespace) -> None:
             webbrowser.open(rooms.url)
         with suppress(KeyboardInterrupt):
             rooms.run(lambda: time.monotonic() < end)
+
+
+def connect(arguments: argparse.Namespace) -> Cluster | None:
+    """Raises ConnectionError, ValueError."""
+    if arguments.ray is None:
+        return None
+    return Cluster.connect(arguments.ray, arguments.room_cores, arguments.room_memory * 1e6)

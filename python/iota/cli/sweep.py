@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> None:
         except TypeError as error:
             raise Failure(f"{name or FUNCTION}() of {path} does not take these arguments: {error}") from None
         try:
-            rows = sweep(function, grid, table, arguments.processes, bar.show)
+            rows = sweep(function, grid, table, arguments.processes, bar.show, arguments.ray)
         except (ValueError, TypeError, OSError) as error:
             raise Failure(str(error)) from None
         finally:

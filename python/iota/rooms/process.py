@@ -38,12 +38,15 @@ QUEUE = 128
 @dataclass
 class HostOptions:
     """The options of all rooms. host: the address to listen on. leave: s without a visitor, after which a room sleeps. lan: as of
-    `iota run`. public_origin: of a proxy."""
+    `iota run`. public_origin: of a proxy. gateway: as of `Server`. ends_with_parent: a room ends with the process that started
+    it, as the next one may be on another machine."""
 
     host: str
     leave: float
     lan: Lan | None = None
     public_origin: str = ""
+    gateway: str = ""
+    ends_with_parent: bool = False
 
     def words(self) -> list[str]:
         """For `iota run`."""
@@ -69,6 +72,7 @@ class RoomProcess:
         self._process: subprocess.Popen[bytes] | None = None
         self._last_process: int | None = None  # that was started here
         self._adopted: int | None = None  # the number of a process of an earlier `iota rooms`
+        self._own_end = -1  # of the pipe that ends the process with this one
         self._is_asked = False
         self._deaths: deque[float] = deque()
         self._card: tuple[Server, Card, float] | None = None
@@ -84,6 +88,11 @@ class RoomProcess:
     def number(self) -> int | None:
         """The number of the process."""
         return self._adopted if self._process is None else self._process.pid
+
+    @property
+    def is_listening(self) -> bool:
+        """Whether a visitor who connects now is let in, perhaps after a moment."""
+        return self._listener is not None and not self.settings.is_closed
 
     @property
     def serves(self) -> bool:
@@ -182,7 +191,7 @@ class RoomProcess:
             self.settings = changed
 
     def _adopt(self) -> None:
-        if not self._is_locked():
+        if self._options.ends_with_parent or not self._is_locked():
             return
         self._adopted = owner(self.folder.lock)
         self._began = time.monotonic()
@@ -222,6 +231,9 @@ class RoomProcess:
 
     def _ended(self, code: int | None, now: float) -> None:
         """code: None for one that was not started here."""
+        if self._own_end >= 0:
+            os.close(self._own_end)
+            self._own_end = -1
         self._read_told(now)
         was_asked, self._is_asked = self._is_asked, False
         told = self.told
@@ -286,19 +298,31 @@ class RoomProcess:
 
     def _spawn(self, listener: int, lock: int, log: int) -> subprocess.Popen[bytes]:
         what, options = self.settings.what, self._options
-        told = RoomOptions(str(self.folder.path.resolve()), listener, options.leave, options.public_origin)
+        parent, own_end = os.pipe() if options.ends_with_parent else (-1, -1)
+        folder = str(self.folder.path.resolve())
+        told = RoomOptions(folder, listener, options.leave, options.public_origin, options.gateway, parent)
         words = [sys.executable, "-m", "iota", "run", what, "--no-open", "--room", told.to_text(), *options.words()]
         words += ["--fresh"] if self.begins_anew else []
         place = self.folder.path if what in studies.names() else Path(what).parent
-        return subprocess.Popen(
-            words,
-            cwd=place,
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
-            pass_fds=(listener, lock),
-            start_new_session=True,  # neither Ctrl-C nor a closed terminal is for it
-        )
+        try:
+            started = subprocess.Popen(
+                words,
+                cwd=place,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                pass_fds=(listener, lock, *([parent] if parent >= 0 else [])),
+                start_new_session=True,  # neither Ctrl-C nor a closed terminal is for it
+            )
+        except BaseException:
+            if own_end >= 0:
+                os.close(own_end)
+            raise
+        finally:
+            if parent >= 0:
+                os.close(parent)
+        self._own_end = own_end
+        return started
 
     def _signal(self, number: signal.Signals) -> None:
         if self._process is not None:
@@ -327,6 +351,7 @@ class RoomProcess:
                 token=self.settings.token,
                 listener=os.dup(self._listener.fileno()),
                 public_origin=options.public_origin,
+                gateway=options.gateway,
             )
         except OSError:
             return

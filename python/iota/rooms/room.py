@@ -33,12 +33,15 @@ PATIENCE = 5.0  # s, to end in an orderly way
 @dataclass
 class RoomOptions:
     """The words of `iota rooms` to the process, as JSON. listener: a socket. leave: s without a visitor, after which it ends.
-    public_origin: as of `Server`, with /PORT for the room."""
+    public_origin: as of `Server`, with /PORT for the room. gateway: as of `Server`. parent: the end of a pipe; when the other
+    end is closed, the room ends; -1: it outlives the process that started it."""
 
     folder: str
     listener: int
     leave: float
     public_origin: str = ""
+    gateway: str = ""
+    parent: int = -1
 
     def to_text(self) -> str:
         return json.dumps(asdict(self))
@@ -58,6 +61,8 @@ class RoomHere:
         self._told = Told(os.getpid())
         self._is_over = threading.Event()
         self._watcher = threading.Thread(target=self._watch, name="iota-room", daemon=True)
+        if options.parent >= 0:
+            threading.Thread(target=self._end_with_parent, name="iota-parent", daemon=True).start()
 
     @property
     def what(self) -> str:
@@ -72,6 +77,7 @@ class RoomHere:
             token=self._settings.token,
             listener=options.listener,
             public_origin=options.public_origin,
+            gateway=options.gateway,
         )
         return self._server
 
@@ -125,9 +131,17 @@ class RoomHere:
                 picture_at = now + PICTURE
                 self._world._inputs.call(self._ask_picture)
             if now - empty_since > self._options.leave:
-                os.kill(os.getpid(), signal.SIGTERM)
-                if not self._is_over.wait(PATIENCE):  # a callback hangs; the journal has all until then
-                    os._exit(1)
+                self._end_process()
+
+    def _end_with_parent(self) -> None:
+        with suppress(OSError):
+            os.read(self._options.parent, 1)
+        self._end_process()
+
+    def _end_process(self) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        if not self._is_over.wait(PATIENCE):  # a callback hangs; the journal has all until then
+            os._exit(1)
 
     def _look(self) -> None:
         """On the thread of the world."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hmac
 import json
 import os
 import select
@@ -19,6 +20,7 @@ from iota._core import Request, make_token
 from iota.gallery.serving import in_order
 from iota.journal.folder import BusyError
 from iota.metrics import CONTENT_TYPE, Metric, of_process, one, text_of
+from iota.rooms.cluster import Cluster, RoomActor
 from iota.rooms.folder import RoomFolder, Settings, check_name, owner, try_lock, write_owner
 from iota.rooms.process import HostOptions, RoomProcess
 from iota.world import Server
@@ -28,6 +30,7 @@ from iota.world.page import token_for
 
 LOOK = 0.05  # s, between two looks at all rooms
 LIST, CHANGE, PICTURE, METRICS = "/rooms.json", "/rooms/change", "/rooms/picture", "/metrics"
+WHERE = "/rooms/where"
 MOST_PORTS = 1000
 MOST_ROOMS = 500
 JSON = "application/json"
@@ -44,7 +47,7 @@ class Rooms(Server):
 
     folder: of the rooms, made if there is none. page: see `make_folder`. scripts: a folder whose scripts can be rooms, beside
     the studies. leave: s without a visitor, after which a room ends until the next visitor. lan, public_origin: as of
-    `Server`. Raises BusyError if another process serves the folder, OSError.
+    `Server`. cluster: on whose machines the rooms are; the folder is at the same path on all. Raises BusyError if another process serves the folder, OSError.
     """
 
     def __init__(
@@ -56,20 +59,27 @@ class Rooms(Server):
         leave: float = 600.0,
         lan: Lan | None = None,
         public_origin: str = "",
+        cluster: Cluster | None = None,
     ) -> None:
         self._folder = folder
         self._lock = lock_folder(folder)
         try:
-            super().__init__(port=port, folder=page, lan=lan or False, public_origin=public_origin)
+            host = "127.0.0.1" if cluster is None else cluster.host
+            super().__init__(host, port, folder=page, lan=lan or False, public_origin=public_origin)
         except BaseException:
             os.close(self._lock)
             raise
         self._scripts = scripts
-        self._options = HostOptions("0.0.0.0" if lan else "127.0.0.1", leave, lan, public_origin)
+        self._cluster = cluster
+        self._options = HostOptions("0.0.0.0" if lan else host, leave, lan, public_origin)
+        if cluster is not None:
+            self._options.gateway = public_origin or f"{'https' if lan else 'http'}://{host}:{self.port}"
         self._public_origin = public_origin
-        self.rooms: dict[str, RoomProcess] = {}
+        self.rooms: dict[str, RoomProcess | RoomActor] = {}
         self._find()
         self.serve_requests([LIST, CHANGE, PICTURE, METRICS])
+        if cluster is not None:
+            self.serve_requests([WHERE], is_open=True)
 
     def run(self, goes_on: Callable[[], bool] = lambda: True) -> None:
         """Runs until `goes_on` returns False; then ends all rooms, whose worlds are kept."""
@@ -126,9 +136,14 @@ class Rooms(Server):
             folder.make(settings)
         except OSError as error:
             raise Refused(f"the room cannot be made: {error.strerror or error}") from None
-        self._add(name, RoomProcess(folder, settings, self._options))
+        self._add(name, folder, settings)
 
-    def _add(self, name: str, room: RoomProcess) -> None:
+    def _add(self, name: str, folder: RoomFolder, settings: Settings) -> None:
+        room: RoomProcess | RoomActor
+        if self._cluster is None:
+            room = RoomProcess(folder, settings, self._options)
+        else:
+            room = RoomActor(folder, settings, self._options, self._cluster)
         self.rooms[name] = room
         room.look(time.monotonic())  # visitors may come at once
 
@@ -161,6 +176,7 @@ class Rooms(Server):
             "sources": described,
             "base": base,
             "is_proxied": bool(self._public_origin),
+            "is_on_machines": self._cluster is not None,
         }
 
     def metrics(self) -> list[Metric]:
@@ -208,6 +224,9 @@ class Rooms(Server):
         if request.path == METRICS:
             self.answer(request, text_of(self.metrics()).encode(), CONTENT_TYPE)
             return
+        if request.path == WHERE:
+            self._tell_where(request)
+            return
         if request.role != "host":
             self.answer(request, b"only the host's address leads to the list of rooms", status=403)
             return
@@ -226,6 +245,17 @@ class Rooms(Server):
             self.answer(request, one_line(error).encode(), status=500)
         else:
             self.answer(request, json.dumps(self.listing()).encode(), JSON)
+
+    def _tell_where(self, request: Request) -> None:
+        """Wakes a room, and tells its address once it has one. Whoever has a link of the room may ask."""
+        asked = {name: values[0] for name, values in parse_qs(request.query).items()}
+        room, token = self.rooms.get(asked.get("room", "")), asked.get("token", "")
+        if not isinstance(room, RoomActor) or not is_token_of(room.settings, token):
+            self.answer(request, b"there is no such room, or this link is not of it", status=403)
+            return
+        room.wake()
+        told = {"url": room.url(token), "state": room.state, "trouble": room.trouble}
+        self.answer(request, json.dumps(told).encode(), JSON)
 
     def _change(self, asked: dict[str, str]) -> None:
         what, name = asked.get("do", ""), asked.get("room", "")
@@ -250,8 +280,8 @@ class Rooms(Server):
                 return
         self.answer(request, b"there is no picture yet", status=404)
 
-    def _described(self, name: str, room: RoomProcess) -> dict[str, Any]:
-        token, told = room.settings.token, room.told
+    def _described(self, name: str, room: RoomProcess | RoomActor) -> dict[str, Any]:
+        told = room.told
         what = room.settings.what
         return {
             "name": name,
@@ -263,16 +293,16 @@ class Rooms(Server):
             "picture": self._picture_version(room),
             "people": [{"name": each, "role": role} for each, role in room.people],
             "port": room.settings.port,
-            "tokens": {"host": token, "guest": token_for("guest", token), "viewer": token_for("viewer", token)},
+            "tokens": tokens_of(room.settings),
         }
 
-    def _picture_version(self, room: RoomProcess) -> str:
+    def _picture_version(self, room: RoomProcess | RoomActor) -> str:
         """Another one for another picture; empty without one."""
         with suppress(OSError):
             return str(room.folder.picture.stat().st_mtime_ns)
         return "study" if (studies.PICTURES / f"{room.settings.what}.jpg").is_file() else ""
 
-    def _room(self, name: str) -> RoomProcess:
+    def _room(self, name: str) -> RoomProcess | RoomActor:
         room = self.rooms.get(name)
         if room is None:
             raise Refused(f"there is no room {name!r} any more")
@@ -288,7 +318,7 @@ class Rooms(Server):
             folder = RoomFolder(path)
             try:
                 check_name(path.name)
-                self._add(path.name, RoomProcess(folder, folder.read(), self._options))
+                self._add(path.name, folder, folder.read())
             except (ValueError, OSError) as error:
                 print_on_terminal(f"iota: the room in {path} is left out: {error}\n")
 
@@ -298,11 +328,23 @@ class Rooms(Server):
         for port in range(self.port + 1, min(self.port + 1 + MOST_PORTS, 65536)):
             if port in taken:
                 continue
+            if self._cluster is not None:
+                return port
             with suppress(OSError), socket.socket() as probe:
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
                 probe.bind((self._options.host, port))
                 return port
         raise Refused(f"no port from {self.port + 1} on is free")
+
+
+def tokens_of(settings: Settings) -> dict[str, str]:
+    """By role."""
+    token = settings.token
+    return {"host": token, "guest": token_for("guest", token), "viewer": token_for("viewer", token)}
+
+
+def is_token_of(settings: Settings, token: str) -> bool:
+    return any([hmac.compare_digest(token.encode(), each.encode()) for each in tokens_of(settings).values()])
 
 
 def lock_folder(folder: Path) -> int:

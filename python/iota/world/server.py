@@ -17,7 +17,8 @@ class Server(_core.Server):
     from the upgrade of a connection to its first frame. folder: of the page, None: the built one. lan: for other machines too,
     by https, see `lan_url`; True, or a `Lan` with a certificate of your own. token: of its hosts, None: that of `iota token`.
     listener: a socket that listens already, which is taken over; -1: none. public_origin: the address of a proxy in front of
-    it, such as https://worlds.example.org. Raises OSError if the port is in use, ValueError for another kind of address.
+    it, such as https://worlds.example.org. gateway: the origin of an `iota rooms` that knows where this
+    world is when it has moved to another machine. Raises OSError if the port is in use, ValueError for another kind of address.
 
         server = iota.Server(port=8080)
         for name, world in worlds.items():
@@ -34,6 +35,7 @@ class Server(_core.Server):
         token: str | None = None,
         listener: int = -1,
         public_origin: str = "",
+        gateway: str = "",
     ) -> None:
         folder = page.page_folder() if folder is None else folder
         certificate, key = "", ""
@@ -58,6 +60,7 @@ class Server(_core.Server):
             key=key,
             listener=listener,
             public_origin=public_origin,
+            gateway=gateway,
         )
         self.fingerprint = _core.fingerprint(certificate) if lan else None
         """SHA-256 of the certificate, as browsers show it; None without lan."""

@@ -43,6 +43,9 @@ TEST(Requests, only_the_paths_that_were_named_are_for_the_program) {
   requests.serve({"/metrics"});
   EXPECT_TRUE(requests.serves("/metrics"));
   EXPECT_FALSE(requests.serves("/metrics/"));
+  EXPECT_FALSE(requests.is_open("/metrics"));
+  requests.serve({"/where"}, true);
+  EXPECT_TRUE(requests.is_open("/where"));
 }
 
 }  // namespace

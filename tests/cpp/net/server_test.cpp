@@ -946,7 +946,7 @@ class AnsweringProgram {
   void run() {
     while (!is_over_) {
       for (const Request& each : server_.take_requests()) {
-        const std::string role = each.role == protocol::Role::viewer ? "viewer" : "host";
+        const std::string role = !each.role ? "nobody" : each.role == protocol::Role::viewer ? "viewer" : "host";
         server_.answer(each.number, {each.is_post ? 202U : 200U, "text/x-test", role + each.path + each.query});
       }
       std::this_thread::sleep_for(1ms);
@@ -982,6 +982,31 @@ TEST_F(ServerTest, a_request_without_the_token_or_from_another_page_does_not_rea
   EXPECT_EQ(test::http_request(server_->port(), "POST", path, {{"Origin", "http://evil.example"}}).status, 403U);
   EXPECT_EQ(test::http_request(server_->port(), "GET", path, {{"Host", "evil.example"}}).status, 403U);
   EXPECT_TRUE(server_->take_requests().empty());
+}
+
+TEST_F(ServerTest, an_open_path_is_for_all_tokens_and_for_pages_of_all_origins_and_no_other_path_is) {
+  server_->serve_requests({"/where"}, true);
+  server_->serve_requests({"/metrics"});
+  const AnsweringProgram program(*server_);
+  const auto answer =
+      test::http_request(server_->port(), "GET", "/where?token=x", {{"Origin", "http://other.example"}});
+  EXPECT_EQ(answer.body, "nobody/wheretoken=x");
+  EXPECT_EQ(answer.headers.at("Access-Control-Allow-Origin"), "*");
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/where", {{"Host", "evil.example"}}).status, 403U);
+  const auto own = test::http_request(server_->port(), "GET", std::string("/metrics?token=") + token);
+  EXPECT_EQ(own.status, 200U);
+  EXPECT_FALSE(own.headers.contains("Access-Control-Allow-Origin"));
+}
+
+TEST_F(ServerTest, a_page_may_ask_the_gateway_of_its_server_and_nobody_else) {
+  auto moving = options(0);
+  moving.gateway = "http://10.0.0.1:8080";
+  start(moving);
+  const std::string policy = test::http_request(server_->port(), "GET", "/").headers.at("Content-Security-Policy");
+  EXPECT_NE(policy.find(" http://10.0.0.1:8080 "), std::string::npos) << policy;
+  auto wrong = options(0);
+  wrong.gateway = "http://10.0.0.1:8080; script-src *";
+  EXPECT_THROW(Server(std::move(wrong)), std::invalid_argument);
 }
 
 TEST_F(ServerTest, a_program_that_does_not_answer_is_told_and_one_that_ends_lets_its_requests_go) {

@@ -3,6 +3,7 @@
 
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
+import { followerOf } from "../net/gateway.ts";
 import { ownName } from "../net/name.ts";
 import { takeToken } from "../net/token.ts";
 import type { PageListener } from "../page/events.ts";
@@ -20,10 +21,9 @@ import { makeDebug } from "./debug.ts";
 const longestPaintMs = 3000;
 
 /** Address of the world's socket: beside this page, with its token. */
-function socketUrl(): string {
+function socketUrl(token: string | null): string {
   const url = new URL("ws", document.baseURI);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  const token = takeToken();
   if (token !== null) url.searchParams.set("token", token);
   // A gallery passes the socket on to the process of its world.
   const world = new URLSearchParams(location.search).get("world");
@@ -114,7 +114,9 @@ function modulesOf({ world, events }: Page): PageListener {
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
-  const page = makePage(canvas, socketUrl(), requestOf(location.search));
+  const token = takeToken();
+  const page = makePage(canvas, socketUrl(token), requestOf(location.search));
+  page.session.onLost = followerOf(new URL(location.href), token, (url) => location.replace(url));
   const { viewer, selection, events, navigation } = page;
   // Before the first picture, since shadows are part of the shader programs.
   if (new URLSearchParams(location.search).get("shadows") === "none") viewer.renderer.shadowMap.enabled = false;

@@ -26,6 +26,8 @@ export interface ConnectionListener {
   poses(poses: PosesBuffer, now: number): void;
   /** `reason` is a sentence for the user, may be empty. */
   state(state: LinkState, reason: string): void;
+  /** The connection is lost, or did not come about, and is tried again. */
+  lost?(): void;
 }
 
 const pingEveryMs = 2000;
@@ -176,6 +178,7 @@ export class Connection {
     if (this.refusal_ !== "") this.change_("refused", this.refusal_);
     else this.change_("lost", "");
     if (!triesAgain) return;
+    this.listener_.lost?.();
     this.retry_ = window.setTimeout(() => {
       this.retry_ = undefined;
       this.open();

@@ -18,6 +18,8 @@ const mostBodies = 4096;
 
 export class Session implements ConnectionListener {
   readonly connection: Connection;
+  /** Called with the user's name when the connection is lost. */
+  onLost: ((name: string) => void) | null = null;
 
   private readonly world_: World;
   private readonly viewer_: SessionViewer;
@@ -104,5 +106,9 @@ export class Session implements ConnectionListener {
 
   state(state: LinkState, reason: string): void {
     this.events_.link(state, reason);
+  }
+
+  lost(): void {
+    this.onLost?.(this.connection.name);
   }
 }

@@ -19,12 +19,14 @@ export interface Room {
   readonly picture: string;
 }
 
-/** base: where other machines reach this one, without a port; empty if they do not. is_proxied: rooms are at BASE/PORT/. */
+/** base: where other machines reach this one, without a port; empty if they do not. is_proxied: rooms are at BASE/PORT/.
+ * is_on_machines: rooms move between machines, so their links lead to this server, which knows where they are. */
 export interface Listing {
   readonly rooms: readonly Room[];
   readonly sources: readonly { readonly name: string; readonly text: string }[];
   readonly base: string;
   readonly is_proxied: boolean;
+  readonly is_on_machines: boolean;
 }
 
 export type Change = "make" | "close" | "open" | "begin_anew" | "delete";
@@ -34,8 +36,12 @@ export type Ask = (change: Change, room: string, source?: string) => void;
 const sureMs = 4000;
 
 /** An address of a room. `here`: of this page; for others, unless it is this page's own machine that they can reach only. */
-export function linkTo(room: Room, role: RoomRole, listing: Pick<Listing, "base" | "is_proxied">, here: URL, isForOthers: boolean): string {
+export function linkTo(room: Room, role: RoomRole, listing: Pick<Listing, "base" | "is_proxied" | "is_on_machines">, here: URL, isForOthers: boolean): string {
   const query = `?token=${room.tokens[role]}`;
+  if (listing.is_on_machines) {
+    const gateway = listing.is_proxied && isForOthers ? listing.base : here.origin;
+    return `${gateway}/enter.html${query}&room=${room.name}`;
+  }
   if (listing.is_proxied && (isForOthers || here.origin === listing.base)) return `${listing.base}/${room.port}/${query}`;
   const base = isForOthers && listing.base !== "" && !listing.is_proxied ? listing.base : `${here.protocol}//${here.hostname}`;
   return `${base}:${room.port}/${query}`;
