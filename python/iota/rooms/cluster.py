@@ -174,7 +174,7 @@ class RoomActor:
         return "starting" if self._report is None else self._report.state
 
     def url(self, token: str) -> str:
-        """Where the room serves now; empty if it does not yet."""
+        """The address at which the room serves now; empty if it does not yet."""
         report, options = self._report, self._options
         if report is None or self._ending is not None or not report.is_listening:
             return ""

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rooms on several machines: the server that knows on which one a room is, also after it has moved.
 
-/** What the server tells, see python/iota/rooms/serving.py. url: empty while the room starts. */
+/** The answer of the server, see python/iota/rooms/serving.py. url: empty while the room starts. */
 export interface Whereabouts {
   readonly url: string;
   readonly state: string;
