@@ -410,7 +410,12 @@ void bind_room(nb::module_& module) {
       .def(
           "take_pictures", [](RoomObject& self) { return records_of(self.use().take_pictures()); },
           nb::sig("def take_pictures(self) -> list[tuple[int, typing.Any]]"),
-          "Only parts of pictures; everything else waits for `take_input`.");
+          "Only parts of pictures; everything else waits for `take_input`.")
+      .def(
+          "wait_for_input", [](RoomObject& self, double seconds) { self.use().wait_for_input(seconds); }, "seconds"_a,
+          nb::call_guard<nb::gil_scoped_release>(),
+          "Returns when there is input, after `wake`, or after some seconds, which Ctrl-C does not cut short.")
+      .def("wake", [](RoomObject& self) { self.use().wake(); }, "Ends `wait_for_input`. May be used on any thread.");
 }
 
 }  // namespace iota::bindings

@@ -232,6 +232,18 @@ std::vector<ClientInput> Hub::take_pictures() {
   return taken;
 }
 
+void Hub::wait_for_input(double seconds) {
+  std::unique_lock lock(in_mutex_);
+  has_input_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return is_woken_ || !input_.empty(); });
+  is_woken_ = false;
+}
+
+void Hub::wake() {
+  const std::lock_guard lock(in_mutex_);
+  is_woken_ = true;
+  has_input_.notify_all();
+}
+
 // -------------------------------------------------------------------------------------------- on the server's thread
 
 void Hub::deliver() {
@@ -385,7 +397,7 @@ void Hub::frame() {
 
 void Hub::push_input(ClientInput input) {
   const std::uint32_t client = input.client;
-  if (try_push(std::move(input))) return;
+  if (try_push(std::move(input))) return has_input_.notify_all();
   if (const auto found = clients_.find(client); found != clients_.end()) {
     found->second.link->drop("more input than the script can take");
   }

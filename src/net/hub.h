@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -79,6 +80,9 @@ class Hub {
   std::vector<ClientInput> take_input();
   /// Only parts of pictures; everything else waits for take_input.
   std::vector<ClientInput> take_pictures();
+  /// Returns when there is input, after `wake`, or after some seconds.
+  void wait_for_input(double seconds);
+  void wake();
 
   // --- on the server's thread
   /// Passes everything published to the clients: edits in order, then the newest poses.
@@ -187,6 +191,8 @@ class Hub {
   std::vector<ClientInput> input_;
   std::map<std::uint32_t, Waiting> waiting_;  ///< by client
   std::size_t waiting_bytes_ = 0;             ///< of all
+  std::condition_variable has_input_;
+  bool is_woken_ = false;
 
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;

@@ -392,6 +392,8 @@ std::unique_ptr<Recording> Room::record(double pose_time) {
 void Room::send_away(std::uint32_t client) { deliver_if(hub_->send_away(client)); }
 
 std::vector<ClientInput> Room::take_input() { return hub_->take_input(); }
+void Room::wait_for_input(double seconds) { hub_->wait_for_input(seconds); }
+void Room::wake() { hub_->wake(); }
 std::vector<ClientInput> Room::take_pictures() { return hub_->take_pictures(); }
 
 Recording::Recording(std::shared_ptr<Recorder> recorder, std::function<void()> end)

@@ -160,6 +160,10 @@ class Room {
   std::vector<ClientInput> take_input();
   /// Only parts of pictures, while the script waits for one; everything else waits for `take_input`.
   std::vector<ClientInput> take_pictures();
+  /// Returns when there is input, after `wake`, or after some seconds: for a loop that has nothing else to do.
+  void wait_for_input(double seconds);
+  /// From any thread.
+  void wake();
 
  private:
   friend class Server;

@@ -166,6 +166,20 @@ def test_the_clock_takes_as_many_steps_as_time_has_passed(watch: Watch) -> None:
     assert 59 <= frames <= 61
 
 
+def test_frames_of_a_world_in_which_nothing_happens_are_rare_until_something_does(watch: Watch) -> None:
+    pace = RealTime(iota.World(iota.System(), dt=0.5).clock)
+    frames, wakes, begin = 0, 0, watch.now
+    while watch.now < begin + 10:
+        pace.due()
+        frames += pace.frame_due(has_news=False)
+        pace.sleep(watch.sleep)
+        wakes += 1
+    assert 95 <= frames <= 101 and wakes <= 130
+    assert not pace.frame_due(has_news=False)
+    watch.sleep(1 / 60)
+    assert pace.frame_due(), "with news it is sent as soon as ever"
+
+
 def test_short_steps_are_taken_two_at_a_time_and_long_ones_alone(watch: Watch) -> None:
     for per_second, wakes in ((30, 30), (60, 60), (120, 60), (1000, 500)):
         pace = RealTime(iota.World(iota.System(), dt=1 / per_second).clock)

@@ -59,14 +59,21 @@ class Inputs:
         self._bodies_of: BodiesOf = lambda ids: []
         self._pace = Pace()
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.wake: Callable[[], object] = lambda: None
+        """Ends the wait of the world's loop for input."""
 
     def call(self, function: Callable[[], None]) -> None:
         """Calls a function with the next inputs. May be used on any thread."""
         self._calls.put(function)
+        self.wake()
 
-    def take_calls(self) -> None:
+    def take_calls(self) -> bool:
+        """Whether there were any."""
+        if self._calls.empty():
+            return False
         while not self._calls.empty():
             self._calls.get()()
+        return True
 
     def take(self, inputs: Iterable[tuple[int, protocol.Input]], bodies_of: BodiesOf) -> None:
         """Handles all inputs, each with the number of its client. bodies_of: finds the bodies that still exist."""

@@ -119,6 +119,12 @@ class Pages(Part):
         assert self._publisher is not None
         self._publisher.frame()
 
+    def _wake(self) -> None:
+        """Ends the wait of the world's loop for input. May be used on any thread."""
+        publisher = self._publisher
+        if publisher is not None:
+            publisher.room.wake()
+
     def _close(self) -> None:
         assert self._publisher is not None
         for recording in self._recordings:

@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 from iota.world.clock import Clock
 
 MAX_CATCH_UP = 4  # steps
+QUIET = 0.1  # s, between frames of a world in which nothing happens
 MOST_TOGETHER = 2  # steps, so that a late one leaves time to catch up
 
 
@@ -20,7 +22,7 @@ class RealTime:
         self.restart()
 
     def restart(self) -> None:
-        self._last = self._next_frame = time.perf_counter()
+        self._last = self._next_frame = self._last_frame = time.perf_counter()
         self._owed = 0.0
 
     def due(self) -> int:
@@ -38,26 +40,30 @@ class RealTime:
             self._clock._take_pace(taken / steps)
         return taken
 
-    def frame_due(self) -> bool:
-        """True once a frame."""
+    def frame_due(self, has_news: bool = True) -> bool:
+        """True once a frame; without news ten times a second, for who has just come."""
         now = time.perf_counter()
         if now < self._next_frame:
             return False
         self._next_frame = max(self._next_frame + self.frame, now)
+        if not has_news and now < self._last_frame + QUIET:
+            return False
+        self._last_frame = now
         return True
 
-    def sleep(self) -> None:
-        """Sleeps until the next step is due, or the next frame if steps are rarer. Of steps that are shorter than a frame a few are
+    def sleep(self, wait: Callable[[float], None] | None = None) -> None:
+        """Sleeps until the next step is due, or the next frame if steps are rarer. wait: sleeps for so many seconds in which
+        nothing happens; with it, frames are rare, see `frame_due`. Of steps that are shorter than a frame a few are
         taken together, since each time the thread wakes up costs more than a step of a small world."""
         now = time.perf_counter()
-        until = self._next_frame
+        until = self._next_frame if wait is None else max(self._next_frame, self._last_frame + QUIET)
         if self._runs():
             interval = self._clock.dt / self._clock.speed
             together = min(MOST_TOGETHER, int(self.frame / interval * (1 + 1e-9)))
             steps = self._last + (max(together, 1) - self._owed) * interval
             until = steps if together else min(until, steps)
         if until > now:
-            time.sleep(until - now)
+            (wait or time.sleep)(until - now)
 
     def _runs(self) -> bool:
         return not self._clock.paused and self._clock.speed > 0

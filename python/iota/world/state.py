@@ -54,6 +54,11 @@ class State:
         return cls(system, title, clock, scene, schedule, visuals, things, costs)
 
     @property
+    def has_news(self) -> bool:
+        """Whether the next frame has to be sent although there was neither a step nor an input."""
+        return self.things.has_news or self.listeners.has("frame")
+
+    @property
     def version(self) -> tuple[int, ...]:
         """Another one if pages need more than new poses and things."""
         return self.visuals.version, self.actions.version, self.listeners.version

@@ -247,6 +247,11 @@ class Things:
         self._gone.clear()
         self._dirty = dict.fromkeys(self._ids)
 
+    @property
+    def has_news(self) -> bool:
+        """Whether things have changed since pages were told."""
+        return bool(self._dirty or self._gone)
+
     def tell(self, room: Room, structure: int, warn: Callable[[str], None]) -> None:
         """Sends the changes. structure: rises when bodies change, which may move things. warn: called with a text for
         an inconsistent thing, which keeps its former look."""

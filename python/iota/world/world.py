@@ -483,6 +483,7 @@ class World:
         """Ends `run` after the present step. May be called on any thread; after `start` it waits and makes this thread
         the owner of the system."""
         self._stopping = True
+        self._inputs.wake()
         if self._background is not None and self._background is not threading.current_thread():
             self._background.join()
             self._background = None
@@ -504,6 +505,7 @@ class World:
         if self._pages._publisher is None:
             self._check_style()  # before a port is opened
             self._pages._open(port, host, server, id, lan)
+            self._inputs.wake = self._pages._wake
             atexit.register(self._end)  # for scripts that do not call close or stop
             self._begin()
             self._guard.watch()
@@ -562,6 +564,7 @@ class World:
                 self._state.clients.let_go(client)
             self._state.clients.by_id.clear()
             self._stepper.keep()
+            self._inputs.wake = lambda: None
             self._pages._close()
             atexit.unregister(self._end)
         self._inputs.take_calls()
@@ -611,16 +614,20 @@ class World:
     def _run_served(self, seconds: float = math.inf) -> RunSummary:
         end = time.monotonic() + seconds
         clock = self._real_time
+        has_news = False
         try:
             while not self._stopping and time.monotonic() < end:
-                self._take_inputs()
+                has_news |= self._take_inputs()
                 for _ in range(clock.due()):
+                    has_news = True
                     if not self._guard.outlive("The step", self._stepper.step, self._state.notices.error, PAUSED):
                         self.clock.paused = True
                         break
-                if clock.frame_due():
+                if clock.frame_due(has_news or self._state.has_news):
                     self._guard.outlive("A frame", self._send_frame)
-                clock.sleep()
+                    has_news = False
+                is_quiet = not (has_news or self._state.has_news)
+                clock.sleep(self._wait_for_input if is_quiet else None)
         except KeyboardInterrupt:
             pass
         return self._stepper.summary()
@@ -658,11 +665,22 @@ class World:
             if stepped or self.clock.paused:
                 return
 
-    def _take_inputs(self) -> None:
-        self._inputs.take_calls()
+    def _take_inputs(self) -> bool:
+        """Whether there were any."""
+        has_any = self._inputs.take_calls()
         if self._pages._publisher is not None:
             publisher = self._pages._publisher
-            self._inputs.take(publisher.room.take_input(), publisher.bodies_of)
+            if inputs := publisher.room.take_input():
+                self._inputs.take(inputs, publisher.bodies_of)
+                return True
+        return has_any
+
+    def _wait_for_input(self, seconds: float) -> None:
+        publisher = self._pages._publisher
+        if publisher is None:
+            time.sleep(seconds)
+        else:
+            publisher.room.wait_for_input(seconds)
 
     def _take_picture(self, client: int, seconds: float) -> bytes:
         """Waits for a picture without steps; other input is handled after it."""

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -81,6 +83,22 @@ TEST_F(HubTest, welcomes_who_joins_and_says_who_is_there) {
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].client, client);
   EXPECT_EQ(events[0].what, protocol::Input(protocol::Join{"Ada", protocol::Role::host}));
+}
+
+TEST_F(HubTest, a_loop_that_waits_for_input_is_woken_by_it_and_by_other_threads) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double never = 30;  // s
+  const auto begin = Clock::now();
+  Link link;
+  join(link);
+  hub.wait_for_input(never);  // it is there
+  (void)hub.take_input();
+  hub.wake();
+  hub.wait_for_input(never);  // it was woken before
+  std::jthread other([this] { hub.wake(); });
+  hub.wait_for_input(never);
+  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(20));
+  hub.wait_for_input(0.001);
 }
 
 TEST_F(HubTest, refuses_a_full_world_and_another_protocol_with_a_reason) {
