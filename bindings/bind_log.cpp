@@ -128,10 +128,12 @@ void bind_log(nb::module_& module) {
           "The states of undo and redo, newest last: the mark of each, and its bytes unless its mark is known.")
       .def(
           "set_history",
-          [](const LogObject& self, const std::vector<nb::bytes>& undo, const std::vector<nb::bytes>& redo) {
-            self.use("set_history").set_history(snapshots_of(undo), snapshots_of(redo));
+          [](const LogObject& self, const std::vector<nb::bytes>& undo, const std::vector<nb::bytes>& redo,
+             const std::string& schema) {
+            self.use("set_history").set_history(snapshots_of(undo), snapshots_of(redo), schema);
           },
-          "undo"_a, "redo"_a)
+          "undo"_a, "redo"_a, "schema"_a = "",
+          "schema: that of the snapshots of the program that had these states. Raises ValueError for states that do not fit it.")
       .def(
           "let_go",
           [](const LogObject& self) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace iota {
@@ -53,8 +54,9 @@ class Log : public View {
   /// The states to which undo and redo return, the newest last. Valid until the next command.
   std::vector<std::span<const std::byte>> undo_states() const;
   std::vector<std::span<const std::byte>> redo_states() const;
-  /// Throws std::invalid_argument as `System::restore`, without a change.
-  void set_history(std::vector<Snapshot> undo, std::vector<Snapshot> redo);
+  /// schema: that of the snapshots of the program that had these states. Throws std::invalid_argument as `System::restore`,
+  /// without a change.
+  void set_history(std::vector<Snapshot> undo, std::vector<Snapshot> redo, std::string_view schema = {});
 
   /// By kind, then by slot of the user.
   std::vector<FunctionUse> functions() const;

@@ -156,8 +156,8 @@ struct AllCommands<std::variant<C...>, std::tuple<I...>> {
 };
 }  // namespace detail
 
-/// All commands: those above, then those of the ingredients. Recordings name a command by its place, and have the length of the list in
-/// the version of their format (door.cpp).
+/// All commands: those above, then those of the ingredients. Recordings name a command by its place in a list that they contain
+/// (command_list.h).
 using Command = detail::AllCommands<OfNouns, ingredient::Ingredients>::type;
 
 /// An ingredient's own command.

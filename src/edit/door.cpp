@@ -3,7 +3,11 @@
 
 #include "base/seal.h"
 #include "base/text.h"
+#include "edit/command_list.h"
+#include "edit/table_schema.h"
 #include "ingredient/quantities.h"
+
+#include <cstring>
 
 namespace iota::edit {
 
@@ -128,10 +132,11 @@ std::optional<std::uint64_t> Door::replay(const Recording& recording,
   const KeepFunctions keep(editor_);
   std::size_t steps = 0;
   std::optional<std::uint64_t> differs;
+  const bool is_comparable = has_own_tables(recording.start.bytes);  // hashes are those of tables
   for_each_command(recording.commands, [&](std::size_t number, const Command& command) {
     if (differs) return;
     repeat_one(number, command, execute);
-    if (!std::holds_alternative<Step>(command)) return;
+    if (!is_comparable || !std::holds_alternative<Step>(command)) return;
     if (steps >= recording.hashes.size() || editor_.model.hash() != recording.hashes[steps++])
       differs = editor_.model.step;
   });
@@ -151,25 +156,34 @@ namespace iota {
 
 namespace {
 
-// Commands are numbered by their places in the list: its length is a part of the version, so that one more is another
-// format. Change the letter before it if a command changes, is replaced or moved.
-constexpr auto commands = static_cast<char>(std::variant_size_v<edit::Command>);
-constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', 'A', commands}, "recording"};
+// Commands are numbered by their places in a list, which a recording contains.
+constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'C', 'B', 0}, "recording"};
+constexpr Seal letter_a_seal{{'I', 'O', 'T', 'A', 'R', 'C', 'A', 110},
+                             "recording"};  // 110 commands, without their list
 
 }  // namespace
 
 std::vector<std::byte> Recording::to_bytes() const {
   std::vector<std::byte> content;
   Writer writer(content);
+  const std::string& list = edit::own_commands();
+  writer.vector(std::vector<char>(list.begin(), list.end()));
   writer.vector(start.bytes), writer.vector(commands), writer.vector(hashes);
   return seal(recording_seal, content);
 }
 
 Recording Recording::from_bytes(std::span<const std::byte> bytes) {
-  Reader reader(unseal(recording_seal, bytes));
+  const auto& mark = letter_a_seal.mark;
+  const bool is_of_letter_a = bytes.size() >= mark.size() && std::memcmp(bytes.data(), mark.data(), mark.size()) == 0;
+  Reader reader(unseal(is_of_letter_a ? letter_a_seal : recording_seal, bytes));
   Recording recording;
+  std::vector<char> list;
+  if (!is_of_letter_a) reader.vector(list);
   reader.vector(recording.start.bytes), reader.vector(recording.commands), reader.vector(recording.hashes);
   if (!reader.ok() || !reader.at_end()) throw std::invalid_argument("this is not a recording: its parts do not fit");
+  const std::string_view names =
+      is_of_letter_a ? edit::commands_of_letter_a() : std::string_view(list.data(), list.size());
+  recording.commands = edit::in_own_commands(names, recording.commands);
   return recording;
 }
 

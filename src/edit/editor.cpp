@@ -16,12 +16,14 @@ namespace {
 constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'J', 0}, "snapshot"};
 constexpr Seal letter_i_seal{{'I', 'O', 'T', 'A', 'S', 'O', 'I', 21}, "snapshot"};  // 21 ingredients, without a schema
 
+std::uint64_t hash_of(std::string_view schema) {
+  Hasher hasher;
+  hasher.bytes(schema.data(), schema.size());
+  return hasher.result();
+}
+
 std::uint64_t hash_of_own_schema() {
-  static const std::uint64_t hash = [] {
-    Hasher hasher;
-    hasher.bytes(own_schema_text().data(), own_schema_text().size());
-    return hasher.result();
-  }();
+  static const std::uint64_t hash = hash_of(own_schema_text());
   return hash;
 }
 
@@ -30,8 +32,10 @@ bool is_of_letter_i(std::span<const std::byte> bytes) {
   return bytes.size() >= mark.size() && std::memcmp(bytes.data(), mark.data(), mark.size()) == 0;
 }
 
-/// The tables of a snapshot as this program writes them. room: for those that had to be translated.
-std::span<const std::byte> tables_of(std::span<const std::byte> bytes, std::vector<std::byte>& room) {
+/// The tables of a snapshot as this program writes them. room: for those that had to be translated. missing: the schema of a
+/// snapshot without one.
+std::span<const std::byte> tables_of(std::span<const std::byte> bytes, std::vector<std::byte>& room,
+                                     std::string_view missing = {}) {
   if (is_of_letter_i(bytes)) return room = in_own_schema(schema_of_letter_i(), unseal(letter_i_seal, bytes));
   const auto content = unseal(snapshot_seal, bytes);
   Reader reader(content);
@@ -40,28 +44,53 @@ std::span<const std::byte> tables_of(std::span<const std::byte> bytes, std::vect
   const std::size_t length = reader.count(1);
   if (!reader.ok()) throw std::invalid_argument("restore: this snapshot is damaged");
   const auto rest = content.last(reader.remaining());
-  const std::string_view schema(reinterpret_cast<const char*>(rest.data()), length);
+  std::string_view schema(reinterpret_cast<const char*>(rest.data()), length);
   const auto tables = rest.subspan(length);
   if (hash == hash_of_own_schema()) return tables;
+  if (schema.empty() && hash_of(missing) == hash) schema = missing;
   if (schema.empty())
     throw std::invalid_argument("restore: this state of undo is of another version of Iota, which only it can read");
   return room = in_own_schema(schema, tables);
 }
 
+/// The bytes before the tables in a snapshot.
+std::vector<std::byte> head_with(std::string_view schema) {
+  std::vector<std::byte> content;
+  Writer writer(content);
+  writer.value(hash_of_own_schema());
+  writer.vector(std::vector<char>(schema.begin(), schema.end()));
+  return content;
+}
+
 }  // namespace
+
+bool has_own_tables(std::span<const std::byte> snapshot) {
+  const auto& mark = snapshot_seal.mark;
+  std::uint64_t hash = 0;
+  if (snapshot.size() < 16 + sizeof hash || std::memcmp(snapshot.data(), mark.data(), mark.size()) != 0) return false;
+  std::memcpy(&hash, snapshot.data() + 16, sizeof hash);
+  return hash == hash_of_own_schema();
+}
 
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
 Snapshot Editor::pack(Origin origin) {
-  std::vector<std::byte> content;
-  Writer writer(content);
-  writer.value(hash_of_own_schema());
   const std::string_view schema = origin == Origin::anywhere ? own_schema_text() : std::string_view();
-  writer.vector(std::vector<char>(schema.begin(), schema.end()));
+  std::vector<std::byte> content = head_with(schema);
+  Writer writer(content);
   model.archive(writer);
   return {seal(snapshot_seal, content)};
+}
+
+Snapshot Editor::own_state(const Snapshot& state, std::string_view schema) {
+  std::vector<std::byte> room, content = head_with({});
+  const auto tables = tables_of(state.bytes, room, schema);
+  content.insert(content.end(), tables.begin(), tables.end());
+  Snapshot own{seal(snapshot_seal, content)};
+  (void)unpack(own, Origin::anywhere);
+  return own;
 }
 
 Snapshot Editor::snapshot(Origin origin) {

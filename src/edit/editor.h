@@ -83,6 +83,8 @@ struct Editor {
   /// The tables as a snapshot, and nothing else. With their schema, so that later versions can read it, unless it is for
   /// this program itself.
   Snapshot pack(Origin = Origin::anywhere);
+  /// A state of undo that another version may have written, as this one writes it. schema: of its tables. Throws as `restore`.
+  static Snapshot own_state(const Snapshot&, std::string_view schema);
   /// The tables of a snapshot. Throws as `restore`.
   static model::Model unpack(const Snapshot&, Origin);
   /// Throws std::invalid_argument for bytes that are not a snapshot, before any change. Bytes from outside are checked,

@@ -95,9 +95,9 @@ std::vector<std::span<const std::byte>> Log::undo_states() const { return bytes_
 
 std::vector<std::span<const std::byte>> Log::redo_states() const { return bytes_of(core_.editor.redo); }
 
-void Log::set_history(std::vector<Snapshot> undo, std::vector<Snapshot> redo) {
-  for (const std::vector<Snapshot>* const states : {&undo, &redo})
-    for (const Snapshot& state : *states) (void)edit::Editor::unpack(state, edit::Editor::Origin::anywhere);
+void Log::set_history(std::vector<Snapshot> undo, std::vector<Snapshot> redo, std::string_view schema) {
+  for (std::vector<Snapshot>* const states : {&undo, &redo})
+    for (Snapshot& state : *states) state = edit::Editor::own_state(state, schema);
   core_.editor.forget_history();
   for (Snapshot& state : undo) core_.editor.undo.push(std::move(state));
   for (Snapshot& state : redo) core_.editor.redo.push(std::move(state));

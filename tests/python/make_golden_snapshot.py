@@ -45,6 +45,32 @@ def kept_world(folder: Path) -> iota.World:
     return world
 
 
+def recording() -> iota.types.Recording:
+    """Many kinds of commands, with steps between them."""
+    system = iota.System(threads=1)
+    system.start_recording()
+    chain = iota.builder.chain(links=4, length=1, top=(0, 2, 0), direction=(1, 0, 0)).realize(system)
+    ball = system.body(shape=iota.Sphere(0.1), position=(0, 3, 0), color="tomato")
+    ball.name = "ball"
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), position=(2, 1, 0))
+    hinge = system.revolute(ball, box, at=(1, 2, 0), axis=(0, 0, 1))
+    spring = system.bond(chain.bodies[0].particles[0], ball.particle((0, 3, 0)), "spring", stiffness=20, length=1)
+    system.field("fx = 0; fy = -m; fz = 0")
+    for step in range(20):
+        system.step(1 / 120)
+        box.apply_force((0, 1, 0))
+        if step == 8:
+            hinge.angle.motor = (1, 5)
+            spring.set(stiffness=30)
+            with system.edit():
+                ball.mass = 2
+        if step == 12:
+            system.undo()
+        if step == 15:
+            spring.destroy()
+    return system.stop_recording()
+
+
 def main(name: str) -> None:
     place = GOLDEN / name
     place.mkdir(parents=True)
@@ -52,6 +78,7 @@ def main(name: str) -> None:
     (place / "everything.z").write_bytes(zlib.compress(system.snapshot(), 9))
     facts = {"time": system.time, "energy": system.energy.total, "positions": system.positions.tolist()}
     (place / "everything.json").write_text(json.dumps(facts))
+    recording().save(place / "run-B.replay")
     journals.HAND_OVER = 0.0
     world = kept_world(place / "journal")
     world._begin()

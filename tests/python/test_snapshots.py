@@ -99,3 +99,13 @@ def test_what_is_no_snapshot_without_a_schema_stays_as_it_is() -> None:
     for other in (b"", b"x" * 40, whole):
         assert records.with_schema(other, schema) == other
     assert records.without_schema(short, schema) == short
+
+
+@pytest.mark.parametrize(
+    "path", sorted(GOLDEN.glob("*/run-*.replay")), ids=lambda path: f"{path.parent.name}-{path.stem}"
+)
+def test_a_recording_of_an_earlier_version_is_repeated(path: Path) -> None:
+    recording, system = iota.types.Recording.load(path), iota.System()
+    assert system.replay(recording) is None and recording.steps == 20
+    ball = next(body for body in system.bodies if body.name == "ball")
+    assert ball.position.y == pytest.approx(2.903985, abs=1e-6)

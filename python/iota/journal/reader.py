@@ -50,6 +50,12 @@ class Found:
     damage: list[str] = field(default_factory=list)
 
     @property
+    def schema(self) -> str:
+        """That of the snapshots and states of undo; empty if the header is damaged."""
+        schema = self.header.get("schema")
+        return schema if isinstance(schema, str) else ""
+
+    @property
     def lag(self) -> float:
         """The longest time in which the latest commands were given, s: as much may have been given afterwards."""
         return max((piece.seconds for piece in self.pieces[-20:]), default=0.0)
@@ -188,7 +194,7 @@ def recover(system: System, found: Found, passed: Callable[[Log], object] = lamb
         quick = found.quick
         if quick is not None and quick.place > done:
             system.restore(quick.snapshot)
-            set_history(log, quick.undo, quick.redo)
+            set_history(log, quick.undo, quick.redo, found.schema)
         else:
             repeat(system, log, found, done, lambda log: None)
     log.let_go()
@@ -200,7 +206,7 @@ def repeat(system: System, log: Log, found: Found, count: int, passed: Callable[
     """Restores the snapshot and repeats so many pieces. Returns how many led to a state with the logged hash, and whether all
     did."""
     system.restore(found.snapshot)
-    set_history(log, found.undo, found.redo)
+    set_history(log, found.undo, found.redo, found.schema)
     good = 0
     for place, piece in enumerate(found.pieces[:count], 1):
         try:
@@ -214,8 +220,8 @@ def repeat(system: System, log: Log, found: Found, count: int, passed: Callable[
     return good, True
 
 
-def set_history(log: Log, undo: list[bytes], redo: list[bytes]) -> None:
+def set_history(log: Log, undo: list[bytes], redo: list[bytes], schema: str) -> None:
     try:
-        log.set_history(undo, redo)
-    except ValueError:  # a state of another version: there is no undo, but the world
+        log.set_history(undo, redo, schema)
+    except ValueError:  # a damaged state: there is no undo, but the world
         log.set_history([], [])

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/table_schema.h"
 
+#include "base/archive.h"
 #include "base/seal.h"
 #include "tests/cpp/ingredient/everything.h"
 
+#include <iota/log.h>
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,22 @@ Snapshot with_schema(const Snapshot& own, std::string schema) {
   Seal mark{{}, "snapshot"};
   std::memcpy(mark.mark.data(), own.bytes.data(), sizeof mark.mark);
   return {seal(mark, other)};
+}
+
+/// A state of undo as the journal of another version has it: with the hash of its schema, and without the schema.
+Snapshot state_of_undo(const Snapshot& own, const std::string& schema) {
+  const Snapshot whole = with_schema(own, schema);
+  const std::span<const std::byte> content(whole.bytes.begin() + 16, whole.bytes.end() - 8);
+  Hasher hasher;
+  hasher.bytes(schema.data(), schema.size());
+  std::vector<std::byte> state(16);
+  const std::uint64_t hash = hasher.result();
+  std::memcpy(state.data(), &hash, sizeof hash);
+  const auto tables = content.subspan(16 + schema.size());
+  state.insert(state.end(), tables.begin(), tables.end());
+  Seal mark{{}, "snapshot"};
+  std::memcpy(mark.mark.data(), own.bytes.data(), sizeof mark.mark);
+  return {seal(mark, state)};
 }
 
 TEST(TableSchema, all_of_a_record_is_in_a_field_but_what_aligns_the_next_one) {
@@ -81,6 +99,23 @@ TEST(TableSchema, a_field_that_an_older_version_did_not_have_gets_its_default_an
   EXPECT_EQ(again.gravity().y, -9.81);
   EXPECT_EQ(again.validate(), std::vector<std::string>{});
   EXPECT_EQ(again.bodies().ids(), original.bodies().ids());
+}
+
+TEST(TableSchema, undo_reaches_a_state_of_an_older_version_with_the_schema_of_its_journal) {
+  System original;
+  model::Everything().fill(original);
+  std::string schema = own_schema_text();
+  const std::string field = "\nbreak_force f 8";
+  schema.replace(schema.find(field), field.size(), "\nold_force f 8");
+  const Snapshot state = state_of_undo(original.snapshot(), schema);
+  System again;
+  EXPECT_THROW(again.log().set_history({state}, {}), std::invalid_argument) << "nobody knows its tables";
+  EXPECT_THROW(again.log().set_history({state}, {}, own_schema_text()), std::invalid_argument) << "of another schema";
+  again.log().set_history({state}, {}, schema);
+  EXPECT_TRUE(again.edits().undo());
+  EXPECT_EQ(again.bodies().ids(), original.bodies().ids());
+  EXPECT_EQ(again.validate(), std::vector<std::string>{});
+  EXPECT_TRUE(again.edits().redo());
 }
 
 TEST(TableSchema, a_state_of_undo_is_of_its_own_program) {
