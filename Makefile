@@ -55,6 +55,8 @@ bench: ## build, then measure engine, packaged peers, server and page in one run
 	@.venv/bin/npm --prefix web run --silent capacity
 	@.venv/bin/python bench/contact_bench.py
 	@.venv/bin/python bench/edit_cost.py
+	@.venv/bin/python bench/sweep_cost.py
+	@.venv/bin/python bench/rooms_load.py --rooms 20
 	@.venv/bin/npm --prefix web run --silent bench
 
 verify: ## build, compare with what is known, renew docs/verification.md (VERIFY="--quick")

@@ -18,8 +18,8 @@ function tell(text: string): void {
 
 function sentence({ state, trouble }: Whereabouts): string {
   if (state === "closed") return "It is closed. This page goes there when it opens.";
-  if (trouble !== "") return `It cannot be shown: ${trouble}`;
-  return "It starts \u2026";
+  if (state === "starting") return trouble === "" ? "It starts \u2026" : `${trouble[0]!.toUpperCase()}${trouble.slice(1)}.`;
+  return trouble === "" ? "It starts \u2026" : `It cannot be shown: ${trouble}`;
 }
 
 async function look(): Promise<void> {
@@ -30,8 +30,10 @@ async function look(): Promise<void> {
       location.replace(there);
       return;
     }
+    told.classList.toggle("calm", found.state !== "failed");
     tell(sentence(found));
   } catch (error) {
+    told.classList.remove("calm");
     tell(error instanceof Error ? error.message : String(error));
   }
   window.setTimeout(() => void look(), everyMs);
