@@ -369,7 +369,7 @@ def call_by_ray(function: Callable[..., Any], runs: Iterable[tuple[int, Inputs]]
     try:
         while True:
             most = QUEUED * max(1, int(ray.cluster_resources().get("CPU", 1)))
-            for number, inputs in itertools.islice(waiting, most - len(asked)):
+            for number, inputs in itertools.islice(waiting, max(0, most - len(asked))):
                 asked[task.remote(words, number, inputs)] = number
             if not asked:
                 return
