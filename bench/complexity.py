@@ -33,10 +33,10 @@ def kind(which: int, count: int) -> iota.World:
     """Many things of one kind of the study."""
     world = iota.World(iota.System(damping=0.02), ground=None)
     made = crowd.Crowd(world, 0)
-    maker = (made.acrobat, made.ladder, made.chain)[which]
+    maker = (crowd.acrobat, crowd.ladder, crowd.chain)[which]
     made.is_tinted = False
     for number in range(count):
-        root = maker(iota.Vec3(3.0 * (number % 20), 3.4, 3.0 * (number // 20)), "#888888", number)
+        root = maker(world, iota.Vec3(3.0 * (number % 20), 3.4, 3.0 * (number // 20)), "#888888", number)
         made.things.append(world.levels.manage(root.articulate))
     return world
 

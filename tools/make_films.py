@@ -33,6 +33,13 @@ links = world.system.bodies
 world.at(8.5)(lambda: world.draw(links, looks.chain_link(chain.LENGTH / len(links))))
 world.run()
 """,
+    "museum": """from iota.studies import museum
+
+world = museum.build()
+for number, view in enumerate([*map(museum.view_of, range(len(museum.HALLS))), museum.WHOLE]):
+    world.at(0.01 + 2.0 * number)(lambda view=view: setattr(world, "camera", view))
+world.run()
+""",
 }
 OPTIONS = {"physics-class": ["--plots"]}
 # Duration of a film, s, and time of its thumbnail, if they differ from the defaults.
@@ -42,6 +49,7 @@ SECONDS = {
     "grasp": 13.0,
     "knot": 19.0,
     "molecule": 12.0,
+    "museum": 12.0,
     "rigging": 30.0,
     "undersea": 28.0,
 }

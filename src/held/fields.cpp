@@ -15,9 +15,17 @@ void HeldForces::take_fields(StepReport& report) {
   if (model_.fields.size() == 0 && model_.pairs.size() == 0) return;
   sets_.update(model_);
   const double ahead = look_ahead(report.dt);  // of positions; particles turn by the leapfrog scheme in every mode
-  for (std::uint32_t slot = 0; slot < model_.fields.slot_count(); ++slot)
-    if (model_.fields.is_alive(slot) && model_.fields[slot].active)
-      take_field(slot, loaded_set(model_.fields[slot].group, ahead), report);
+  // In mode `accurate` the error of holding a force is estimated from all of its changes.
+  const bool may_wait = ingredient::Strides::any(model_) && model_.mode != IntegrationMode::accurate;
+  for (std::uint32_t slot = 0; slot < model_.fields.slot_count(); ++slot) {
+    if (!model_.fields.is_alive(slot) || !model_.fields[slot].active) continue;
+    ParticleSet& set = sets_.of(model_, model_.fields[slot].group);
+    if (!set.is_loaded) {
+      set.load(model_, ahead, 0, parallel_);
+      if (may_wait) set.find_waiting(model_, report.dt);
+    }
+    take_field(slot, set, report);
+  }
   for (std::uint32_t slot = 0; slot < model_.pairs.slot_count(); ++slot)
     if (model_.pairs.is_alive(slot) && model_.pairs[slot].active)
       take_pairs(slot, loaded_set(model_.pairs[slot], ahead, report.dt / 2), report);
@@ -46,7 +54,8 @@ void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& re
   } else {
     const laws::FieldLaw& law = model_.compiled_field(slot);
     const double time = model_.time + look_ahead(report.dt);
-    in_chunks(n, parallel_, [&](std::size_t first, std::size_t last) {
+    for (const std::size_t row : set.waiting) std::fill_n(set.force_rows.begin() + 3 * row, 3, 0.0);
+    set.for_each_acting(parallel_, [&](std::size_t first, std::size_t last) {
       law.evaluate(set.arrays, first, last - first, time, field.parameters.data(), set.force_rows.data() + 3 * first);
     });
     if (law.depends_on_velocity()) add_rates(law, field, time, set);
@@ -72,7 +81,7 @@ void HeldForces::add_rates(const laws::FieldLaw& law, const ingredient::Field& f
                            ParticleSet& set) const {
   const std::size_t n = set.rings.size();
   set.rates.resize(n), set.rate_rows.resize(9 * n);
-  in_chunks(n, parallel_, [&](std::size_t first, std::size_t last) {
+  set.for_each_acting(parallel_, [&](std::size_t first, std::size_t last) {
     double* const rows = set.rate_rows.data() + 9 * first;
     law.evaluate_rates(set.arrays, first, last - first, time, field.parameters.data(), rows);
     for (std::size_t i = first; i < last; ++i) {
@@ -81,6 +90,32 @@ void HeldForces::add_rates(const laws::FieldLaw& law, const ingredient::Field& f
       for (int k = 0; k < 9; ++k) set.rates[i].m[k / 3][k % 3] += rate[k];
     }
   });
+}
+
+void HeldForces::add_missed(StepReport& report) {
+  for (const auto& set : sets_.sets) {
+    if (!set->is_loaded || set->waiting.empty()) continue;
+    for (const std::uint32_t row : set->waiting) {
+      const std::uint32_t ring = set->rings[row];
+      if (ingredient::Strides::waits(model_, set->family[row], ring, report.dt)) continue;
+      const double time = model_.time + look_ahead(report.dt);
+      const Vec3 v{set->arrays.vx[row], set->arrays.vy[row], set->arrays.vz[row]};
+      model_.fields.for_each([&](std::uint32_t slot, const ingredient::Field& field) {
+        if (!field.active || field.kind == ingredient::FieldKind::function || field.group != set->group) return;
+        const laws::FieldLaw& law = model_.compiled_field(slot);
+        Vec3 force;
+        law.evaluate(set->arrays, row, 1, time, field.parameters.data(), &force.x);
+        if (!laws::is_force(force.x, force.y, force.z)) return;
+        model_.pushes.make(ring).force += force;
+        if (!law.depends_on_velocity()) return;
+        Mat3 rate;
+        law.evaluate_rates(set->arrays, row, 1, time, field.parameters.data(), &rate.m[0][0]);
+        ingredient::PushByVelocity& part = model_.pushes_by_velocity.make(ring);
+        part.rate += rate;
+        part.force += rate * v;
+      });
+    }
+  }
 }
 
 bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {

@@ -26,6 +26,9 @@ class HeldForces {
   /// Adds all held forces to the pushes of the next step, whose length is report.dt. Until `end_step` the energy is
   /// that of the start of the step.
   void begin_step(StepReport&);
+  /// Adds the fields' forces on bodies that begin_step left out, as they were not to be solved in this step, and that something has
+  /// touched since, or something full was found beside.
+  void add_missed(StepReport&);
   /// Books the work of the step.
   void end_step();
 
@@ -65,6 +68,7 @@ class HeldForces {
 
   void take_fields(StepReport&);
   void take_field(std::uint32_t field, ParticleSet&, StepReport&);
+  void add_field(const laws::FieldLaw&, const ingredient::Field&, double time, ParticleSet&) const;
   void add_rates(const laws::FieldLaw&, const ingredient::Field&, double time, ParticleSet&) const;
   bool call_field(std::uint32_t field, ParticleSet&, StepReport&);
   void take_pairs(std::uint32_t pairs, ParticleSet&, StepReport&);

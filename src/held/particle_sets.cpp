@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "held/particle_sets.h"
 
-#include "held/chunks.h"
 #include "math/mat3.h"
 
 namespace iota::held {
@@ -50,8 +49,14 @@ void ParticleSet::load(const model::Model& model, double ahead, double normals_a
     load_normals(model, normals_ahead);
     for (auto* const t : {&arrays.tx, &arrays.ty, &arrays.tz}) std::ranges::fill(*t, 0.0);
   }
-  rates.clear();
+  rates.clear(), waiting.clear();
   is_loaded = true;
+}
+
+void ParticleSet::find_waiting(const model::Model& model, double h) {
+  for (std::size_t i = 0; i < rings.size(); ++i)
+    if (is_pushed[i] && ingredient::Strides::waits(model, family[i], rings[i], h))
+      waiting.push_back(static_cast<std::uint32_t>(i));
 }
 
 void ParticleSet::unload(model::Model& model, const Parallel& parallel) const {

@@ -143,6 +143,12 @@ bool Strides::skips(const Model& model, std::uint32_t body) {
   return track && track->points > 0 && is_within(model, *track);
 }
 
+bool Strides::waits(const Model& model, std::uint32_t body, std::uint32_t ring, double h) {
+  if (!skips(model, body)) return false;
+  const Track* const track = find(model, ring);
+  return !track || !is_within(model, *track) || (track->points > 0 && track->h == h);
+}
+
 std::uint32_t Strides::length(const Model& model, std::uint32_t stride, std::span<const std::uint32_t> bodies,
                               double h) {
   constexpr double largest_turn = 0.7;  // rad: the parabola is then off by 1e-3 of a link

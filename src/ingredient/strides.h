@@ -98,6 +98,8 @@ class Strides : public NoAnswers {
   }
   static const Track* find(const Model&, std::uint32_t ring);
   static bool is_within(const Model&, const Track&);
+  /// The same for a ring of it in a step of h seconds; a step of another length ends a stride.
+  static bool waits(const Model&, std::uint32_t body, std::uint32_t ring, double h);
   /// The length of a stride that could begin now, in steps: so that it ends at a step of its own beat, by which strides of equal lengths are
   /// spread over the steps, and no body turns too far. 1 for what touches something or will: strides of 8 steps took as
   /// long as 8 steps for dolls that fall on the ground, and ten times as long for heaps of them.

@@ -31,6 +31,7 @@ StepReport Stepper::step(double dt) {
   take_held_forces(report);
   find_contacts(dt);
   update_islands(dt);
+  editor_.held.add_missed(report);
   made_ = spin_lost_ = 0, solves_ = iterations_ = handed_back_ = 0;
   advance_in_parts(report);
   advance_islands(report);

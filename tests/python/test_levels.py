@@ -118,6 +118,63 @@ def test_what_is_pinned_or_has_a_significance_of_its_own_is_kept(made: tuple[iot
     assert system.validate() == []
 
 
+def test_a_thing_of_several_articulates_has_one_level(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    thing = world.levels.manage([roots[3], roots[4]], name="two chains")
+    assert len(thing.bodies) == 10 and all(level.name != "stiff" for level in thing.levels)
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert thing.level.name == "frozen" and roots[3].stride == roots[4].stride == 0
+    roots[4].articulate.bodies[-1].velocity = (0, 0, 1)
+    for _ in range(12):
+        world.step()
+        if thing.level.name == "full":
+            break
+    assert roots[3].stride == roots[4].stride == 1, "an edit of one of them"
+    assert world.levels.changes[-1].reason == "touched" and world.levels.changes[-1].thing == "two chains"
+    roots[3].destroy()
+    world.levels.budget_ms = PLENTY
+    run(world, 60)
+    assert thing.root == roots[4] and thing.level.name == "full" and world.system.validate() == []
+
+
+def test_what_is_made_and_what_is_parted_is_managed_soon(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    late = chain(world.system, (0, 0, -150.0))
+    above, tail = roots[3].articulate.bodies[2:4]
+    above.particles[1].separate(tail.particles[0])
+    run(world, 120)
+    assert late.stride == tail.stride == 0
+    assert world.system.validate() == []
+
+
+def test_what_is_near_at_its_far_end_is_full() -> None:
+    world = iota.World(iota.System(gravity=(0, 0, 0)), ground=None)
+    root = chain(world.system, (0, 0, 0), links=40)  # 12 m
+    world.levels.viewers = lambda: [(12.0, 0.0, 2.0)]
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert root.stride == 1
+
+
+def test_things_are_called_by_their_names_and_kinds() -> None:
+    world = iota.World(iota.System(), ground=None)
+    system = world.system
+    for number, name in enumerate(["rope", "rope", ""]):
+        root = chain(system, (0, 0, -20.0 * number), links=3)
+        root.name = name
+        world.levels.manage(root.articulate)
+    ball = system.body(shape=iota.Sphere(0.1), mass=1, position=(0, 5, 0))
+    assert world.levels.manage(ball).name == f"sphere {ball.slot}"
+    assert [thing.name for thing in world.levels.things[:3]] == [
+        "3 rods 'rope'",
+        f"3 rods 'rope {world.levels.things[1].root.slot}'",
+        f"3 rods from rod {world.levels.things[2].root.slot}",
+    ]
+
+
 def test_an_edit_makes_full_at_once(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE
@@ -133,7 +190,7 @@ def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:
     root.particles[0].release()
     root.articulate.bodies[-1].velocity = (0, 2, 1)
     system.step(0.01)
-    thing = Managed("chain", root, levels.STANDARD, 1.5)
+    thing = Managed("chain", root, levels.STANDARD, 1.5, root.particles[0])
     energy, momentum, spin = system.energy.kinetic, system.momentum, system.angular_momentum
     places = [list(p.position) for body in thing.bodies for p in body.particles]
     thing._set_stiff(True)
@@ -199,12 +256,12 @@ def test_wrong_levels_are_refused(made: tuple[iota.World, list[iota.Body]]) -> N
         manage(roots[0], levels=["full", "half"])
     with pytest.raises(ValueError, match="levels begin with 'full'"):
         manage(roots[1], levels=["1/2"])
-    with pytest.raises(ValueError, match="one articulate"):
-        manage([roots[2], roots[3]])
+    with pytest.raises(ValueError, match="stiff if it is one articulate"):
+        manage([roots[2], roots[3]], levels=["full", "stiff"])
     with pytest.raises(TypeError, match="manage takes"):
         manage([])
     manage(roots[0])
-    with pytest.raises(ValueError, match="is managed already"):
+    with pytest.raises(ValueError, match="is managed already, as '5 rods from rod "):
         manage(roots[0])
     system = world.system
     door = system.body(shape=iota.Box((1, 1, 1)), position=(0, 50, 0))

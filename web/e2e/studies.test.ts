@@ -490,6 +490,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.key("x");
     await expect.poll(sense).toBe(-before);
   },
+  museum: async (study) => {
+    await study.key("t");  // tints
+    // A hanging chain: plinths and what stands on them are fixed.
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
   molecule: async (study) => {
     await study.drag([some, -20]);
     await study.letGo();

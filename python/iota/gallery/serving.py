@@ -26,6 +26,7 @@ from iota.world.page import page_copy
 LEAVE = 15.0  # s without a visitor, after which a study ends
 GROUPS = {  # on the page, the best first: each study and its title
     "See": {
+        "museum": "A museum",
         "lab": "A laboratory",
         "shoal": "A shoal of fish",
         "mechanisms": "Mechanisms",

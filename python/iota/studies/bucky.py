@@ -27,28 +27,20 @@ def build() -> iota.World:
     """The world of the study."""
     system = iota.System(gravity=(0, 0, 0), damping=TIRES)
     world = iota.World(system, title="bucky: sixty carbon atoms breathe; 1 m is 0.71 nm")
-    cage = shapelib.polyhedron("fullerene 60", "soft", scale=RADIUS, mass=0.72, at=CENTER, damping=0.0, radius=0.035)
-    tune(cage)
-    middle = cage.point(CENTER, mass=1.0)
-    for atom in range(60):
-        cage.bond(middle, atom, PRESSURE, k=SHARE * breathing_stiffness() / 60, r0=RADIUS)
-    cage.points.radius[:60], cage.points.color[:60] = 0.035, (0.25, 0.28, 0.32)
-    cage.points.radius[60], cage.points.color[60] = 0.02, (0.9, 0.5, 0.1)
-    made = cage.realize(system)
-    made.points[60].nail()
+    atoms = system.array(make(system).points[:60])
     whole = system.positions
-    breathe(system, 0.22)
+    breathe(atoms, 0.22)
     present(world)
 
     @world.action("breathe", key="b", help="sends a breath through the ball", on="world")
     def breath() -> None:
-        breathe(system, 0.15)
+        breathe(atoms, 0.15)
 
     @world.every(EVERY)
     def breath_by_itself() -> None:
         speeds = np.linalg.norm(system.velocities, axis=1)
         if world.users.held() is None and math.sqrt(float((speeds**2).mean())) < CALM:
-            breathe(system, 0.2)
+            breathe(atoms, 0.2)
 
     @world.action("mend", key="c", help="puts all atoms back in place", on="world")
     def mend() -> None:
@@ -63,6 +55,20 @@ def build() -> iota.World:
         world.camera = outside if world.camera == inside else inside
 
     return world
+
+
+def make(system: iota.System, center: iota.Vec3 = CENTER) -> iota.builder.Realized:
+    """The cage around a particle that is nailed, the last one."""
+    cage = shapelib.polyhedron("fullerene 60", "soft", scale=RADIUS, mass=0.72, at=center, damping=0.0, radius=0.035)
+    tune(cage)
+    middle = cage.point(center, mass=1.0)
+    for atom in range(60):
+        cage.bond(middle, atom, PRESSURE, k=SHARE * breathing_stiffness() / 60, r0=RADIUS)
+    cage.points.radius[:60], cage.points.color[:60] = 0.035, (0.25, 0.28, 0.32)
+    cage.points.radius[60], cage.points.color[60] = 0.02, (0.9, 0.5, 0.1)
+    made = cage.realize(system)
+    made.points[60].nail()
+    return made
 
 
 def breathing_stiffness() -> float:
@@ -82,19 +88,25 @@ def tune(cage: shapelib.Imported) -> None:
         bond.parameters[name] = factor * k
 
 
-def breathe(system: iota.System, speed: float) -> None:
+def breathe(atoms: iota.ParticleArray, speed: float, center: iota.Vec3 = CENTER) -> None:
     """Pushes all atoms outwards. speed: m/s; a little less above than below: no breath is quite even."""
-    velocities = system.velocities
-    way = system.positions - np.asarray(CENTER)
+    velocities = atoms.velocities
+    way = atoms.positions - np.asarray(center)
     velocities += speed / RADIUS * way * (1 - 0.3 * way[:, 1:2] / RADIUS)
-    system.velocities = velocities
+    atoms.velocities = velocities
 
 
 def present(world: iota.World) -> None:
-    """A ring that does not move, of the ball's size at rest, on a stand: what breathes is the ball, not the camera."""
+    """The cage's springs, its stand, and where one stands in front of it."""
     world.draw_ties("spring", looks.cylinder(0.012, "brass"))
-    x, y, z = CENTER
+    stand(world)
+    x, _, z = CENTER
+    world.camera = iota.Camera(position=(1.2, 1.5, 2.5), target=(x, 1.02, z))
+
+
+def stand(world: iota.World, center: iota.Vec3 = CENTER) -> None:
+    """A ring that does not move, of the ball's size at rest: what breathes is the ball, not the camera."""
+    x, y, z = center
     world.add_static(looks.torus(RADIUS + 0.19, 0.008, "steel"), (x, y, z))
     world.add_strut((x, 0, z), (x, y - RADIUS - 0.19, z), looks.cylinder(0.015, "steel"))
     world.add_static(looks.cylinder(0.16, "steel", length=0.02), (x, 0.01, z), (0, 0, 0.5**0.5, 0.5**0.5))
-    world.camera = iota.Camera(position=(1.2, 1.5, 2.5), target=(x, 1.02, z))

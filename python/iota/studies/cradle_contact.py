@@ -62,9 +62,12 @@ def make_world() -> iota.World:
 class Row:
     """Balls of a metal on strings. They do nothing but swing and touch."""
 
-    def __init__(self, world: iota.World, metal: str, count: int = BALLS) -> None:
+    def __init__(
+        self, world: iota.World, metal: str, count: int = BALLS, at: iota.Vec3 | None = None, label: bool = True
+    ) -> None:
+        """at: where it stands, m; None: at the place of its metal."""
         density, restitution, look = METALS[metal]
-        at = iota.Vec3(PLACES[metal], 0, 0)
+        at = iota.Vec3(PLACES[metal], 0, 0) if at is None else at
         frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
         frame.name = f"frame of {metal}"
         self.balls, self.tops = [], []
@@ -77,7 +80,8 @@ class Row:
             self.balls.append(ball)
             self.tops.append(top)
         present(world, self.balls, frame, look)
-        world.label(metal, at + (0, HEIGHT + 0.02, 0))
+        if label:
+            world.label(metal, at + (0, HEIGHT + 0.02, 0))
 
     def lift(self, left: int, right: int) -> None:
         """Balls on both sides are held up and let go."""

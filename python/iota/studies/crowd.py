@@ -49,12 +49,12 @@ class Crowd:
         self.length = APART * max(1, math.ceil(count / ROWS))
         self.is_tinted = True
         self.things: list[Managed] = []
-        makers = (self.acrobat, self.ladder, self.chain)
+        makers = (acrobat, ladder, chain)
         for number in range(count):
             column, row = divmod(number, ROWS)
             at = iota.Vec3(APART * column, HEIGHT, APART * (row - (ROWS - 1) / 2))
-            self.gallows(at)
-            root = makers[(column + row) % len(makers)](at, PAINTS[number % 4], number)
+            gallows(world, at)
+            root = makers[(column + row) % len(makers)](world, at, PAINTS[number % 4], number)
             self.things.append(world.levels.manage(root.articulate, on_level=self.tint))
             self.tint(self.things[-1], self.things[-1].level)
         self.lamp = world.drawings.shape(looks.sphere(0.12, "brass", color="#ffd27a"), position=tuple(self.eye()))
@@ -82,91 +82,95 @@ class Crowd:
                 body, looks.solid("paint", color) if body.solids else looks.capsule(0.02, "paint", color=color)
             )
 
-    def gallows(self, at: iota.Vec3) -> None:
-        self.world.add_static(looks.box((0.5, 0.08, 0.08), "wood"), tuple(at))
-        self.world.add_static(looks.box((0.07, at.y, 0.07), "wood"), (at.x - 0.28, at.y / 2, at.z))
 
-    def chain(self, at: iota.Vec3, color: str, number: int) -> iota.Body:
-        """Links that were pulled to the side."""
-        links: list[iota.Body] = []
-        way = iota.Vec3(0.05 * math.sin(number), -1.5, math.copysign(1.0, math.cos(3 * number)))
-        way = way / abs(way) * LINK
-        for k in range(LINKS):
-            link = self.system.body()
-            upper = link.particle(at + way * k, mass=0.2)
-            link.particle(at + way * (k + 1), mass=0.2 if k + 1 < LINKS else 2.0)
-            if links:
-                links[-1].particles[1].combine(upper)
-            else:
-                upper.nail()
-            links.append(link)
-            self.world.draw(link, looks.capsule(0.02, "paint", color=color))
-        return links[0]
+def gallows(world: iota.World, at: iota.Vec3) -> None:
+    world.add_static(looks.box((0.5, 0.08, 0.08), "wood"), tuple(at))
+    world.add_static(looks.box((0.07, at.y, 0.07), "wood"), (at.x - 0.28, at.y / 2, at.z))
 
-    def ladder(self, at: iota.Vec3, color: str, number: int) -> iota.Body:
-        """Rungs between two ropes of rods, pushed."""
-        made: list[iota.Body] = []
-        above: list[iota.Particle] = []
-        for k in range(RUNGS + 1):
-            ends = [at + (side * WIDTH / 2, -STEP * k, 0) for side in (-1, 1)]
-            if k == 0:
-                places = []
-                for end in ends:
-                    rod = self.system.body()
-                    top = rod.particle(end, mass=0.1)
-                    top.nail()
-                    rod.particle(end - (0, STEP, 0), mass=0.1)
-                    made.append(rod)
-                    places.append(rod.particles[1])
-                above = places
-                continue
-            rung = self.system.body()
-            here = [rung.particle(end, mass=0.3) for end in ends]
-            made.append(rung)
-            for mine, other in zip(here, above, strict=True):
-                other.combine(mine)
-            above = []
-            if k < RUNGS:
-                for mine, end in zip(here, ends, strict=True):
-                    rod = self.system.body()
-                    mine.combine(rod.particle(end, mass=0.1))
-                    above.append(rod.particle(end - (0, STEP, 0), mass=0.1))
-                    made.append(rod)
-        for body in made:
-            self.world.draw(body, looks.capsule(0.02, "paint", color=color))
-        made[-1].velocity = (0, 0, 1.5 + 0.5 * math.sin(number))
-        return made[0]
 
-    def acrobat(self, at: iota.Vec3, color: str, number: int) -> iota.Body:
-        """Hangs by both hands and swings."""
-        middle = at - (0, ARM + 0.25, 0)
-        shoulders, hips = [(-0.2, 0.25, 0), (0.2, 0.25, 0)], [(-0.12, -0.25, 0), (0.12, -0.25, 0)]
-        torso = self.system.body(
-            shape=iota.Box((0.36, 0.5, 0.18)), mass=30, position=middle, attachments=[*shoulders, *hips, (0, 0.25, 0)]
+def chain(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Body:
+    """Links that were pulled to the side."""
+    links: list[iota.Body] = []
+    way = iota.Vec3(0.05 * math.sin(number), -1.5, math.copysign(1.0, math.cos(3 * number)))
+    way = way / abs(way) * LINK
+    for k in range(LINKS):
+        link = world.system.body()
+        upper = link.particle(at + way * k, mass=0.2)
+        link.particle(at + way * (k + 1), mass=0.2 if k + 1 < LINKS else 2.0)
+        if links:
+            links[-1].particles[1].combine(upper)
+        else:
+            upper.nail()
+        links.append(link)
+        world.draw(link, looks.capsule(0.02, "paint", color=color))
+    return links[0]
+
+
+def ladder(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Body:
+    """Rungs between two ropes of rods, pushed."""
+    made: list[iota.Body] = []
+    above: list[iota.Particle] = []
+    for k in range(RUNGS + 1):
+        ends = [at + (side * WIDTH / 2, -STEP * k, 0) for side in (-1, 1)]
+        if k == 0:
+            places = []
+            for end in ends:
+                rod = world.system.body()
+                top = rod.particle(end, mass=0.1)
+                top.nail()
+                rod.particle(end - (0, STEP, 0), mass=0.1)
+                made.append(rod)
+                places.append(rod.particles[1])
+            above = places
+            continue
+        rung = world.system.body()
+        here = [rung.particle(end, mass=0.3) for end in ends]
+        made.append(rung)
+        for mine, other in zip(here, above, strict=True):
+            other.combine(mine)
+        above = []
+        if k < RUNGS:
+            for mine, end in zip(here, ends, strict=True):
+                rod = world.system.body()
+                mine.combine(rod.particle(end, mass=0.1))
+                above.append(rod.particle(end - (0, STEP, 0), mass=0.1))
+                made.append(rod)
+    for body in made:
+        world.draw(body, looks.capsule(0.02, "paint", color=color))
+    made[-1].velocity = (0, 0, 1.5 + 0.5 * math.sin(number))
+    return made[0]
+
+
+def acrobat(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Body:
+    """Hangs by both hands and swings."""
+    middle = at - (0, ARM + 0.25, 0)
+    shoulders, hips = [(-0.2, 0.25, 0), (0.2, 0.25, 0)], [(-0.12, -0.25, 0), (0.12, -0.25, 0)]
+    torso = world.system.body(
+        shape=iota.Box((0.36, 0.5, 0.18)), mass=30, position=middle, attachments=[*shoulders, *hips, (0, 0.25, 0)]
+    )
+    made = [torso]
+    for index, (length, up) in enumerate([(ARM, 1), (ARM, 1), (LEG, -1), (LEG, -1)]):
+        joint = torso.attachments[index]
+        limb = world.system.body(
+            shape=iota.Capsule(THICK, length - 2 * THICK),
+            mass=4 if up > 0 else 9,
+            position=joint.position + (0, up * length / 2, 0),
+            orientation=UPRIGHT,
+            attachments=[(-up * length / 2, 0, 0), (up * length / 2, 0, 0)],
         )
-        made = [torso]
-        for index, (length, up) in enumerate([(ARM, 1), (ARM, 1), (LEG, -1), (LEG, -1)]):
-            joint = torso.attachments[index]
-            limb = self.system.body(
-                shape=iota.Capsule(THICK, length - 2 * THICK),
-                mass=4 if up > 0 else 9,
-                position=joint.position + (0, up * length / 2, 0),
-                orientation=UPRIGHT,
-                attachments=[(-up * length / 2, 0, 0), (up * length / 2, 0, 0)],
-            )
-            joint.combine(limb.attachments[0])
-            if up > 0:
-                limb.attachments[1].nail()
-            made.append(limb)
-        head = self.system.body(
-            shape=iota.Sphere(0.09), mass=5, position=middle + (0, 0.37, 0), attachments=[(0, -0.12, 0)]
-        )
-        torso.attachments[4].combine(head.attachments[0])
-        made.append(head)
-        for body in made:
-            self.world.draw(body, looks.solid("paint", color))
-        torso.velocity = (0, 0, 1.2 + 0.4 * math.cos(number))
-        return torso
+        joint.combine(limb.attachments[0])
+        if up > 0:
+            limb.attachments[1].nail()
+        made.append(limb)
+    head = world.system.body(
+        shape=iota.Sphere(0.09), mass=5, position=middle + (0, 0.37, 0), attachments=[(0, -0.12, 0)]
+    )
+    torso.attachments[4].combine(head.attachments[0])
+    made.append(head)
+    for body in made:
+        world.draw(body, looks.solid("paint", color))
+    torso.velocity = (0, 0, 1.2 + 0.4 * math.cos(number))
+    return torso
 
 
 if __name__ == "__main__":

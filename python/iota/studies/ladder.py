@@ -194,7 +194,9 @@ class Ladder:
         self.axle.angle.servo = (self.aim, TORQUE, SPEED)
 
     def step(self) -> None:
-        """Thesis, Algorithm 4; a hand on the top block turns it."""
+        """Thesis, Algorithm 4; a hand on the top block turns it. A ladder that complexity management has frozen waits."""
+        if self.blocks[0].body.stride == 0:
+            return
         if self.world.users.held() == self.blocks[0].ends[0].body:
             self.axle.angle.servo = None
         elif self.axle.angle.servo is None:
@@ -229,15 +231,22 @@ class Ladder:
                 each.make_rigid()
 
 
-def present(world: iota.World) -> None:
-    """A stand whose arm is the axle of the top block, and a rule with a mark every 10 cm."""
-    x, y, z = TOP
+def stand(world: iota.World, top: iota.Vec3 = TOP, floor: float = 0.0) -> None:
+    """Its arm is the axle of the top block. floor: height of what it stands on, m."""
+    x, y, z = top
     back = z - WIDTH
     about_x = (0, 0.5**0.5, 0, 0.5**0.5)
     world.add_strut((x, y, back), (x, y, z + 0.7 * WIDTH), looks.cylinder(0.003, "steel"))
     world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=about_x), (x, y, z + 0.7 * WIDTH))
-    world.add_strut((x, 0.015, back), (x, y + 0.03, back), looks.cylinder(0.006, "steel"))
-    world.add_static(looks.box((0.26, 0.02, 0.16), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
+    world.add_strut((x, floor + 0.015, back), (x, y + 0.03, back), looks.cylinder(0.006, "steel"))
+    world.add_static(looks.box((0.26, 0.02, 0.16), "wood", 0.004), (x - 0.02, floor + 0.01, back + 0.04))
+
+
+def present(world: iota.World) -> None:
+    """A stand, and a rule with a mark every 10 cm."""
+    stand(world)
+    x, _, z = TOP
+    back = z - WIDTH
     world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
     for mark in range(1, 5):
         world.add_static(looks.box((0.025, 0.0015, 0.0036), "rubber"), (x - 0.1, 0.02 + 0.1 * mark, back))

@@ -25,11 +25,30 @@ def build() -> iota.World:
     world = iota.World(iota.System(), title="mechanisms: joints, gears and ropes on a bench of 2.5 m")
     world.system.usual_material = iota.Material(friction=0.6, touches="obstacles")  # links are drawn through each other
     present(world)
-    engine(world, iota.Vec3(-0.78, BENCH + 0.24, 0))
+    axis = engine(world, iota.Vec3(-0.78, BENCH + 0.24, 0)).angle
     pendulum(world, iota.Vec3(-0.2, BENCH + 0.2, 0))
     shaft(world, iota.Vec3(-0.02, BENCH + 0.24, 0))
     scales(world, iota.Vec3(0.72, BENCH + 0.62, 0))
-    crane(world, iota.Vec3(0.98, BENCH, 0))
+    weight, rope = crane(world, iota.Vec3(0.98, BENCH, 0))
+    start = weight.center_of_mass
+    # The bench holds the weight as the ground does, without friction.
+    top = iota.Box((BENCH_SIZE[0] + 0.1, BENCH_SIZE[1] + 0.1, BENCH_SIZE[2] + 0.1))
+    world.system.outside(weight.attachment(start), top, at=BENCH_PLACE)
+
+    @world.action("reverse", key="x", help="turns the engine's motor the other way", on="world")
+    def reverse() -> None:
+        assert axis.motor is not None
+        speed, torque = axis.motor
+        axis.motor = (-speed, torque)
+
+    @world.action("mend", key="c", help="hangs the crane's weight on its rope again", on="world")
+    def mend() -> None:
+        if rope.active:
+            return
+        weight.set_pose(start, (0, 0, 0, 1))
+        weight.velocity = weight.angular_velocity = (0, 0, 0)
+        rope.active = True
+
     return world
 
 
@@ -47,10 +66,11 @@ def present(world: iota.World) -> None:
     world.camera = iota.Camera(position=(0.25, 1.15, 2.15), target=(0.15, 0.64, 0))
 
 
-def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
+def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1, floor: float = BENCH) -> None:
     """A bearing block behind `at`, with its axle along z, on a post."""
-    world.add_strut((at.x, BENCH, -depth), (at.x, at.y, -depth), looks.cylinder(0.016, "steel"))
-    world.add_strut((at.x, at.y, -depth - 0.02), (at.x, at.y, 0.02), looks.cylinder(0.01, "brass"))
+    behind = at - (0, 0, depth)
+    world.add_strut((at.x, floor, behind.z), tuple(behind), looks.cylinder(0.016, "steel"))
+    world.add_strut(tuple(behind - (0, 0, 0.02)), tuple(at + (0, 0, 0.02)), looks.cylinder(0.01, "brass"))
 
 
 def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, density: float = STEEL) -> iota.Body:
@@ -65,8 +85,9 @@ def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, den
     )
 
 
-def engine(world: iota.World, axle: iota.Vec3) -> None:
-    """A motor turns a crank, a rod pushes a piston along its guide: one closed loop, exact all the way round."""
+def engine(world: iota.World, axle: iota.Vec3, floor: float = BENCH, speed: float = 4.0) -> iota.Constraint:
+    """A motor turns a crank, a rod pushes a piston along its guide: one closed loop, exact all the way round. floor: height of what it
+    stands on, m. speed: rad/s. Returns the joint of the motor."""
     system, crank, rod = world.system, 0.09, 0.3
     wheel = system.body(shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=ABOUT_Z)
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
@@ -76,21 +97,16 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     ends = [looks.cylinder(0.02, "brass", 0.02, offset=(x, 0, 0), rotation=ABOUT_Z) for x in (-rod / 2, rod / 2)]
     world.draw(connecting_rod, [looks.solid("paint", RED), *ends])
     world.draw(piston, looks.solid("steel"))
-    speed, torque = 4.0, 20.0
-    axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
+    drive = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, 20.0))
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
     system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))
     system.prismatic(piston, at=wrist, axis=(1, 0, 0))
-    stand(world, axle)
+    stand(world, axle, floor=floor)
     for y, z in product((-0.05, 0.05), (-0.0325, 0.0325)):  # two rails above and two below, the rod swings between them
         world.add_static(looks.box((0.34, 0.012, 0.025), "steel"), (wrist.x - crank, wrist.y + y, wrist.z + z))
-    world.add_static(looks.box((0.04, axle.y - BENCH, 0.04), "steel"), (wrist.x, (axle.y + BENCH) / 2 - 0.03, -0.05))
-
-    @world.action("reverse", key="x", help="turns the engine's motor the other way", on="world")
-    def reverse() -> None:
-        nonlocal speed
-        speed = -speed
-        axis.motor = (speed, torque)
+    post = (wrist.x, (axle.y + floor) / 2 - 0.03, axle.z - 0.05)
+    world.add_static(looks.box((0.04, axle.y - floor, 0.04), "steel"), post)
+    return drive
 
 
 def spoked_wheel(radius: float, width: float) -> list[looks.Look]:
@@ -138,17 +154,18 @@ def turn_to(direction: tuple[float, float, float]) -> tuple[float, float, float,
     return (0.0, -half * z, half * y, half)
 
 
-def pendulum(world: iota.World, axle: iota.Vec3) -> None:
-    """A bar on a torsion spring, with stops."""
+def pendulum(world: iota.World, axle: iota.Vec3, floor: float = BENCH, stiffness: float = 25.0) -> iota.Body:
+    """A bar on a torsion spring, with stops. stiffness: N m/rad. Returns the bar."""
     system = world.system
     swing = bar(system, axle - (0, 0.05, 0), axle + (0, 0.24, 0), 0.03)
     world.draw(swing, looks.solid("brass"))
-    system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(25.0, 0.02, 0.0))
+    system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(stiffness, 0.02, 0.0))
     swing.angular_velocity = (0, 0, 6)
-    stand(world, axle, 0.06)
+    stand(world, axle, 0.06, floor)
+    return swing
 
 
-def shaft(world: iota.World, bearing: iota.Vec3) -> None:
+def shaft(world: iota.World, bearing: iota.Vec3, floor: float = BENCH) -> None:
     """A motor turns a shaft; two crosses carry the turn round a corner and make it even again."""
     system, lean, length = world.system, 0.5, SHAFT
     directions = [iota.Vec3(math.cos(a), math.sin(a), 0) for a in (0, lean, 0)]
@@ -176,17 +193,17 @@ def shaft(world: iota.World, bearing: iota.Vec3) -> None:
     system.universal(middle, last, at=cross, axis=directions[1].cross((0, 0, 1)), second_axis=(0, 0, 1))
     system.cylindrical(last, at=cross + directions[2] * (length / 2), axis=(1, 0, 0))
     for x, y in ((bearing.x + length / 2, bearing.y), (cross.x + length / 2, cross.y)):
-        world.add_strut((x, BENCH, 0), (x, y - 0.03, 0), looks.cylinder(0.014, "steel"))
-        world.add_static(looks.torus(0.036, 0.012, "brass"), (x, y, 0), (0, 0.5**0.5, 0, 0.5**0.5))
+        world.add_strut((x, floor, bearing.z), (x, y - 0.03, bearing.z), looks.cylinder(0.014, "steel"))
+        world.add_static(looks.torus(0.036, 0.012, "brass"), (x, y, bearing.z), (0, 0.5**0.5, 0, 0.5**0.5))
 
 
-def scales(world: iota.World, beam: iota.Vec3) -> None:
+def scales(world: iota.World, beam: iota.Vec3, floor: float = BENCH) -> None:
     """Three weights on springs: one solve for soft and rigid; the middle one pulls the beam's ends along."""
     system = world.system
     yoke = bar(system, beam - (0.14, 0, 0), beam + (0.14, 0, 0), 0.02)
     world.draw(yoke, looks.solid("steel"))
     system.revolute(yoke, at=beam, axis=(0, 0, 1), friction=0.01)
-    stand(world, beam, 0.05)
+    stand(world, beam, 0.05, floor)
     for x, drop in ((-0.13, 0.20), (0.13, 0.26)):
         end = yoke.attachment(beam + (x, 0, 0))
         place = end.position - (0, drop, 0)
@@ -201,8 +218,8 @@ def scales(world: iota.World, beam: iota.Vec3) -> None:
         system.bond(end, weight.attachments[0], "spring", stiffness=120, damping=0.15, length=0.11)
 
 
-def crane(world: iota.World, foot: iota.Vec3) -> None:
-    """A boom that a weld holds; from its end a weight on a rope that breaks when it is pulled too hard."""
+def crane(world: iota.World, foot: iota.Vec3) -> tuple[iota.Body, iota.Constraint]:
+    """A boom that a weld holds; from its end a weight on a rope that breaks when it is pulled too hard. Returns weight and rope."""
     system = world.system
     shoulder = foot + (0, 0.55, 0)
     tip = shoulder + (0.32, 0.12, 0)
@@ -214,17 +231,6 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     )
     world.draw(boom, looks.solid("wood"))
     world.draw(weight, looks.solid("rubber"))
-    start = weight.center_of_mass
-    # The bench holds the weight as the ground does, without friction.
-    top = iota.Box((BENCH_SIZE[0] + 0.1, BENCH_SIZE[1] + 0.1, BENCH_SIZE[2] + 0.1))
-    system.outside(weight.attachment(start), top, at=BENCH_PLACE)
     rope = system.rope(hook, weight.attachments[0], break_force=150)
     world.add_strut(tuple(foot), tuple(shoulder), looks.cylinder(0.025, "steel"))
-
-    @world.action("mend", key="c", help="hangs the crane's weight on its rope again", on="world")
-    def mend() -> None:
-        if rope.active:
-            return
-        weight.set_pose(start, (0, 0, 0, 1))
-        weight.velocity = weight.angular_velocity = (0, 0, 0)
-        rope.active = True
+    return weight, rope

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 import iota
 from iota import looks, shapelib
@@ -21,9 +22,7 @@ def build(repeat: bool = True) -> iota.World:
     """The world of the study. repeat: begins anew some seconds after the ring has broken."""
     system = iota.System(damping=0.02)
     world = iota.World(system, title="molecule: a ring of C8H16 swings and breaks; 1 m is 0.77 nm")
-    ring = shapelib.molecule(FILE, "rigid", scale=SCALE)
-    made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
-    made.points[1].nail()
+    made = hang(world, "rigid")
     for atom in made.points:  # what falls comes to lie on the ground
         system.outside(atom, iota.HalfSpace((0, 1, 0)), at=(0, atom.radius, 0))
     present(world)
@@ -56,11 +55,25 @@ def build(repeat: bool = True) -> iota.World:
     return world
 
 
-def present(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
-    """The stand of the molecule: an arm on a post."""
+def hang(world: iota.World, kind: Literal["rigid", "soft"], nail: iota.Vec3 = NAIL) -> iota.builder.Realized:
+    """A ring of atoms on a nail."""
+    ring = shapelib.molecule(FILE, kind, scale=SCALE, damping=0.02)  # which a rigid one does not have
+    made: iota.builder.Realized = (ring + (nail - ring.points.position[1])).realize(world.system, world)
+    made.points[1].nail()
+    return made
+
+
+def present(world: iota.World) -> None:
+    """The molecule's stand, and where one stands in front of it."""
+    stand(world)
+    x, y, z = NAIL
+    world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=(x, y - 0.53, z - 0.1))
+
+
+def stand(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
+    """An arm on a post."""
     x, y, z = nail
     world.add_static(looks.sphere(0.03, "steel"), (x, y, z))
     world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))
     world.add_strut((x, 0, z - 0.5), (x, y + 0.06, z - 0.5), looks.cylinder(0.025, "wood"))
     world.add_static(looks.box((0.7, 0.03, 0.5), "wood"), (x, 0.015, z - 0.5))
-    world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=(x, y - 0.53, z - 0.1))

@@ -6,8 +6,8 @@ from __future__ import annotations
 from itertools import combinations
 
 import iota
-from iota import looks, shapelib
-from iota.studies.molecule import FILE, NAIL, SCALE, present
+from iota import looks
+from iota.studies.molecule import NAIL, hang, present
 
 REPULSION = "energy = 0.5*k*max(r0 - r, 0)^2"
 ROOM = 0.22  # m, a little more than a bond: nearer, atoms without one push each other away
@@ -17,12 +17,7 @@ def build() -> iota.World:
     """The world of the study."""
     system = iota.System(damping=0.3)
     world = iota.World(system, title="soft molecule: C8H16 on springs hangs longer; 1 m is 0.77 nm")
-    ring = shapelib.molecule(FILE, "soft", scale=SCALE, damping=0.02)
-    made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
-    made.points[1].nail()
-    for p, q in combinations(made.points, 2):
-        if abs(p.position - q.position) > ROOM:
-            system.bond(p, q, REPULSION, k=20, r0=ROOM)
+    hang_softly(world)
     present(world)
     world.draw_ties("spring", looks.capsule(0.012, "rubber", color="#c8842c"))
 
@@ -32,3 +27,12 @@ def build() -> iota.World:
             particle.velocity += (1.5, 0, 0)
 
     return world
+
+
+def hang_softly(world: iota.World, nail: iota.Vec3 = NAIL) -> iota.builder.Realized:
+    """The ring on a nail; atoms without a bond push each other away."""
+    made = hang(world, "soft", nail)
+    for p, q in combinations(made.points, 2):
+        if abs(p.position - q.position) > ROOM:
+            world.system.bond(p, q, REPULSION, k=20, r0=ROOM)
+    return made

@@ -168,11 +168,11 @@ class Meal:
 # --- three kinds of seaweed -------------------------------------------------------------------------------------------
 
 
-def kelp(world: iota.World, weed: iota.Group, x: float, z: float) -> list[iota.Body]:
+def kelp(world: iota.World, weed: iota.Group, x: float, z: float, length: float = LENGTH) -> list[iota.Body]:
     """An articulated chain of rigid links, each with a leaf, on the bed."""
-    stem = iota.builder.chain(NODES, LENGTH, top=(x, 0.02, z), direction=(0.1, 1, 0), mass=2.0)
+    stem = iota.builder.chain(NODES, length, top=(x, 0.02, z), direction=(0.1, 1, 0), mass=2.0)
     links = stem.realize(world.system).bodies
-    link = LENGTH / NODES
+    link = length / NODES
     leaf = looks.Look(iota.Ellipsoid((0.16, 0.34, 0.02)), "rubber", "#7d8f2e", offset=(0.04, 0.15, 0), turn=math.pi)
     world.draw(links, [looks.capsule(0.02, "rubber", link, color="#5d7024"), leaf])
     weed.add(*links)

@@ -23,10 +23,22 @@ def build() -> iota.World:
     world = iota.World(
         iota.System(mode="robust", damping=0.05), title="weather: wind in a flag of 0.8 m, a fountain, beads"
     )
-    flag(world, iota.Vec3(-1.15, 1.9, 0))
+    wind = flag(world, iota.Vec3(-1.15, 1.9, 0))
+    world.draw_ties("spring", [])
     fountain(world, iota.Vec3(0.3, 0.75, 0.1))
     beads(world, MIDDLE)
     world.camera = iota.Camera(position=(0.05, 1.5, 3.4), target=(0.05, 1.05, 0))
+
+    @world.action("calm", key="n", help="the wind drops, or comes back", on="world")
+    def calm() -> None:
+        wind.active = not wind.active
+
+    @world.action("tear", key="b", button="b", help="tears what you hold out of its threads", on="body")
+    def tear(event: iota.Event) -> None:
+        for bond in list(world.system.bonds):
+            if event.body in (end.body for end in bond.ends):
+                bond.destroy()
+
     return world
 
 
@@ -37,8 +49,8 @@ def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> 
     return particle
 
 
-def flag(world: iota.World, corner: iota.Vec3) -> None:
-    """A cloth of springs on a pole, in a turbulent wind that is a field. It tears where somebody pulls too hard."""
+def flag(world: iota.World, corner: iota.Vec3, color: str = "#c8842c") -> iota.Field:
+    """A cloth of springs on a pole, in a turbulent wind that is a field. It tears where somebody pulls too hard. Returns the wind."""
     system, cloth = world.system, iota.builder.Structure()
     row, column = np.indices((ROWS, COLUMNS))
     places = np.asarray(corner) + SPACING * np.stack([column, -row, 0 * row], axis=-1)
@@ -53,24 +65,14 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
     made = cloth.realize(system)
     cells = [(int(knots[r, c]), int(knots[r + 1, c])) for r in range(ROWS - 1) for c in range(COLUMNS - 1)]
     triangles = [t for k, below in cells for t in ((k, below, k + 1), (k + 1, below, below + 1))]
-    world.surface(list(made.points), triangles, threads=made.bonds, material="rubber", color="#c8842c")
-    world.draw_ties("spring", [])
+    world.surface(list(made.points), triangles, threads=made.bonds, material="rubber", color=color)
     wind = system.field(
         "current", group=made.groups["cloth"], velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
     )
     world.add_strut(
         tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
     )
-
-    @world.action("calm", key="n", help="the wind drops, or comes back", on="world")
-    def calm() -> None:
-        wind.active = not wind.active
-
-    @world.action("tear", key="b", button="b", help="tears what you hold out of its threads", on="body")
-    def tear(event: iota.Event) -> None:
-        for bond in list(system.bonds):
-            if event.body in (end.body for end in bond.ends):
-                bond.destroy()
+    return wind
 
 
 def fountain(world: iota.World, nozzle: iota.Vec3) -> None:

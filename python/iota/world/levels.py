@@ -76,12 +76,17 @@ class LevelChange:
 
 @dataclass(eq=False)
 class Managed:
-    """A thing whose level is managed: see `Levels.manage`."""
+    """A thing whose level is managed: see `Levels.manage`. root: its first body. others: a body of each further articulate that
+    belongs to it. middle: the particle from which its other points are least far; extent: how far the farthest was when it came under
+    management, m."""
 
     name: str
     root: Body
     levels: tuple[Level, ...]
     size: float
+    middle: Particle
+    extent: float = 0.0
+    others: tuple[Body, ...] = ()
     significance: Callable[[Managed], float] | None = None
     on_level: Callable[[Managed, Level], None] | None = None
     is_pinned: bool = False
@@ -97,7 +102,35 @@ class Managed:
     def bodies(self) -> list[Body]:
         """Its bodies, of which there is one while it is stiff. Those of a thing that was stiff are others than before,
         but for the first one."""
-        return self.root.articulate.bodies
+        found = self.root.articulate.bodies
+        for other in self.others:
+            if other.alive and other not in found:
+                found = [*found, *other.articulate.bodies]
+        return found
+
+    @property
+    def _middle(self) -> Particle:
+        """The present one; stiffness may end that of the start."""
+        return self.middle if self.middle.alive else self.root.particles[0]
+
+    @property
+    def _roots(self) -> list[Body]:
+        return [body for body in (self.root, *self.others) if body.alive]
+
+    def _lives(self) -> bool:
+        """Whether something of it is left. If its root is gone, what has absorbed the root, or a body of another of its articulates,
+        is its root."""
+        if not self.root.alive:
+            left = [self.root.survivor, *self.others]
+            self.root = next((body for body in left if body is not None and body.alive), self.root)
+        return self.root.alive
+
+    def _has(self, body: Body) -> bool:
+        return any(root.articulate == body.articulate for root in self._roots)
+
+    def _set_stride(self, stride: int) -> None:
+        for root in self._roots:
+            root.articulate.stride = stride
 
     def _set_stiff(self, stiff: bool) -> None:
         if stiff:
@@ -135,6 +168,7 @@ class Levels(Part):
         self._arrays = _Arrays(system)
         self._is_old = False
         self._manages_all = False
+        self._count, self._looked_at = -1, -HOLD  # articulates, and the step in which they were counted
         self._steps = 0
         self._expected_step: int | None = None
         self._ms = self._own_ms = self._ms_of_work = 0.0
@@ -190,6 +224,14 @@ class Levels(Part):
             raise TypeError(f"viewers must be a function that returns places, not {SHORT.repr(value)}")
         self._viewers = value
 
+    def eyes(self) -> list[Place]:
+        """The places of the eyes of the users of all open pages, m; while none is open, that of the camera that the script gave to the
+        world. For a function of `viewers` that adds somebody: `lambda: [walker.position, *world.levels.eyes()]`."""
+        found = [place for client in self._clients.by_id.values() if (place := _eye_of(client)) is not None]
+        if not found and self._scene.camera is not None:
+            found = [self._scene.camera.position]
+        return found
+
     def manage(
         self,
         thing: Body | Articulate | Iterable[Body],
@@ -198,29 +240,34 @@ class Levels(Part):
         on_level: Callable[[Managed, Level], None] | None = None,
         name: str = "",
     ) -> Managed:
-        """Manages a thing: one articulate. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
+        """Manages a thing: an articulate, or several that belong together, as the parts of an engine do, which joints hold: then all
+        bodies that are given, and what is hinged to them, have one level. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
         "1/8", "stiff", "frozen") or `Level`s of one's own; None: all that it can have. significance: a function that returns a
         number, instead of visual angle times speed (rad^2/s) for the most interested viewer. on_level: is told each change.
 
             world.levels.manage(tower, levels=["full", "1/4", "frozen"])
 
-        Raises ValueError for unknown levels, for "stiff" of a thing with joints, which would end, and of one body.
+        Raises ValueError for unknown levels, for a thing that is managed already, and for "stiff" of a thing with joints, which would
+        end, of one body and of several articulates.
         """
         bodies = [thing] if isinstance(thing, Body) else list(thing)
         if not bodies or not all(isinstance(body, Body) for body in bodies):
             raise TypeError(f"manage takes a body, an articulate or bodies, not {SHORT.repr(thing)}")
-        root = bodies[0]
-        members = root.articulate.bodies
-        others = [body for body in bodies if body not in members]
-        if others:
-            raise ValueError(
-                f"a managed thing is one articulate; {others[0]!r} is not hinged to {root!r}: manage it by itself"
-            )
-        if any(each.root.articulate == root.articulate for each in self._things if each.root.alive):
-            raise ValueError(f"the articulate of {root!r} is managed already")
-        can_be_stiff = len(members) > 1 and not self._has_joints(members)
+        roots, members = [bodies[0]], list(bodies[0].articulate.bodies)
+        known = set(members)
+        for body in bodies:
+            if body not in known:
+                roots.append(body)
+                members += body.articulate.bodies
+                known.update(body.articulate.bodies)
+        for root in roots:
+            if (managed := self._find(root)) is not None:
+                raise ValueError(f"{root!r} is managed already, as {managed.name!r}")
+        if not any(body.particles for body in members):
+            raise ValueError(f"{bodies[0]!r} has no particles, so it never moves, and costs nothing")
+        can_be_stiff = len(roots) == 1 and len(members) > 1 and not self._has_joints(members)
         chosen = None if levels is None else self._levels(levels, can_be_stiff)
-        made = self._add(root, members, can_be_stiff, name)
+        made = self._add(roots[0], members, can_be_stiff, name, tuple(roots[1:]))
         made.levels = chosen or made.levels
         made.significance, made.on_level = significance, on_level
         return made
@@ -243,6 +290,7 @@ class Levels(Part):
                 self._change(thing, 0, 0.0, 0.0, "off")
         self._things.clear()
         self._manages_all = False
+        self._count = -1
         self._is_old = True
 
     @property
@@ -338,9 +386,16 @@ class Levels(Part):
         if self._expected_step != self._system.step_count and self._expected_step is not None:
             self._resync()
         if not self._things and not self._manages_all:
-            self._manage_all()
+            self._manages_all = True
+            self._looked_at = -HOLD
+        count = self._system.articulate_count
+        if count != self._count and self._steps - self._looked_at >= HOLD:
+            self._looked_at, self._count = self._steps, count
+            self._is_old = True
+            if self._manages_all:
+                self._manage_all()
         if self._is_old:
-            self._things = [thing for thing in self._things if thing.root.alive]
+            self._things = self._living()
             self._arrays.build(self._things)
             self._is_old = False
         if not self._things:
@@ -441,7 +496,7 @@ class Levels(Part):
                     thing._set_stiff(True)
             elif before.is_stiff or (was_stiff and after.name == "full"):
                 thing._set_stiff(False)
-            thing.root.articulate.stride = after.stride
+            thing._set_stride(after.stride)
             if after.enter is not None:
                 after.enter(thing)
             if thing.on_level is not None:
@@ -461,19 +516,39 @@ class Levels(Part):
 
     # --- things -----------------------------------------------------------------------------------------------------
 
+    def _living(self) -> list[Managed]:
+        """The things of which something is left. Of two that were combined to one articulate the first one is kept, with what the
+        other one was managed for."""
+        found: dict[int, Managed] = {}
+        for thing in self._things:
+            if thing._lives():
+                first = found.setdefault(thing.root.articulate.number, thing)
+                first.is_pinned = first.is_pinned or thing.is_pinned
+        return list(found.values())
+
     def _manage_all(self) -> None:
-        self._manages_all = True
+        """Also what was made, or parted, since this was called last."""
         jointed = self._jointed()
+        known = {root.articulate.number for thing in self._things if thing._lives() for root in thing._roots}
         for articulate in self._system.articulates:
+            if articulate.number in known:
+                continue
             members = articulate.bodies
             moving = [body for body in members if body.kind in ("dynamic", "resting")]
             if moving and not moving[0].is_spark and any(len(body.particles) > 1 for body in moving):
                 can_be_stiff = len(members) > 1 and not any(body in jointed for body in members)
                 self._add(moving[0], members, can_be_stiff, "")
 
-    def _add(self, root: Body, members: list[Body], can_be_stiff: bool, name: str) -> Managed:
-        places = np.array([list(p.position) for body in members for p in body.particles] or [[0.0, 0.0, 0.0]])
-        size = float(np.linalg.norm(np.ptp(places, axis=0))) + max(body.radius for body in members)
+    def _add(
+        self, root: Body, members: list[Body], can_be_stiff: bool, name: str, others: tuple[Body, ...] = ()
+    ) -> Managed:
+        points = [p for body in members for p in body.particles]
+        places = np.array([list(p.position) for p in points])
+        thick = max(body.radius for body in members)
+        size = float(np.linalg.norm(np.ptp(places, axis=0))) + thick
+        center = (places.min(axis=0) + places.max(axis=0)) / 2
+        middle = int(np.linalg.norm(places - center, axis=1).argmin())
+        extent = float(np.linalg.norm(places - places[middle], axis=1).max()) + thick
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
         levels = tuple(stiff if level is STIFF else level for level in STANDARD if can_be_stiff or level is not STIFF)
         lines: list[tuple[Particle, Particle]] = []
@@ -482,11 +557,31 @@ class Levels(Part):
             plain = [body for body in members if not body.solids and body not in lined]
             lines = [pair for body in plain for pair in pairwise(body.particles)]
         made = Managed(
-            name or root.name or f"the articulate of body {root.slot}", root, levels, max(size, 1e-6), _lines=lines
+            name or self._name_of(root, members),
+            root,
+            levels,
+            max(size, 1e-6),
+            points[middle],
+            extent,
+            others,
+            _lines=lines,
         )
         self._things.append(made)
         self._is_old = True
         return made
+
+    def _name_of(self, root: Body, members: list[Body]) -> str:
+        """What reports call it: "8 rods 'rope 4'", or without a name of its bodies "8 rods from rod 17"."""
+        words = {_word_for(body) for body in members}
+        word = words.pop() if len(words) == 1 else "body"
+        plural = "bodies" if word == "body" else "boxes" if word == "box" else f"{word}s"
+        kind = word if len(members) == 1 else f"{len(members)} {plural}"
+        name = next((body.name for body in (root, *members) if body.name), "")
+        if not name:
+            return f"{kind} {root.slot}" if len(members) == 1 else f"{kind} from {_word_for(root)} {root.slot}"
+        if any(f"{name!r}" in thing.name for thing in self._things):
+            name = f"{name} {root.slot}"
+        return f"{kind} {name!r}"
 
     def _levels(self, given: Sequence[str | Level], can_be_stiff: bool) -> tuple[Level, ...]:
         levels = []
@@ -500,7 +595,7 @@ class Levels(Part):
             raise ValueError("levels begin with 'full'")
         if any(level.is_stiff for level in levels) and not can_be_stiff:
             raise ValueError(
-                "a thing can be stiff if it has several bodies, held together by hinges alone: joints would end when its bodies become one"
+                "a thing can be stiff if it is one articulate of several bodies, held together by hinges alone: joints would end when its bodies become one"
             )
         return tuple(levels)
 
@@ -517,18 +612,10 @@ class Levels(Part):
 
     def _find(self, thing: Body | Articulate) -> Managed | None:
         body = thing if isinstance(thing, Body) else thing.bodies[0]
-        return next(
-            (each for each in self._things if each.root.alive and each.root.articulate == body.articulate), None
-        )
+        return next((each for each in self._things if each._has(body)), None)
 
     def _eyes(self) -> Floats:
-        if self._viewers is not None:
-            found = [list(map(float, place)) for place in self._viewers()]
-        else:
-            eyes = [place for client in self._clients.by_id.values() if (place := _eye_of(client)) is not None]
-            if not eyes and self._scene.camera is not None:
-                eyes = [self._scene.camera.position]
-            found = [list(map(float, eye)) for eye in eyes]
+        found = [list(map(float, place)) for place in (self._viewers or self.eyes)()]
         places = np.array(found, dtype=float).reshape(-1, 3)
         finite: Floats = places[np.isfinite(places).all(axis=1)]
         return finite
@@ -546,7 +633,7 @@ class Levels(Part):
         part = self._steps % slices
         for i in np.nonzero(self._arrays.runs[part::slices])[0]:
             thing = self._things[part + slices * int(i)]
-            if thing.index and thing.root.stride != thing.level.stride:
+            if thing.index and any(root.stride != thing.level.stride for root in thing._roots):
                 self._change(thing, 0, 1.0, 0.0, "touched")
 
     def _ask(self, row: int, thing: Managed) -> None:
@@ -579,6 +666,13 @@ class Levels(Part):
         self._is_old = True
 
 
+def _word_for(body: Body) -> str:
+    """The word for its shape."""
+    if body.solids:
+        return "body" if len(body.solids) > 1 else type(body.solids[0].shape).__name__.lower()
+    return {1: "particle", 2: "rod"}.get(len(body.particles), "body")
+
+
 def _eye_of(client: Client) -> Place | None:
     """The place of its user's eyes, as its page has told, or until then the camera that it got."""
     if client.eye is not None or client.camera is None:
@@ -609,6 +703,7 @@ class _Arrays:
         self.last = np.array([len(thing.levels) - 1 for thing in things], dtype=int)
         self.pinned = np.array([thing.is_pinned for thing in things], dtype=bool)
         self.size = np.array([thing.size for thing in things], dtype=float)
+        self.extent = np.array([thing.extent for thing in things], dtype=float)
         self.qualities, self.shares = np.zeros((count, width)), np.zeros((count, width))
         self.strides = np.ones((count, width), dtype=int)
         for row, thing in enumerate(things):
@@ -627,10 +722,13 @@ class _Arrays:
             if row >= 0:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
-        self._roots = [
-            self._system.array([thing.root for thing in things[part :: self.slices]]) if part < count else None
-            for part in range(self.slices)
-        ]
+        self._roots, self._starts, self._middles = [], [], []
+        for part in range(self.slices):
+            roots = [thing._roots for thing in things[part :: self.slices]]
+            self._roots.append(self._system.array([root for each in roots for root in each]) if roots else None)
+            middles = [thing._middle for thing in things[part :: self.slices]]
+            self._middles.append(self._system.array(middles) if middles else None)
+            self._starts.append(np.cumsum([0, *(len(each) for each in roots[:-1])]))
         self._things = things
 
     def note(self, thing: Managed, step: int) -> None:
@@ -642,26 +740,32 @@ class _Arrays:
 
     def look(self, rows: slice, part: int, eyes: Floats, reach: float) -> None:
         """Reads some things, and what they mean to the viewers."""
-        roots = self._roots[part]
-        if roots is None:
+        roots, middles = self._roots[part], self._middles[part]
+        if roots is None or middles is None:
             return
-        places, speeds = roots.positions, np.linalg.norm(roots.velocities, axis=1)
+        places, speeds = middles.positions, np.linalg.norm(middles.velocities, axis=1)
         work, steps = roots.work.T
         size = self.size[rows]
         load = np.where(steps > 0, work / np.maximum(steps, 1), 0.0)
+        takes_each = steps == 1
+        starts = self._starts[part]
+        if len(load) > len(places):  # things of several articulates
+            of_roots = np.linalg.norm(roots.velocities, axis=1)
+            speeds = np.maximum(speeds, np.maximum.reduceat(of_roots, starts))
+            load, takes_each = np.add.reduceat(load, starts), np.logical_or.reduceat(takes_each, starts)
         self.load[rows] = load
         level = self.level[rows]
         at_full = (level == 0) & (load > 0)
         full = self.full_load[rows]
         self.full_load[rows] = np.where(at_full, np.where(full > 0, full + 0.3 * (load - full), load), full)
         stride = np.take_along_axis(self.strides[rows], level[:, None], axis=1)[:, 0]
-        self.touches[rows] = (stride > 1) & (steps == 1)
-        self.runs[rows] = (stride != 1) & (steps == 1)
+        self.touches[rows] = (stride > 1) & takes_each
+        self.runs[rows] = (stride != 1) & takes_each
         if len(eyes):
             distance = np.linalg.norm(places[:, None, :] - eyes[None, :, :], axis=2).min(axis=1)
+            self.near[rows] = distance - self.extent[rows] <= NEAR * reach
             distance = np.maximum(distance - 0.5 * size, 1e-3)
             seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
-            self.near[rows] = distance <= NEAR * reach
         else:
             seen = speeds + IDLE
             self.near[rows] = False

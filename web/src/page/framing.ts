@@ -43,6 +43,8 @@ const goneAfter = 5;
 const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
+/** Of the distance from a script's camera to its target: the size of a scene for its pins, at most. */
+const nearShare = 0.6;
 /** The longest chain whose length at rest is looked for; a net is shorter than all its parts. */
 const mostLinks = 20;
 /** After so many looks in a row a smaller scene is another one. */
@@ -172,7 +174,8 @@ export class Framing implements FramePart, PageListener {
     const size = Math.max(bounds.radius, chosen, 1e-12);
     this.viewer_.stage.setScene(bounds.center, size);
     this.world_.entities.body.size = this.viewer_.size;
-    this.world_.entities.nail.pinRadius = pinSize * this.viewer_.size;
+    // A camera that looks from near, in a building of many rooms, shows pins of the size of what is near.
+    this.world_.entities.nail.pinRadius = pinSize * (hasCamera ? Math.min(this.viewer_.size, nearShare * chosen / smallest) : this.viewer_.size);
     this.navigation_.setScene(bounds.center, this.viewer_.size, Math.min(this.calcReach_(bounds.center), farthestWalk * size));
     if (before === null) {
       this.frame_(true);
