@@ -492,8 +492,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   },
   museum: async (study) => {
     await study.key("t");  // tints
-    // A hanging chain: plinths and what stands on them are fixed.
-    await study.drag([some, 0]);
+    await study.drag([some, 0], (body) => [32, 46, 61].includes(body));  // the weight of the crane, and two pendulums
     await study.letGo();
   },
   molecule: async (study) => {
@@ -624,7 +623,8 @@ describe("the study", () => {
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
-      expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(200_000);
+      // The museum has fifty exhibits.
+      expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(name === "museum" ? 300_000 : 200_000);
       await study.isFramed(windows.filter((_, place) => runsAll || place === index % windows.length));
       await studies[name](study);
       if (runsAll || takenByAll.includes(name)) {

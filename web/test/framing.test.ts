@@ -5,7 +5,7 @@ import { Navigation } from "../src/navigate/navigation.ts";
 import { Framing } from "../src/page/framing.ts";
 import type { Viewer } from "../src/page/viewer.ts";
 import type { LinkState } from "../src/net/connection.ts";
-import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../src/navigate/framing.ts";
+import { addOutermost, dropOutside, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
 import { body, bodyEntity, id, part, visual, TestWorld } from "./test_world.ts";
 
@@ -78,6 +78,15 @@ describe("a fitted view", () => {
 describe("a script's camera in a narrow window", () => {
   const target = [6, -1, 0.2] as const;
   const eyeOf = ({ pivot, distance, yaw, pitch }: ReturnType<typeof standBack>) => pivot.map((value, axis) => value + distance * viewAxes(yaw, pitch)[2][axis]);
+
+  it("counts only what the camera sees, not the other rooms of a building", () => {
+    const points = new Points();
+    const eye = [0, 2, 5] as const;
+    const room = [[0, 1, 0], [1.5, 2, -1], [-2, 0.5, 1]] as const, others = [[20, 1, 0], [0, 1, 9], [-8, 1, 1], [0, 40, 0]] as const;
+    for (const [x, y, z] of [...others, ...room]) points.add(x, y, z);
+    dropOutside(points, eye, [0, 1, 0], { side: 1, up: 0.6, down: 0.6 });
+    expect(Array.from(points.xyz.slice(0, 3 * points.count))).toEqual(room.flat());
+  });
 
   it("keeps its place where all is in view", () => {
     const eye = [6, 2, 400] as const;

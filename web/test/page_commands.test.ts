@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each role finds in the list of commands.
 
+import { readFileSync } from "node:fs";
 import { PerspectiveCamera, Scene, type WebGLRenderer } from "three";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { isAllowed, isChoice, type Entry } from "../src/commands/command.ts";
@@ -53,6 +54,14 @@ function run(commands: readonly Entry[], names: readonly string[]): void {
 }
 
 const refused = (commands: readonly Entry[]) => commands.filter((entry) => !isAllowed(entry)).map(({ name }) => name);
+
+it("no button has the id of an element of the page", () => {
+  const page = readFileSync(new URL("../index.html", import.meta.url), "utf8");
+  const ids = [...page.matchAll(/ id="([^"]+)"/g)].map(([, each]) => each);
+  const names = commandsOf(Role.host).map(({ name }) => name.replaceAll(" ", "-"));
+  expect(ids).toContain("view");
+  expect(names.filter((name) => ids.includes(name))).toEqual([]);
+});
 
 it("a host may run them all", () => {
   const commands = commandsOf(Role.host);

@@ -26,7 +26,7 @@ from iota.studies import (
     weather,
 )
 from iota.world.levels import Level, Managed
-from iota.world.shown import Marker, Paint
+from iota.world.shown import Paint
 from iota.world.things import Frame
 
 BUDGET = 1.5  # ms of processor time a step
@@ -79,7 +79,7 @@ class Museum:
         self.exhibits: list[Exhibit] = []
         self.is_tinted = False
         self.walls: list[iota.Body] = []
-        world.draw_ties("spring", looks.cylinder(0.0035, "rope"))
+        world.draw_ties("spring", looks.box((0.1, 0.006, 0.006), "rope"))  # a thousand of them
         world.draw_ties("rope", looks.cylinder(0.004, "rope"))
         self.fields()
         for number, (title, rows) in enumerate(HALLS.items()):
@@ -94,6 +94,8 @@ class Museum:
                 on_level=lambda thing, level: self.tint(thing, level),
                 name=each.name,
             )
+        self.colors = [TINTS["full"]] * len(self.exhibits)
+        self.lamps = world.drawings.points(np.array(self.signs), 0.022, self.colors)
         self.way = self.calc_way()
         self.lengths = np.r_[0, np.cumsum(np.linalg.norm(np.diff(self.way, axis=0), axis=1))]
         self.visitor = self.draw_visitor()
@@ -191,9 +193,10 @@ class Museum:
             self.tint(each.thing, each.thing.level)
 
     def tint(self, thing: Managed, level: Level) -> None:
-        """Colors an exhibit, and the lamp on its label."""
+        """Colors an exhibit, and the lamp under its label."""
         exhibit = next(each for each in self.exhibits if each.thing is thing)
-        self.lamps[exhibit.name].color = TINTS[level.name]
+        self.colors[self.exhibits.index(exhibit)] = TINTS[level.name]
+        self.lamps.color = self.colors
         if exhibit.name in self.paints:
             self.paints.pop(exhibit.name).destroy()
         if self.is_tinted:
@@ -215,7 +218,7 @@ class Museum:
         self.world.label(title, at=(middle, HEIGHT + 0.25, -DEPTH / 2), height=0.16)
         for place, name in enumerate(PAINTINGS[title]):
             x = left + HALL * (2 * place + 1) / (2 * len(PAINTINGS[title]))
-            frame = looks.box((1.02, 0.62, 0.03), "wood", 0.006, color="#6b4a2e")
+            frame = looks.box((1.02, 0.62, 0.03), "wood", color="#6b4a2e")
             self.world.drawings.shape(frame, position=(x, 2.3, -DEPTH / 2 + 0.015))
             picture = looks.box((0.96, 0.54, 0.01), "paint", texture=str(studies.PICTURES / f"{name}.jpg"))
             self.world.drawings.shape(picture, position=(x, 2.3, -DEPTH / 2 + 0.032))
@@ -249,7 +252,7 @@ class Museum:
         maker, width, plinth = KINDS[kind]
         count = 1 + sum(each.name.startswith(kind) for each in self.exhibits)
         if plinth:
-            wood = looks.box((width, TOP, 0.5), "wood", 0.008, color="#8d7458")
+            wood = looks.box((width, TOP, 0.5), "wood", color="#8d7458")
             self.world.add_static(wood, (at.x, TOP / 2, at.z))
         before = set(self.system.bodies)
         again = maker(self.world, at, count)
@@ -258,8 +261,7 @@ class Museum:
         self.exhibits.append(Exhibit(name, hall, at, made, again))
         sign = at + (0, TOP - 0.16 if plinth else 0.2, 0.42 if plinth else 0.66)
         self.world.label(kind, at=tuple(sign), height=0.036)
-        lamp = looks.sphere(0.022, "paint", color=TINTS["full"])
-        self.lamps[name] = self.world.drawings.shape(lamp, position=tuple(sign - (0, 0.075, 0)))
+        self.signs.append(tuple(sign - (0, 0.075, 0)))
 
     def fields(self) -> None:
         """Water around weed, and forces that carry cages of carbon."""
@@ -269,7 +271,7 @@ class Museum:
         system.field("uniform", group=weed, acceleration=lift + (0, undersea.BUOYANCY, 0))
         system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.5, size=1.2, evolution=0.4)
         system.field("uniform", group=cages, acceleration=lift)
-        self.lamps: dict[str, Marker] = {}
+        self.signs: list[tuple[float, ...]] = []
         self.paints: dict[str, Paint] = {}
 
 
@@ -375,12 +377,14 @@ def cage(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
 
 
 def flag(world: iota.World, at: iota.Vec3, number: int) -> None:
+    before = set(world.system.bodies)
     weather.flag(world, at + (-0.38, 1.95, 0), COATS[number % len(COATS)])
+    world.draw([body for body in world.system.bodies if body not in before], [])  # its knots
 
 
 def bed(world: iota.World, at: iota.Vec3) -> None:
     """The bottom of the sea."""
-    world.drawings.shape(looks.box((1.0, 0.03, 1.0), "paint", 0.01, color="#3f6a74"), position=tuple(at))
+    world.drawings.shape(looks.box((1.0, 0.03, 1.0), "paint", color="#3f6a74"), position=tuple(at))
 
 
 def kelp(world: iota.World, at: iota.Vec3, number: int) -> None:

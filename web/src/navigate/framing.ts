@@ -107,6 +107,20 @@ export function standBack(
   return { pivot: [pivot[0], pivot[1], pivot[2]], distance: depth, yaw, pitch };
 }
 
+/** Keeps the points within the frame of a camera at `eye` that looks at `target`. */
+export function dropOutside(points: Points, eye: readonly [number, number, number], target: readonly [number, number, number], frame: Frame): void {
+  const from = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
+  const distance = Math.max(Math.hypot(...from), 1e-12);
+  const [right, up, away] = viewAxes(Math.atan2(from[0], from[2]), Math.asin(from[1] / distance));
+  const { xyz, count } = points;
+  points.count = 0;
+  for (let at = 0; at < 3 * count; at += 3) {
+    const p = [xyz[at] - eye[0], xyz[at + 1] - eye[1], xyz[at + 2] - eye[2]];
+    const [a, b, depth] = [dot(right, p), dot(up, p), -dot(away, p)];
+    if (Math.abs(a) <= depth * frame.side && b <= depth * frame.up && -b <= depth * frame.down) points.add(xyz[at], xyz[at + 1], xyz[at + 2]);
+  }
+}
+
 /** Adds to `found` the points that are farthest out of the frame of a view, to each side. */
 export function addOutermost(found: Points, points: Points, view: FittedView, frame: Frame): void {
   const [right, up, away] = viewAxes(view.yaw, view.pitch);

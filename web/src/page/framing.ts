@@ -4,7 +4,7 @@
 // not follow single things that go away. A camera that the user has moved is not changed.
 
 import { MathUtils } from "three";
-import { addOutermost, fitView, shareOutside, standBack, viewAxes, type FittedView, type Frame } from "../navigate/framing.ts";
+import { addOutermost, fitView, shareOutside, standBack, dropOutside, viewAxes, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import type { LinkState } from "../net/connection.ts";
 import { BodyKind } from "../protocol/generated.ts";
@@ -304,9 +304,18 @@ export class Framing implements FramePart, PageListener {
     const { setting_: scene } = this;
     scene.clear();
     this.addScene_(scene);
+    this.dropUnseen_(scene);
     if (shareOutside(scene, home, this.calcFrame_(1.04)) === 0) return;
     addOutermost(this.kept_, scene, home, this.calcFrame_(1));
     this.frame_(false);
+  }
+
+  /** Drops the points that the script's camera does not show on the standard screen either: other rooms of a building. */
+  private dropUnseen_(points: Points): void {
+    const { hasCamera, cameraPosition: eye, cameraTarget: target } = this.world_.settings;
+    if (!hasCamera) return;
+    const up = Math.tan(MathUtils.degToRad(this.viewer_.camera.fov / 2));
+    dropOutside(points, eye, target, { side: usualSide, up, down: up });
   }
 
   /** Width of the standard screen in widths of this one. */
@@ -332,6 +341,7 @@ export class Framing implements FramePart, PageListener {
     if (!hasCamera) return this.calcView_(this.setting_);
     // A narrow window shows the same width as the standard one, up to that of the scene.
     this.addDrawn_(this.setting_);
+    this.dropUnseen_(this.setting_);
     return standBack(this.setting_, eye, target, this.calcFrame_(1), this.narrowness_);
   }
 

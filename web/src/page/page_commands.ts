@@ -138,7 +138,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       run: () => framing.home(),
     },
     {
-      name: "view",
+      name: "viewpoint",
       help: "viewpoints of the world",
       keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9"],
       places: ["bar", "panel"],

@@ -12,7 +12,7 @@ import { EntityRecords } from "./entity.ts";
 
 /** Corners of a pin's equator: many pins have few triangles each. */
 function aroundOf(count: number): number {
-  return count <= 100 ? 20 : count <= 500 ? 10 : 6;
+  return count <= 30 ? 20 : count <= 500 ? 10 : 6;
 }
 
 export class NailView extends EntityRecords<NailEntity> {
