@@ -21,6 +21,7 @@ from iota.world.clients import Client, Clients
 from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
+from iota.world.stand_ins import StandIn, Structure
 
 Floats = NDArray[np.float64]
 Place = Sequence[float] | Vec3
@@ -42,7 +43,13 @@ JUMP = 2.0  # m in a step: then all things are looked at
 class Level:
     """A level of a thing. name: for reports. stride: see `Body.stride`. is_stiff: its bodies are one. quality: from 1, as good as
     full, to 0. share: of the full cost, as far as is known before it is tried. enter, leave: functions of the script for a
-    level of its own, called with the thing."""
+    level of its own, called with the thing. structure: a function that makes an `iota.builder.Structure` of the same mass, which stands
+    in for the thing at this level:
+
+        far = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(thing.mass, thing.position))
+
+    It begins with the thing's center of mass, momentum and angular momentum, and gives its own back. See docs/complexity.md.
+    """
 
     name: str
     stride: int = 1
@@ -51,6 +58,7 @@ class Level:
     share: float = 1.0
     enter: Callable[[Managed], None] | None = None
     leave: Callable[[Managed], None] | None = None
+    structure: Callable[[Managed], Structure] | None = None
 
 
 FULL_LEVEL = Level("full")
@@ -91,6 +99,8 @@ class Managed:
     on_level: Callable[[Managed, Level], None] | None = None
     is_pinned: bool = False
     index: int = field(default=0, repr=False)
+    _stand_in: StandIn | None = field(default=None, repr=False)
+    _former: deque[StandIn] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # that an undo may bring back
     _lines: list[tuple[Particle, Particle]] = field(default_factory=list, repr=False)  # that it lacks as one body
 
     @property
@@ -100,8 +110,11 @@ class Managed:
 
     @property
     def bodies(self) -> list[Body]:
-        """Its bodies, of which there is one while it is stiff. Those of a thing that was stiff are others than before,
-        but for the first one."""
+        """Its bodies, of which there is one while it is stiff; those of the structure that stands in for it. Those of a thing that was
+        stiff are others than before, but for the first one."""
+        if self._stand_in is not None:
+            stands: list[Body] = [body for body in self._stand_in.bodies if body.alive]
+            return stands
         found = self.root.articulate.bodies
         for other in self.others:
             if other.alive and other not in found:
@@ -111,15 +124,61 @@ class Managed:
     @property
     def _middle(self) -> Particle:
         """The present one; stiffness may end that of the start."""
+        if self._stand_in is not None:
+            return self.bodies[0].particles[0]
         return self.middle if self.middle.alive else self.root.particles[0]
 
     @property
     def _roots(self) -> list[Body]:
+        if self._stand_in is not None:
+            return self._stand_in.roots
         return [body for body in (self.root, *self.others) if body.alive]
+
+    def _swap(self, scene: Scene, level: Level) -> None:
+        """To the structure of a level, or back to the thing's own bodies."""
+        if self._stand_in is not None:
+            whole = self._stand_in.is_whole
+            self._former.append(self._stand_in)
+            if whole:
+                stand_in, self._stand_in = self._stand_in, None
+                stand_in.leave()
+            else:
+                self._keep_stand_in()
+        if level.structure is not None:
+            structure = level.structure(self)
+            self._stand_in = StandIn(self.root.system, scene, self.bodies, structure, level.name)
+
+    def _keep_stand_in(self) -> None:
+        """Somebody has taken the stand-in apart: what is left of it is the thing from now on, at the level full."""
+        assert self._stand_in is not None
+        left = self._stand_in.roots
+        self._stand_in.keep()
+        self._stand_in = None
+        if left:
+            self.root, self.others = left[0], tuple(left[1:])
+            self.middle = left[0].particles[0]
+            self.levels, self.index = self.levels[:1], 0
+
+    @property
+    def mass(self) -> float:
+        """Of all its bodies, kg."""
+        return sum(body.mass for body in self.bodies)
+
+    @property
+    def position(self) -> Vec3:
+        """Its center of mass, m."""
+        total = Vec3()
+        for body in self.bodies:
+            total = total + body.center_of_mass * body.mass
+        return total / self.mass
 
     def _lives(self) -> bool:
         """Whether something of it is left. If its root is gone, what has absorbed the root, or a body of another of its articulates,
-        is its root."""
+        is its root. A stand-in that is gone takes the thing with it."""
+        if self._stand_in is not None:
+            if self._stand_in.is_there:
+                return True
+            self._keep_stand_in()
         if not self.root.alive:
             left = [self.root.survivor, *self.others]
             self.root = next((body for body in left if body is not None and body.alive), self.root)
@@ -490,6 +549,8 @@ class Levels(Part):
         def change() -> None:
             if before.leave is not None:
                 before.leave(thing)
+            if before.structure is not None or after.structure is not None:
+                thing._swap(self._scene, after)
             was_stiff = len(thing.root.parts) > 1
             if after.is_stiff or (after.name == "frozen" and before.is_stiff):
                 if not was_stiff:
@@ -503,16 +564,27 @@ class Levels(Part):
                 thing.on_level(thing, after)
 
         thing.index = index
-        is_own = before.leave is not None or after.enter is not None or thing.on_level is not None
-        if not is_own:
+        functions = (before.leave, after.enter, thing.on_level, before.structure, after.structure)
+        if all(function is None for function in functions):
             change()
         elif not self._guard.call(f"The level {after.name!r}", change):
-            thing.is_pinned = True
+            self._give_up(thing)
+        thing.index = min(thing.index, len(thing.levels) - 1)
+        if before.structure is not None or after.structure is not None:
             self._is_old = True
         self._arrays.note(thing, self._steps)
         self._changes.append(
             LevelChange(self._system.time, thing.name, before.name, after.name, significance, ms, reason)
         )
+
+    def _give_up(self, thing: Managed) -> None:
+        """A function of one of its levels has failed: it is full from now on, with its own bodies."""
+        thing.is_pinned = self._is_old = True
+        thing.index = 0
+        if thing._stand_in is not None:
+            thing._swap(self._scene, thing.levels[0])
+        if thing.root.alive:
+            thing._set_stride(1)
 
     # --- things -----------------------------------------------------------------------------------------------------
 
@@ -654,13 +726,22 @@ class Levels(Part):
     def _resync(self) -> None:
         """The system was restored or undone: its bodies tell their levels."""
         for thing in self._things:
-            if not thing.root.alive:
+            if thing._stand_in is not None:
+                thing._former.append(thing._stand_in)
+            thing._stand_in = next((each for each in thing._former if each.is_whole), None)
+            if not thing._lives():
+                continue
+            if thing._stand_in is not None:
+                thing.index = next((i for i, level in enumerate(thing.levels) if level.structure is not None), 0)
                 continue
             stride, is_stiff = thing.root.stride, len(thing.root.parts) > 1
             fitting = [
                 i
                 for i, level in enumerate(thing.levels)
-                if level.enter is None and level.stride == stride and (level.is_stiff == is_stiff or stride == 0)
+                if level.enter is None
+                and level.structure is None
+                and level.stride == stride
+                and (level.is_stiff == is_stiff or stride == 0)
             ]
             thing.index = fitting[0] if fitting else 0
         self._is_old = True
