@@ -182,7 +182,7 @@ def quaternion_of(turn: Floats) -> tuple[float, float, float, float]:
     w = 1 + trace
     x, y, z = (1 + 2 * float(turn[k, k]) - trace for k in range(3))
     row = int(np.argmax([w, x, y, z]))
-    (a, b, c), (d, e, f), (g, h, i) = turn.tolist()
+    (_, b, c), (d, _, f), (g, h, _) = turn.tolist()
     found = np.array(
         [(h - f, c - g, d - b, w), (x, b + d, c + g, h - f), (b + d, y, f + h, c - g), (c + g, f + h, z, d - b)][row]
     )
