@@ -17,6 +17,7 @@ from iota._core import Articulate, Body, Particle, StepReport, System, Vec3
 from iota.arguments import SHORT, is_number
 from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
+from iota.world.catching_up import catch_up
 from iota.world.clients import Client, Clients
 from iota.world.costs import Costs
 from iota.world.parts import Part
@@ -36,6 +37,8 @@ MOST, MOST_URGENT = 16, 128  # changes in a step
 SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
 SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page shows
+SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
+CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
 JUMP = 2.0  # m in a step: then all things are looked at
 
 
@@ -98,6 +101,7 @@ class Managed:
     significance: Callable[[Managed], float] | None = None
     on_level: Callable[[Managed, Level], None] | None = None
     is_pinned: bool = False
+    can_catch_up: bool = field(default=True, repr=False)  # nothing but hinges and nails holds it
     index: int = field(default=0, repr=False)
     _stand_in: StandIn | None = field(default=None, repr=False)
     _former: deque[StandIn] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # that an undo may bring back
@@ -127,6 +131,13 @@ class Managed:
         if self._stand_in is not None:
             return self.bodies[0].particles[0]
         return self.middle if self.middle.alive else self.root.particles[0]
+
+    @property
+    def _extent(self) -> float:
+        """From the present middle to the farthest point at most, m."""
+        if self._stand_in is None and self.middle.alive:
+            return self.extent
+        return 2 * max(self.extent, self.size)
 
     @property
     def _roots(self) -> list[Body]:
@@ -222,7 +233,8 @@ class Levels(Part):
         self._costs = costs
         self._budget: float | None = None
         self._viewers: Callable[[], Iterable[Place]] | None = None
-        self._reach = 3.0
+        self._reach, self._sight = 3.0, SIGHT
+        self._catch_up_ms = 0.0  # left in this step
         self._things: list[Managed] = []
         self._arrays = _Arrays(system)
         self._is_old = False
@@ -270,6 +282,18 @@ class Levels(Part):
         if not (is_number(value) and math.isfinite(value) and value >= 0):
             raise ValueError(f"reach must be a length of 0 or more, m, not {SHORT.repr(value)}")
         self._reach = float(value)
+
+    @property
+    def sight(self) -> float:
+        """Distance from all viewers beyond which nobody sees whether a thing moves, m. What was frozen there has done what it would
+        have done, about, when it comes into sight: it has fallen, or swung on. Nearer than that it stays where it is seen."""
+        return self._sight
+
+    @sight.setter
+    def sight(self, value: float) -> None:
+        if not (is_number(value) and math.isfinite(value) and value >= 0):
+            raise ValueError(f"sight must be a length of 0 or more, m, not {SHORT.repr(value)}")
+        self._sight = float(value)
 
     @property
     def viewers(self) -> Callable[[], Iterable[Place]] | None:
@@ -324,10 +348,12 @@ class Levels(Part):
                 raise ValueError(f"{root!r} is managed already, as {managed.name!r}")
         if not any(body.particles for body in members):
             raise ValueError(f"{bodies[0]!r} has no particles, so it never moves, and costs nothing")
-        can_be_stiff = len(roots) == 1 and len(members) > 1 and not self._has_joints(members)
+        is_jointed = self._has_joints(members)
+        can_be_stiff = len(roots) == 1 and len(members) > 1 and not is_jointed
         chosen = None if levels is None else self._levels(levels, can_be_stiff)
         made = self._add(roots[0], members, can_be_stiff, name, tuple(roots[1:]))
         made.levels = chosen or made.levels
+        made.can_catch_up = not is_jointed
         made.significance, made.on_level = significance, on_level
         return made
 
@@ -453,6 +479,7 @@ class Levels(Part):
             self._is_old = True
             if self._manages_all:
                 self._manage_all()
+        is_new = self._is_old or self._steps == 0
         if self._is_old:
             self._things = self._living()
             self._arrays.build(self._things)
@@ -464,9 +491,15 @@ class Levels(Part):
         self._seen = seen
         self._steps += 1
         arrays = self._arrays
-        for part in range(arrays.slices) if jumped or self._steps == 1 else (self._steps % arrays.slices,):
+        self._catch_up_ms = CATCH_UP
+        for part in range(arrays.slices) if jumped or is_new else (self._steps % arrays.slices,):
             rows = slice(part, None, arrays.slices)
-            arrays.look(rows, part, seen, self._reach)
+            arrays.look(rows, part, seen, self._reach, self._sight)
+            come = arrays.come_into_sight(rows, self._system.time)
+            for row in come:
+                self._catch_up(self._things[row])
+            if len(come):
+                arrays.look(rows, part, seen, self._reach, self._sight)
             for near in np.nonzero(arrays.near[rows] & (arrays.level[rows] > 0))[0]:
                 self._change(self._things[part + arrays.slices * int(near)], 0, 1.0, 0.0, "in reach")
         self._free_held()
@@ -545,6 +578,8 @@ class Levels(Part):
             self._is_old = True
             return
         before, after = thing.level, thing.levels[index]
+        if before.stride == 0 and after.stride != 0:
+            self._catch_up(thing)
 
         def change() -> None:
             if before.leave is not None:
@@ -577,6 +612,18 @@ class Levels(Part):
             LevelChange(self._system.time, thing.name, before.name, after.name, significance, ms, reason)
         )
 
+    def _catch_up(self, thing: Managed) -> None:
+        """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that."""
+        seconds = self._arrays.take_missed(thing, self._system.time)
+        if not (seconds > 0 and thing.can_catch_up and thing._stand_in is None and thing.root.alive):
+            return
+        if self._catch_up_ms <= 0:
+            return
+        began = time.process_time()
+        if catch_up(self._system, thing.bodies, seconds):
+            thing._set_stride(thing.level.stride)
+        self._catch_up_ms -= 1e3 * (time.process_time() - began)
+
     def _give_up(self, thing: Managed) -> None:
         """A function of one of its levels has failed: it is full from now on, with its own bodies."""
         thing.is_pinned = self._is_old = True
@@ -608,8 +655,9 @@ class Levels(Part):
             members = articulate.bodies
             moving = [body for body in members if body.kind in ("dynamic", "resting")]
             if moving and not moving[0].is_spark and any(len(body.particles) > 1 for body in moving):
-                can_be_stiff = len(members) > 1 and not any(body in jointed for body in members)
-                self._add(moving[0], members, can_be_stiff, "")
+                is_jointed = any(body in jointed for body in members)
+                made = self._add(moving[0], members, len(members) > 1 and not is_jointed, "")
+                made.can_catch_up = not is_jointed
 
     def _add(
         self, root: Body, members: list[Body], can_be_stiff: bool, name: str, others: tuple[Body, ...] = ()
@@ -769,6 +817,7 @@ class _Arrays:
         self._row: dict[int, int] = {}
         self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
         self.changed = np.zeros(0, dtype=int)
+        self.since = np.zeros(0)  # s: it has been frozen and out of sight; nan: it is not
         self.build([])
 
     def build(self, things: list[Managed]) -> None:
@@ -784,7 +833,7 @@ class _Arrays:
         self.last = np.array([len(thing.levels) - 1 for thing in things], dtype=int)
         self.pinned = np.array([thing.is_pinned for thing in things], dtype=bool)
         self.size = np.array([thing.size for thing in things], dtype=float)
-        self.extent = np.array([thing.extent for thing in things], dtype=float)
+        self.extent = np.array([thing._extent for thing in things], dtype=float)
         self.qualities, self.shares = np.zeros((count, width)), np.zeros((count, width))
         self.strides = np.ones((count, width), dtype=int)
         for row, thing in enumerate(things):
@@ -794,15 +843,17 @@ class _Arrays:
                     level.share,
                     level.stride,
                 )
-        self.near = np.zeros(count, dtype=bool)
+        self.near, self.is_far = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.significance, self.load, self.full_load = np.zeros(count), np.zeros(count), np.zeros(count)
         self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.changed = np.full(count, -HOLD, dtype=int)
+        since, self.since = self.since, np.full(count, np.nan)
         for key, former, significance, load, full_load, changed in before:
             row = self._row.get(key, -1)
             if row >= 0:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
+                self.since[row] = since[former]
         self._roots, self._starts, self._middles = [], [], []
         for part in range(self.slices):
             roots = [thing._roots for thing in things[part :: self.slices]]
@@ -819,7 +870,25 @@ class _Arrays:
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
             self.touches[row] = self.runs[row] = False
 
-    def look(self, rows: slice, part: int, eyes: Floats, reach: float) -> None:
+    def come_into_sight(self, rows: slice, now: float) -> NDArray[np.intp]:
+        """The frozen things that have. Notes those that are out of sight."""
+        indices = np.arange(len(self.since))[rows]
+        is_frozen = self.strides[indices, self.level[indices]] == 0
+        is_missed, is_far = np.isfinite(self.since[indices]), self.is_far[indices]
+        self.since[indices[is_frozen & is_far & ~is_missed]] = now
+        come: NDArray[np.intp] = indices[is_frozen & ~is_far & is_missed]
+        return come
+
+    def take_missed(self, thing: Managed, now: float) -> float:
+        """For how long it has been frozen out of sight, s."""
+        row = self._row.get(id(thing))
+        if row is None or not np.isfinite(self.since[row]):
+            return 0.0
+        seconds = now - float(self.since[row])
+        self.since[row] = np.nan
+        return seconds
+
+    def look(self, rows: slice, part: int, eyes: Floats, reach: float, sight: float) -> None:
         """Reads some things, and what they mean to the viewers."""
         roots, middles = self._roots[part], self._middles[part]
         if roots is None or middles is None:
@@ -845,11 +914,12 @@ class _Arrays:
         if len(eyes):
             distance = np.linalg.norm(places[:, None, :] - eyes[None, :, :], axis=2).min(axis=1)
             self.near[rows] = distance - self.extent[rows] <= NEAR * reach
+            self.is_far[rows] = distance - self.extent[rows] > sight
             distance = np.maximum(distance - 0.5 * size, 1e-3)
             seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
         else:
             seen = speeds + IDLE
-            self.near[rows] = False
+            self.near[rows], self.is_far[rows] = False, True
         self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen)
 
     def share_now(self, rows: NDArray[np.intp]) -> Floats:

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, System
+from iota._core import Body, Particle, System
 from iota.arguments import SHORT
 from iota.world.frames import one_after_another
 
@@ -158,22 +158,32 @@ class StandIn:
         """Puts the bodies, which are inactive, where the stand-in has gone."""
         before = self._before
         quaternion = quaternion_of(turn)
-        solid = [body for body in self._originals if body.solids]
-        poses = [(np.array(list(body.position)), body.orientation) for body in solid]  # before any changes a hinged one
-        for body, (place, orientation) in zip(solid, poses, strict=True):
-            body.set_pose(center + turn @ (place - before.center), one_after_another(quaternion, orientation))
-        taken = {mate for body in solid for p in body.particles for mate in p.ring}
-        rows = [row for row, p in enumerate(before.points) if p not in taken]
-        if rows:
-            points = list(before.points)
-            array = self._system.array([points[row] for row in rows])
-            array.positions = center + before.arms[rows] @ turn.T
+        poses = {
+            body: (
+                center + turn @ (np.array(list(body.center_of_mass)) - before.center),
+                one_after_another(quaternion, body.orientation),
+            )
+            for body in self._originals
+            if body.solids
+        }
+        places = dict(zip(before.points, center + before.arms @ turn.T, strict=True))
+        put(self._system, poses, places)
 
     def keep(self) -> None:
         """It is the thing from now on."""
         for body in self._originals:
             if body.alive:
                 body.destroy()
+
+
+def put(system: System, poses: Mapping[Body, tuple[Any, Any]], places: Mapping[Particle, Any]) -> None:
+    """Puts bodies at poses, centers of mass and orientations, and particles of others at places; hinged ones pull at none."""
+    if poses:
+        system.array(list(poses)).poses = np.array([[*place, *turn] for place, turn in poses.values()])
+    taken = {mate for body in poses for p in body.particles for mate in p.ring}
+    points = [p for p in places if p not in taken]
+    if points:
+        system.array(points).positions = np.array([list(places[p]) for p in points])
 
 
 def quaternion_of(turn: Floats) -> tuple[float, float, float, float]:
