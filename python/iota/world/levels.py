@@ -31,7 +31,9 @@ SLICES = (8, 64)  # steps in which each thing is looked at once: with few and wi
 PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
-AIM, FULL, LOW = 0.65, 0.75, 0.5  # of the budget: aimed at, begin to reduce, begin to restore
+FULL, AIM, LOW = 0.75, 0.1, 0.25  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
+LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
+SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes from other programs
 URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
 SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
@@ -244,6 +246,8 @@ class Levels(Part):
         self._expected_step: int | None = None
         self._ms = self._own_ms = self._ms_of_work = 0.0
         self._latest_ms: tuple[float, ...] = ()
+        self._full = FULL
+        self._ratios: deque[float] = deque(maxlen=LEARNT)  # of steps to the smoothed one
         self._seen: Floats = np.zeros((0, 3))
         self._changes: deque[LevelChange] = deque(maxlen=1000)
         self._groups: list[tuple[str, int, list[int]]] = []
@@ -458,6 +462,7 @@ class Levels(Part):
 
     def _take_ms(self, ms: float) -> None:
         """The median of three: a single step that another process has held up is no load."""
+        self._learn(ms)
         self._latest_ms = (*self._latest_ms[-2:], ms)
         ms = sorted(self._latest_ms)[len(self._latest_ms) // 2]
         self._ms = ms if self._ms == 0 else self._ms + SMOOTH * (ms - self._ms)
@@ -465,6 +470,16 @@ class Levels(Part):
         if work > 0:
             now = ms / work
             self._ms_of_work = now if self._ms_of_work == 0 else self._ms_of_work + SLOW * (now - self._ms_of_work)
+
+    def _learn(self, ms: float) -> None:
+        """Rare steps are to be within the budget, too: the more steps differ, the lower is what a usual one may take."""
+        if self._ms <= 0:
+            return
+        self._ratios.append(ms / self._ms)
+        count = len(self._ratios)
+        if self._steps % LEARN_EVERY == 0 and 4 * count >= LEARNT:
+            rare = float(np.partition(np.array(self._ratios), int(RARE * count))[int(RARE * count)])
+            self._full = 1 / min(max(rare, SPREADS[0]), SPREADS[1])
 
     def _plan(self) -> None:
         assert self._budget is not None
@@ -515,17 +530,17 @@ class Levels(Part):
         arrays, budget = self._arrays, self._budget
         is_urgent = self._ms > URGENT * budget
         waited = self._steps - arrays.changed
-        if self._ms > FULL * budget:
+        if self._ms > self._full * budget:
             hold = HOLD_URGENT if is_urgent else HOLD
             free = (waited >= hold) & ~arrays.near & ~arrays.pinned & (arrays.level < arrays.last)
             self._reduce(
                 np.nonzero(free)[0],
-                self._ms - AIM * budget,
+                self._ms - (self._full - AIM) * budget,
                 max(MOST_URGENT if is_urgent else MOST, len(self._things) // 40),
             )
-        elif self._ms < LOW * budget:
+        elif self._ms < (self._full - LOW) * budget:
             free = (waited >= HOLD) & (arrays.level > 0)
-            self._restore(np.nonzero(free)[0], AIM * budget - self._ms)
+            self._restore(np.nonzero(free)[0], (self._full - AIM) * budget - self._ms)
 
     def _reduce(self, rows: NDArray[np.intp], need: float, most: int) -> None:
         """The least loss of significance for each saved millisecond first."""
