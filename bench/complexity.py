@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What complexity management gains, and the error that is seen: the figures of docs/complexity.md.
 
-    python bench/complexity.py [gain | budget | control]
+    python bench/complexity.py [gain | budget | walk | control]
 
 Times are processor times. The error is the angle at which a viewer 10 m away sees a point beside its place in the full
 simulation from the same state, over 0.5 s.
@@ -165,6 +165,26 @@ def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
     print(f"all full after {steps_back * DT:.2f} s")
 
 
+def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0) -> None:
+    """The lamp's way through the valley, again and again, with a load of `factor` budgets: percentiles of all frames but the first
+    700, in which the headroom is learnt."""
+    world = crowd.build(count, None)
+    for _ in range(20):
+        world.step()
+    offered = cost(world)
+    limit = offered / factor
+    world.levels.budget_ms = limit
+    taken: list[float] = []
+    object.__setattr__(world.levels, "_take_ms", _noting(world.levels._take_ms, taken))
+    for frame in range(1, frames + 1):
+        world.step()
+        if frame in (frames // 10, frames):
+            shares = np.array(taken[700:]) / limit
+            found = " ".join(f"{np.percentile(shares, p):.2f}" for p in (50, 90, 99, 99.9, 100))
+            print(f"{count} things, {offered:.1f} ms offered, {frame} frames: p50 p90 p99 p99.9 most {found} of the budget")
+            print(f"a usual step may take {world.levels._full:.2f} of it; {world.levels}", flush=True)
+
+
 def _noting(function: Callable[[float], None], taken: list[float]) -> Callable[[float], None]:
     def note(ms: float) -> None:
         taken.append(ms)
@@ -209,6 +229,8 @@ def main() -> None:
         draw(gain_and_error())
     elif wanted == "budget":
         budget(*map(int, sys.argv[2:3]))
+    elif wanted == "walk":
+        walk(*map(int, sys.argv[2:4]))
     elif wanted == "control":
         control()
 

@@ -25,11 +25,17 @@ bool is_of_joint(const Model& model, std::uint32_t p) {
   return owned;
 }
 
-/// Whether a cosmetic bond begins at a particle of a body.
+/// Whether a cosmetic bond that begins at particle p is one of its body. A bond of which one end has gone with another body
+/// lies in neither: the line would reach from the body to something that it is not hinged to, and touch it.
+bool is_within(const Model& model, const CosmeticBond& bond, std::uint32_t p) {
+  return bond.p == p && model.particles[bond.q].body == model.particles[p].body;
+}
+
 bool has_bonds(const Model& model, std::uint32_t body) {
   bool has = false;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) { has = has || model.cosmetic_bonds[slot].p == p; });
+    model.cosmetic_bonds.for_each_of(
+        p, [&](std::uint32_t slot) { has = has || is_within(model, model.cosmetic_bonds[slot], p); });
   });
   return has;
 }
@@ -85,7 +91,7 @@ void CosmeticBonds::visit_lines(const Model& model, std::uint32_t body, Structur
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) {
         const CosmeticBond& bond = model.cosmetic_bonds[slot];
-        if (bond.p == p) visit(bond.p, bond.q);
+        if (is_within(model, bond, p)) visit(bond.p, bond.q);
       });
     });
     return;

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import iota
+from iota.studies import crowd
 from iota.world import levels
 from iota.world.levels import Level, Managed
 
@@ -269,6 +270,37 @@ def test_wrong_levels_are_refused(made: tuple[iota.World, list[iota.Body]]) -> N
     system.revolute(door, frame, at=(1, 50, 0), axis=(0, 1, 0))
     with pytest.raises(ValueError, match="joints would end"):
         manage([door], levels=["full", "stiff"])
+
+
+def test_an_undo_after_off_does_not_bring_strides_back(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    reduced = world.system.snapshot()
+    world.levels.budget_ms = None
+    run(world, 5)
+    world.system.restore(reduced)
+    assert roots[3].stride == 0
+    run(world, 1)
+    assert [root.stride for root in roots] == [1] * 6
+
+
+def test_what_was_stiff_twice_has_the_shape_that_it_had() -> None:
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.5)
+    world = iota.World(system, ground=None)
+    root = crowd.ladder(world, iota.Vec3(0, 3.4, 0), "#888888", 1)
+    thing = world.levels.manage(root.articulate)
+    energy = system.energy.total
+    for _ in range(2):
+        thing._set_stiff(True)
+        run(world, 1)
+        thing._set_stiff(False)
+        for _ in range(12):
+            report = world.step()
+            assert report is not None and report.worst_gap < 1e-4
+            assert sum(len(body.contacts) for body in thing.bodies) == 0
+    assert system.energy.total < energy + 1
 
 
 def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:

@@ -7,6 +7,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -40,6 +41,7 @@ SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in tha
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
 SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page shows
 SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
+MISSED = 0.25  # s: a thing that was frozen for less has missed nothing; its last stride is over then
 CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
 JUMP = 2.0  # m in a step: then all things are looked at
 
@@ -238,6 +240,7 @@ class Levels(Part):
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
         self._things: list[Managed] = []
+        self._parked: list[Managed] = []  # that were managed until `off`
         self._arrays = _Arrays(system)
         self._is_old = False
         self._manages_all = False
@@ -275,6 +278,7 @@ class Levels(Part):
         if not isinstance(self._system, System):
             raise TypeError("complexity management needs a System; this world has a simulator of its own")
         self._budget = float(value)
+        self._parked = []
 
     @property
     def reach(self) -> float:
@@ -377,9 +381,15 @@ class Levels(Part):
         for thing in self._things:
             if thing.index and thing.root.alive:
                 self._change(thing, 0, 0.0, 0.0, "off")
+        for thing in self._things:  # a function of the script may have undone that
+            for root in thing._roots:
+                if root.stride != 1:
+                    thing._set_stride(1)
+        self._parked = [thing for thing in self._things if thing._roots]
         self._things.clear()
         self._manages_all = False
         self._count = -1
+        self._expected_step = self._system.step_count
         self._is_old = True
 
     @property
@@ -449,8 +459,10 @@ class Levels(Part):
         try:
             with self._costs.of("levels"):
                 self._plan()
-        except StaleIdError:  # destroyed by the script since the last step
-            self._forget_dead()
+        except StaleIdError:  # destroyed by the script since the last step, or within it
+            self._is_old = True
+            with suppress(StaleIdError), self._costs.of("levels"):
+                self._plan()
         planned = time.process_time()
         try:
             return self._system.step(dt)
@@ -459,6 +471,17 @@ class Levels(Part):
             self._expected_step = self._system.step_count
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
             self._take_ms(1e3 * (ended - planned))
+
+    def _stay_off(self) -> None:
+        """Before a step without a budget: an undo or a reset to a time with one brings strides back."""
+        if not self._parked:
+            return
+        if self._system.step_count != self._expected_step:
+            for thing in self._parked:
+                for root in thing._roots:
+                    if root.stride != 1:
+                        thing._set_stride(1)
+        self._expected_step = self._system.step_count + 1
 
     def _take_ms(self, ms: float) -> None:
         """The median of three: a single step that another process has held up is no load."""
@@ -630,7 +653,7 @@ class Levels(Part):
     def _catch_up(self, thing: Managed) -> None:
         """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that."""
         seconds = self._arrays.take_missed(thing, self._system.time)
-        if not (seconds > 0 and thing.can_catch_up and thing._stand_in is None and thing.root.alive):
+        if not (seconds > MISSED and thing.can_catch_up and thing._stand_in is None and thing.root.alive):
             return
         if self._catch_up_ms <= 0:
             return
@@ -782,9 +805,6 @@ class Levels(Part):
         if not self._guard.call("A significance", ask, hint="Visual angle and speed count instead."):
             thing.significance = None
             self._is_old = True
-
-    def _forget_dead(self) -> None:
-        self._is_old = True
 
     def _resync(self) -> None:
         """The system was restored or undone: its bodies tell their levels."""

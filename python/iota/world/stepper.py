@@ -148,6 +148,8 @@ class Stepper:
             state.step_costs.clear()
         levels = state.levels
         is_managed = levels is not None and levels.budget_ms is not None
+        if levels is not None and not is_managed:
+            levels._stay_off()
         take: Callable[[float], StepReport] = levels._step if is_managed and levels is not None else state.system.step
         is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
         if not is_due or not isinstance(state.system, System):
