@@ -181,7 +181,9 @@ def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0) -> None:
         if frame in (frames // 10, frames):
             shares = np.array(taken[700:]) / limit
             found = " ".join(f"{np.percentile(shares, p):.2f}" for p in (50, 90, 99, 99.9, 100))
-            print(f"{count} things, {offered:.1f} ms offered, {frame} frames: p50 p90 p99 p99.9 most {found} of the budget")
+            print(
+                f"{count} things, {offered:.1f} ms offered, {frame} frames: p50 p90 p99 p99.9 most {found} of the budget"
+            )
             print(f"a usual step may take {world.levels._full:.2f} of it; {world.levels}", flush=True)
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import os
 import random
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -80,7 +81,7 @@ class Scene:
         for k in range(4):
             points.append(self.system.body().particle(at + (0.3 * k, 0, 0), mass=0.2))
         points[0].nail()
-        for p, q in zip(points, points[1:], strict=False):
+        for p, q in pairwise(points):
             self.system.bond(p, q, "spring", stiffness=80, damping=0.5, length=0.3)
 
     def manage(self) -> None:
@@ -88,13 +89,21 @@ class Scene:
         for articulate in self.system.articulates:
             if not any(body.kind == "dynamic" for body in articulate.bodies) or self.dice.random() < 0.2:
                 continue
-            levels: list[str | Level] = ["full", *self.dice.sample(["1/2", "1/4", "1/8"], self.dice.randint(0, 3)), "frozen"]
+            levels: list[str | Level] = [
+                "full",
+                *self.dice.sample(["1/2", "1/4", "1/8"], self.dice.randint(0, 3)),
+                "frozen",
+            ]
             kind = self.dice.random()
             jointed = bool(self.system.constraints) or bool(self.system.bonds)
             if kind < 0.2 and not jointed:
                 levels = ["full", Level("far", share=0.1, quality=0.5, structure=stand_in)]
             elif kind < 0.3:
-                levels = ["full", Level("own", share=0.1, quality=0.5, enter=self.fail if kind < 0.23 else None), "frozen"]
+                levels = [
+                    "full",
+                    Level("own", share=0.1, quality=0.5, enter=self.fail if kind < 0.23 else None),
+                    "frozen",
+                ]
             elif kind < 0.4:
                 levels = []
             thing = self.world.levels.manage(

@@ -144,7 +144,9 @@ class StandIn:
         for body in self._originals:
             body.active = True
         there = Motion(self._system, self._originals)
-        if before.is_nailed:  # back where they were, they move as they did: else they would have fallen, and not be lower
+        if (
+            before.is_nailed
+        ):  # back where they were, they move as they did: else they would have fallen, and not be lower
             there.points.velocities = before.velocities
             return
         allowed = now.kinetic + self._inner
