@@ -174,6 +174,20 @@ def test_a_stand_in_that_is_destroyed_takes_its_thing_along() -> None:
     assert made.system.validate() == []
 
 
+def test_a_stand_in_that_is_destroyed_in_the_frame_of_its_change_is_no_error(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    made = Thing(ball)
+    made.reach("far")
+    made.world.levels.budget_ms = PLENTY
+    made.world.levels.manage(made.system.body(shape=iota.Sphere(0.1), mass=1, position=(0, 0, 190)))
+    made.thing.bodies[0].destroy()
+    made.world.levels._change(made.thing, 0, 0.0, 0.0, "in reach")
+    made.run(3)
+    assert capsys.readouterr().err == "" and len(made.system.bodies) == 1
+    assert len(made.world.levels.things) == 1 and made.system.validate() == []
+
+
 def test_a_stand_in_that_is_taken_apart_is_the_thing_from_then_on() -> None:
     def two(thing: Managed) -> Structure:
         made = Structure()

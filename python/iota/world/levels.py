@@ -624,6 +624,8 @@ class Levels(Part):
                 before.leave(thing)
             if before.structure is not None or after.structure is not None:
                 thing._swap(self._scene, after)
+            if not thing.root.alive or after not in thing.levels:
+                return  # the script has destroyed it meanwhile, or taken what stood in for it apart
             was_stiff = len(thing.root.parts) > 1
             if after.is_stiff or (after.name == "frozen" and before.is_stiff):
                 if not was_stiff:
