@@ -53,7 +53,10 @@ def test_its_title_says_how_large_it_is(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(set(studies.names()) - {"bucky"}))  # whose nail is the middle of the ball
 def test_every_nail_is_at_something_visible(name: str) -> None:
     world = studies.module(name).build()
-    held = [p for p in world.system.particles if p.is_nailed]
+    cages = next(
+        (group for group in world.system.groups if group.name == "cages"), ()
+    )  # of the museum: its bucky balls
+    held = [p for p in world.system.particles if p.is_nailed and p not in cages]
     held += [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
     for thing in held:
         near = world.queries.overlap(iota.Sphere(0.03), thing.position)
