@@ -213,7 +213,7 @@ struct Blown {
     for (const ParticleId p : system.bodies().particles(falling)) system.particles().set_velocity(p, {0, -1, 0});
     const GroupId group = system.groups().create("blown");
     for (const ParticleId p : system.bodies().particles(box)) system.groups().add(group, p);
-    system.fields().create("wind", {.group = group, .parameters = {{"velocity_y", 3}, {"drag", 0.5}}});
+    system.fields().create("wind", {.parameters = {{"velocity_y", 3}, {"drag", 0.5}}, .group = group});
     (void)system.step(0.01);
   }
 };
