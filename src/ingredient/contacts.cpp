@@ -300,8 +300,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
   Sides sides[2]{{model, first, second, basis, other_basis}, {model, second, first, other_basis, basis}};
   const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
   const double most = (both_move ? deepest_of_moving : deepest) * motion.size;
-  // Of a pair that touches, each place counts: when others became the nearest ones of two bodies that had been pressed
-  // together they went through each other.
+  // A pair that touches takes all its places: two bodies that had been pressed together went through each other when other
+  // places became their nearest ones.
   const bool are_known = std::ranges::any_of(former, [&](std::uint32_t slot) { return !is_tie(model.contacts[slot]); });
   for (const contact::Touch& t : touches) {
     const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;

@@ -68,7 +68,7 @@ class Heap {
     double mass = 0, mass_first = 0, mass_second = 0;           ///< kg
     double impulse = 0, impulse_first = 0, impulse_second = 0;  ///< in a sub-step, N s
   };
-  /// What sweeps do not need of it.
+  /// The rest of it, which sweeps do not need.
   struct PointBegin {
     std::uint32_t row = 0;
     double restitution = 0;

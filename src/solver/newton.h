@@ -123,7 +123,7 @@ class Newton {
     std::span<const Vec3> impulses;  ///< of each node, if any
     bool is_after_step = false, has_impacts = false;
     double still = 0;  ///< m/s: slower rates are round-off of places, so that what rests needs no projection
-    double end = 1;  ///< of the (sub-)step, as a fraction of the step
+    double end = 1;    ///< of the (sub-)step, as a fraction of the step
     double tolerance() const { return is_after_step ? 1e-12 : 2e-15; }  ///< of the largest velocity
     double fraction() const { return is_after_step ? 1 : 0; }           ///< of the step, for targets that move
   };

@@ -60,7 +60,7 @@ struct IntegratorSettings {
   double part = 1;           ///< of a whole step: sweeps take so many of their sub-steps
   /// Multiplications for a single step, as blows need more than what follows: eight budgets. Few problems need them at
   /// the same time, so that each gets more than its share.
-  double contact_burst() const { return 2 * std::sqrt(contact_share) * contact_budget; }
+  double contact_burst() const { return 8 * part * std::sqrt(contact_share) * contact_budget; }
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
   /// When all solves of a step have to end, but the last resort's.

@@ -65,7 +65,7 @@ class ContactFinder {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
   void list_obstacles(model::Model&, contact::Outlines&);
-  /// Of the time of this look, at the begin of the step or of a part of it.
+  /// A body at the time of this look, the begin of the step or of a part of it.
   Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void begin_look(const model::Model&, double h);
   void list_movers(model::Model&, const contact::Outlines&);
