@@ -300,15 +300,21 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
   Sides sides[2]{{model, first, second, basis, other_basis}, {model, second, first, other_basis, basis}};
   const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
   const double most = (both_move ? deepest_of_moving : deepest) * motion.size;
-  // A pair that touches takes all its places: two bodies that had been pressed together went through each other when other
+  // Parts that touch take all their places: two bodies that had been pressed together went through each other when other
   // places became their nearest ones.
-  const bool are_known = std::ranges::any_of(former, [&](std::uint32_t slot) { return !is_tie(model.contacts[slot]); });
+  const auto are_known = [&](const contact::Touch& t, std::uint32_t p) {
+    return std::ranges::any_of(former, [&](std::uint32_t slot) {
+      const Contact& c = model.contacts[slot];
+      return !is_tie(c) && (c.p == p ? c.part == t.part && c.other_part == t.other_part
+                                     : c.part == t.other_part && c.other_part == t.part);
+    });
+  };
   for (const contact::Touch& t : touches) {
     const std::uint32_t p = t.is_turned ? second : first, q = t.is_turned ? first : second;
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (!are_known && t.gap < -most) continue;
+    if (is_new && t.gap < -most && !are_known(t, p)) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,

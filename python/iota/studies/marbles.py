@@ -14,7 +14,7 @@ SMOOTH = iota.Material(friction=0.03)
 MARBLES, ROW = 20, 0.09  # how many; from one to the next on the uppermost gutter, m
 LEAN = 0.11  # rad, of the gutters
 WIDTH, WALL, HIGH = 0.07, 0.012, 0.035  # of a gutter within, of its walls, of its sides, m
-BAY = 0.22  # length of the higher sides where marbles turn back, m
+BAY = 0.5  # length of the higher sides where marbles turn back, m
 GUTTERS = (  # from x to x, height of the middle, m; way down; height of the end that turns marbles back
     (-1.2, 0.72, 1.42, 1, 0.035),
     (-0.62, 0.86, 1.08, -1, 0.3),
