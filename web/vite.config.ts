@@ -78,7 +78,11 @@ export default defineConfig({
     rolldownOptions: {
       input: ["index.html", "gallery.html", "rooms.html", "enter.html"],
       // Parts that are loaded later share three.js and picking with the page: one file, as each costs a header of its own.
-      output: { codeSplitting: { groups: [{ name: "shared", test: /node_modules\/three\/|src\/interact\/picking/ }] } },
+      output: { codeSplitting: { groups: [
+        { name: "shared", test: /node_modules\/three\/|src\/interact\/picking/ },
+        // The other pages need these too, but not three.js.
+        { name: "small", test: /src\/(net\/token|ui\/dom)/ },
+      ] } },
     },
     license: { fileName: "licenses.txt" },
   },

@@ -86,7 +86,8 @@ def test_headless_json_has_the_figures_and_is_the_same_each_time() -> None:
     first, second = figures
     assert list(first) == KEYS
     assert first["steps"] == 1200 and first["simulated_s"] == pytest.approx(10)
-    assert first["worst_gap_m"] <= 1e-9 and first["cpu_s"] > 0
+    # From 4 s on the story's spring jerks the part that fell. A solve may end with a residual of 1e-8 that no step reduces.
+    assert first["worst_gap_m"] <= 1e-8 and first["cpu_s"] > 0
     first.pop("cpu_s"), second.pop("cpu_s")
     assert first == second
 
@@ -211,7 +212,9 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     done = run("run", "chain", "--no-open", "--port", "0", "--seconds", "1", "--json")
     assert done.returncode == 0 and all("slow motion" in line for line in done.stderr.splitlines())
     lines = done.stdout.splitlines()
-    assert re.fullmatch(r"chain: 1\.8 m long: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
+    assert re.fullmatch(
+        r"chain: 1\.8 m to be pulled, broken and joined: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0]
+    )
     assert [line.split()[0] for line in lines[1:4]] == ["b", "c", "t"]
     assert 1 <= json.loads(lines[4])["steps"] <= 125 and len(lines) == 5
 

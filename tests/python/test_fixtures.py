@@ -274,6 +274,22 @@ def test_a_mouse_pulls_a_drawer_towards_the_viewer_by_its_ray(rig: Rig) -> None:
     assert drawer.is_open and len(rig.told) == 1
 
 
+def test_a_drawer_goes_to_the_last_ray_of_a_mouse_also_if_that_arrives_after_the_hand_has_moved(rig: Rig) -> None:
+    drawer = rig.world.drawer((0, 1, 0))
+    eye = iota.Vec3(0.1, 1.5, 2.0)
+    front = rig.grab(drawer.bodies[0], (0, 1, 0.03))
+    facing = (front - eye).unit()
+    for out in (0.0, 0.1, 0.2):
+        ray = (front + (0, 0, out) - eye).unit()
+        hand = eye + ray * ((front - eye).dot(facing) / ray.dot(facing))
+        rig.move(hand)
+        rig.world.step()
+        rig.point("mouse", hand, eye, ray, button=1.0)
+        rig.world.step()
+    rig.run(2.0)
+    assert drawer.slide == pytest.approx(0.2, abs=0.02)
+
+
 def test_a_hand_in_space_pulls_a_drawer_by_its_own_place(rig: Rig) -> None:
     drawer = rig.world.drawer((0, 1, 0))
     front = rig.grab(drawer.bodies[0], (0, 1, 0.03))

@@ -179,7 +179,7 @@ def test_every_study_has_a_thumbnail_and_a_line(gallery: Gallery) -> None:
     base = gallery.url.split("?")[0]
     listed = json.loads(urlopen(base + "studies.json").read())
     assert [group["group"] for group in listed] == list(serving.GROUPS)
-    assert listed[0]["studies"][0]["name"] == "lab" and listed[-1]["studies"][0]["name"] == "appendix-e1"
+    assert listed[0]["studies"][0]["name"] == "museum" and listed[-1]["studies"][0]["name"] == "appendix-e1"
     shown = [study for group in listed for study in group["studies"]]
     assert sorted(study["name"] for study in shown) == studies.names(), "each study once"
     assert all(study["title"][0].isupper() and "-" not in study["title"] for study in shown)

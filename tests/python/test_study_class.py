@@ -196,6 +196,7 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
     story = Story(world, wait=1.0, on_stop=lambda: told.append("stopped"))
     story.at(0.5)(lambda: told.append("one"))
     story.at(1.0)(lambda: told.append("two"))
+    story.action("three", key="t", help="tells three")(lambda: told.append("three"))
     run(world, 1.2)
     assert told == [] and story.is_told
     run(world, 1.0)
@@ -203,8 +204,9 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
     run(world, 1.2)
     assert told == ["one", "two"] and story.is_told
     run(world, 0.6)
-    story.touch()
-    assert told == ["one", "two", "one", "stopped"] and not story.is_told
+    world.controls.act("three")
+    run(world, 0.02)
+    assert told == ["one", "two", "one", "stopped", "three"] and not story.is_told
     assert cards == ["The story begins", "The story begins", "The story stops"]
     run(world, 0.5)
     world.reset()

@@ -191,6 +191,9 @@ def plain(scene: Scene) -> Any:
 
 def assert_alike(one: Any, other: Any, place: str = "", within: float = 1e-9) -> None:
     if isinstance(one, dict):
+        # A motion that is 0 is left out; one of 1e-12 may become 0 by rounding.
+        still = {key: [0.0, 0.0, 0.0] for key in ("velocity", "spin") if key in one or key in other}
+        one, other = still | one, still | other
         assert one.keys() == other.keys(), place
         for key in one:
             assert_alike(one[key], other[key], f"{place}/{key}", within)

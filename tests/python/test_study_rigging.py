@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+import iota
 from iota.studies import rigging
 
 
@@ -124,3 +125,33 @@ def test_a_reset_and_a_key_begin_anew_with_four_parts() -> None:
     world.controls.act("anew")
     world.step()
     assert crate.position.y == pytest.approx(height, abs=1e-3)
+
+
+def test_a_reset_and_an_undo_bring_back_the_tackle_that_is_read_and_can_be_led_anew() -> None:
+    world = rigging.build()
+    parts = next(thing for thing in world.drawings.things if getattr(thing, "label", "") == "parts of the tackle")
+
+    def choose(number: int) -> None:
+        parts.take(number - 1.0, "", iota.Event(world.system, "change"), world._guard)
+        world.step()
+
+    def assert_led(number: int) -> None:
+        """There is one tackle, of so many parts, and its label tells its force."""
+        for _ in range(480):
+            world.step()
+        assert [len(each.terms) - 1 for each in world.system.constraints if each.kind == "tackle"] == [number]
+        (text,) = (thing.text for thing in world.drawings.things if getattr(thing, "text", "").startswith("tackle "))
+        weight = (rigging.CRATE + rigging.BLOCK) * 9.81
+        assert float(text.split()[1]) == pytest.approx(weight / number, rel=0.1)
+
+    world.step()
+    for number in (3, 1):  # both are gone after the reset
+        choose(number)
+    world.reset()
+    assert_led(4)
+    assert parts.value == "4"
+    choose(2)
+    assert_led(2)
+    choose(3)
+    world.undo()
+    assert_led(2)

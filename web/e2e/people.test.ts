@@ -33,6 +33,8 @@ it("are seen by each other with their names, where they look from", async () => 
   // Who looks from the same place is not drawn.
   await ada.until("it knows where both are", () => iota.page.world.people.length === 2);
   await expect.poll(() => names(ada)).toEqual([]);
+  // The first view of a page would replace an earlier one.
+  await bo.until("Bo sees the world", () => !iota.page.viewer.hidden);
   // Bo goes to the other side of the chain, a little aside.
   await bo.page.evaluate(() => {
     const { navigation } = iota.page;

@@ -13,10 +13,12 @@ import iota
 from iota import looks
 
 Array = Any
+Place = Sequence[float]  # or a size: x, y, z, m
 Key = tuple[str, str]  # material, color
 FLOOR, WALL, WHITE = ("wood", "#f3dfc4"), ("paint", "#dfe3e2"), ("paint", "#f4f4f0")
 OAK, DARK, METAL = ("wood", "#fff1dc"), ("paint", "#23272b"), ("steel", "#aeb4ba")
 GREEN, CLAY, GLASS = ("paint", "#3f7a45"), ("paint", "#a5603f"), ("glass", "#bcd7e4")
+CUSHION = ("rubber", "#38506b")
 BOOKS = [("paint", color) for color in ("#7a2f2f", "#2f4f7a", "#356b4a", "#b08b3c", "#5c4a72", "#d9d2c0")]
 KEYS = (15, 14, 14, 13, 12, 8)  # of a keyboard, row by row
 TOP = 0.74  # of a desk, m
@@ -36,9 +38,7 @@ class Furniture:
         self._pieces.setdefault(key, []).append((np.asarray(vertices, float), np.asarray(triangles, int)))
         self.triangles += len(triangles)
 
-    def box(
-        self, key: Key, center: Sequence[float], size: Sequence[float], turn: float = 0.0, taper: float = 1.0
-    ) -> None:
+    def box(self, key: Key, center: Place, size: Place, turn: float = 0.0, taper: float = 1.0) -> None:
         """turn: about the vertical, rad. taper: of its upper face."""
         corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
         corners[corners[:, 1] > 0] *= (taper, 1, taper)
@@ -47,7 +47,7 @@ class Furniture:
         triangles = [t for a, b, d, e in quads for t in ((a, b, d), (a, d, e))]
         self.add(key, corners @ [[c, 0, -s], [0, 1, 0], [s, 0, c]] + np.asarray(center), triangles)
 
-    def turned(self, key: Key, foot: Sequence[float], profile: Sequence[tuple[float, float]], around: int = 40) -> None:
+    def turned(self, key: Key, foot: Place, profile: Sequence[tuple[float, float]], around: int = 40) -> None:
         """A surface of revolution about the vertical, closed at both ends. profile: radius and height above `foot`, m, from
         below."""
         around *= self._detail
@@ -64,7 +64,7 @@ class Furniture:
             triangles.append((top, (len(profile) - 1) * around + i, (len(profile) - 1) * around + j))
         self.add(key, vertices, triangles)
 
-    def ball(self, key: Key, center: Sequence[float], radii: Sequence[float], rows: int = 10, around: int = 16) -> None:
+    def ball(self, key: Key, center: Place, radii: Place, rows: int = 10, around: int = 16) -> None:
         """An ellipsoid with axes along x, y, z."""
         turns = np.linspace(-math.pi / 2, math.pi / 2, self._detail * rows + 2)[1:-1]
         foot = np.asarray(center, float)
@@ -81,9 +81,8 @@ class Furniture:
                 if piece is None or sum(len(t) for _, t in batch) + len(piece[1]) > looks.MOST_TRIANGLES:
                     starts = np.cumsum([0, *(len(v) for v, _ in batch)])
                     triangles = np.vstack([t + start for (_, t), start in zip(batch, starts, strict=False)])
-                    world.add_static(
-                        looks.mesh(np.vstack([v for v, _ in batch]), triangles, material, color=color), (0, 0, 0)
-                    )
+                    vertices = np.vstack([v for v, _ in batch])
+                    world.add_static(looks.mesh(vertices, triangles, material, color=color), (0, 0, 0))
                     batch = []
                 if piece is not None:
                     batch.append(piece)
@@ -140,7 +139,7 @@ def shell(room: Furniture) -> None:
         room.box(DARK, (x, (2.65 + WALLS) / 2, -0.6), (0.008, WALLS - 2.65, 0.008))
 
 
-def pyramid(room: Furniture, key: Key, foot: Sequence[float], side: float, height: float) -> None:
+def pyramid(room: Furniture, key: Key, foot: Place, side: float, height: float) -> None:
     """That points out of the back wall."""
     x, y, z = foot
     h = side / 2
@@ -153,16 +152,15 @@ def desk(room: Furniture, x: float, z: float) -> None:
     room.box(OAK, (x, TOP - 0.015, z), (1.8, 0.03, 0.8))
     for side in (-0.84, 0.84):
         for depth in (-0.34, 0.34):
-            room.turned(
-                METAL, (x + side, 0, z + depth), [(0.03, 0), (0.03, 0.03), (0.02, 0.05), (0.02, TOP - 0.03)], 24
-            )
+            leg = [(0.03, 0), (0.03, 0.03), (0.02, 0.05), (0.02, TOP - 0.03)]
+            room.turned(METAL, (x + side, 0, z + depth), leg, 24)
     room.box(WHITE, (x + 0.55, 0.4, z), (0.4, 0.56, 0.6))
     for drawer in range(3):
         room.box(OAK, (x + 0.55, 0.22 + 0.18 * drawer, z + 0.305), (0.37, 0.165, 0.012))
         room.box(METAL, (x + 0.55, 0.26 + 0.18 * drawer, z + 0.32), (0.12, 0.012, 0.018))
 
 
-def screen(room: Furniture, foot: Sequence[float], width: float, height: float, lift: float = 0.12) -> None:
+def screen(room: Furniture, foot: Place, width: float, height: float, lift: float = 0.12) -> None:
     """A monitor on its stand; its front is 2 cm before `foot`."""
     x, y, z = foot
     room.turned(METAL, foot, [(0.13, 0), (0.13, 0.008), (0.12, 0.012)], 48)
@@ -189,11 +187,10 @@ def chair(room: Furniture, x: float, z: float, turn: float) -> None:
         room.box(DARK, (x + 0.15 * cx, 0.09, z + 0.15 * cz), (0.3, 0.03, 0.04), angle)
         room.ball(DARK, (x + 0.29 * cx, 0.03, z + 0.29 * cz), (0.03, 0.03, 0.03), 6, 10)
     room.turned(METAL, (x, 0.08, z), [(0.03, 0), (0.03, 0.2), (0.018, 0.2), (0.018, 0.36)], 32)
-    room.ball(("rubber", "#38506b"), (x, 0.47, z), (0.25, 0.045, 0.24), 10, 28)
-    room.ball(
-        ("rubber", "#38506b"), (x - 0.24 * math.sin(turn), 0.82, z + 0.24 * math.cos(turn)), (0.22, 0.25, 0.05), 12, 28
-    )
-    room.box(DARK, (x - 0.25 * math.sin(turn), 0.58, z + 0.25 * math.cos(turn)), (0.05, 0.3, 0.02), turn)
+    room.ball(CUSHION, (x, 0.47, z), (0.25, 0.045, 0.24), 10, 28)
+    back_x, back_z = -math.sin(turn), math.cos(turn)
+    room.ball(CUSHION, (x + 0.24 * back_x, 0.82, z + 0.24 * back_z), (0.22, 0.25, 0.05), 12, 28)
+    room.box(DARK, (x + 0.25 * back_x, 0.58, z + 0.25 * back_z), (0.05, 0.3, 0.02), turn)
 
 
 def tower(room: Furniture, x: float, z: float) -> None:
@@ -214,18 +211,13 @@ def shelf(room: Furniture, x: float, z: float, random: np.random.Generator) -> N
         while place < z + 0.5:
             thick, height = random.uniform(0.015, 0.05), random.uniform(0.2, 0.32)
             key = BOOKS[random.integers(len(BOOKS))]
-            room.box(
-                key, (x + 0.03, 0.093 + 0.38 * level + height / 2, place + thick / 2), (0.2, height, thick - 0.001)
-            )
-            room.box(
-                WHITE,
-                (x + 0.028, 0.093 + 0.38 * level + height / 2, place + thick / 2),
-                (0.198, height + 0.001, thick - 0.007),
-            )
+            middle = (x + 0.03, 0.093 + 0.38 * level + height / 2, place + thick / 2)
+            room.box(key, middle, (0.2, height, thick - 0.001))
+            room.box(WHITE, (x + 0.028, *middle[1:]), (0.198, height + 0.001, thick - 0.007))
             place += thick
 
 
-def plant(room: Furniture, foot: Sequence[float], random: np.random.Generator) -> None:
+def plant(room: Furniture, foot: Place, random: np.random.Generator) -> None:
     """Leaves around a pot."""
     x, y, z = foot
     room.turned(CLAY, foot, [(0.14, 0), (0.19, 0.3), (0.21, 0.3), (0.21, 0.34), (0.18, 0.34), (0.17, 0.28)], 48)
@@ -248,14 +240,14 @@ def board(room: Furniture) -> None:
         room.box(key, (0.9 + 0.18 * pen, 1.065, -3.43), (0.13, 0.014, 0.014))
 
 
-def lamp(room: Furniture, foot: Sequence[float]) -> None:
+def lamp(room: Furniture, foot: Place) -> None:
     """For a desk."""
     x, y, z = foot
     room.turned(METAL, foot, [(0.09, 0), (0.09, 0.012), (0.03, 0.02), (0.008, 0.03), (0.008, 0.42)], 48)
     room.turned(GREEN, (x, y + 0.36, z), [(0.11, 0), (0.1, 0.03), (0.05, 0.11), (0.02, 0.13)], 64)
 
 
-def mug(room: Furniture, foot: Sequence[float]) -> None:
+def mug(room: Furniture, foot: Place) -> None:
     """A mug of coffee, with a handle."""
     x, y, z = foot
     room.turned(WHITE, foot, [(0.036, 0), (0.04, 0.005), (0.04, 0.095), (0.036, 0.095), (0.036, 0.08)], 64)

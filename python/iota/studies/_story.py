@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 import iota
 
+Callback = Callable[[], None]
+
 
 class Story:
     """wait: s without a hand or action before it begins, and from its last event until it begins anew. first: the same at the start.
@@ -44,6 +46,19 @@ class Story:
         def register(event: Callable[[], None]) -> Callable[[], None]:
             self._events.append((time, event))
             return event
+
+        return register
+
+    def action(self, name: str, key: str, help: str, button: str | None = None) -> Callable[[Callback], Callback]:
+        """Decorator: an action on the world, see `World.action`, that stops the story."""
+
+        def register(function: Callback) -> Callback:
+            @self._world.action(name, key, help, button, on="world")
+            def act() -> None:
+                self.touch()
+                function()
+
+            return function
 
         return register
 

@@ -15,11 +15,8 @@ CENTER = iota.Vec3(0, 1.3, 0)
 PERIOD = 1.6  # s, of a breath
 # From a particle at the center to each atom: it keeps the cage from collapsing.
 PRESSURE = "energy = 0.5*k*(r - r0)^2"
-TIRES, CALM, EVERY = (
-    0.12,
-    0.06,
-    1.0,
-)  # 1/s; m/s of the atoms below which it takes another breath by itself; s between two looks
+# 1/s; m/s of the atoms below which it takes another breath by itself; s between two looks
+TIRES, CALM, EVERY = 0.12, 0.06, 1.0
 SHARE = 0.5  # of the stiffness against breathing is the center's, the rest that of the cage's springs
 
 

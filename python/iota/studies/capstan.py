@@ -72,9 +72,7 @@ class Capstan:
         self.story.at(0.0)(self.lift)
         self.story.at(1.2)(self.release)
         self.story.at(5.0)(world.reset)
-        world.action("lift", key="k", help="lifts the counterweight of the rope with a turn more", on="world")(
-            self.by_hand
-        )
+        self.story.action("lift", key="k", help="lifts the counterweight of the rope with a turn more")(self.lift)
         world.action("begin anew", key="c", help="all hangs as at the start", on="world")(world.reset)
         world.on_step(self._follow)
         world.on_reset(self._forget)
@@ -99,10 +97,6 @@ class Capstan:
             self.world.draw(ball, looks.solid("paint", color))
             ends.append(ball)
         return Rope(turns, rods, *ends)
-
-    def by_hand(self) -> None:
-        self.story.touch()
-        self.lift()
 
     def lift(self) -> None:
         """Takes the weight off the rope's slack end: what is left there, times exp(mu angle), is less than the load."""

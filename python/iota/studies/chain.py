@@ -89,10 +89,7 @@ def script_break(world: iota.World, chain: list[iota.Body]) -> None:
     story.at(0.0)(fall_off)
     story.at(5.0)(lambda: None)
 
-    @world.action("fall apart", key="t", help="the lower part falls off and is pulled back by forces", on="world")
-    def ask() -> None:
-        story.touch()
-        fall_off()
+    story.action("fall apart", key="t", help="the lower part falls off and is pulled back by forces")(fall_off)
 
 
 if __name__ == "__main__":

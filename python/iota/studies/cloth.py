@@ -78,7 +78,7 @@ class Weave:
         return set()
 
     def _near(self, body: iota.Body | None) -> set[int]:
-        """What is between the fingers."""
+        """The part that is between the fingers."""
         if body not in self._start:
             return set()
         return set(np.flatnonzero(np.linalg.norm(self._middles - self._start[body], axis=1) < FIRM))

@@ -238,6 +238,5 @@ def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: l
     for side in (-SPREAD, SPREAD):
         parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
         for x in (-reach, reach):
-            post = looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright)
-            parts.append(post)
+            parts.append(looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright))
     world.draw(frame, parts)

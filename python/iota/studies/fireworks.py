@@ -102,7 +102,7 @@ class Rocket:
 
 
 class Sky:
-    """What bursts do around: they light the ground, and their sparks end there."""
+    """Bursts act on what is around: they light the ground, and their sparks end there."""
 
     def __init__(self, world: iota.World) -> None:
         self._system = world.system
@@ -160,14 +160,12 @@ def build() -> iota.World:
         if ready:
             ready[number % len(ready)].fire()
 
-    @world.action("fire", key="b", button="b", help="fires the next rocket", on="world")
+    @story.action("fire", key="b", button="b", help="fires the next rocket")
     def fire_next() -> None:
-        story.touch()
         fire(system.step_count)
 
-    @world.action("finale", key="n", button="a", help="fires all of them, one after the other", on="world")
+    @story.action("finale", key="n", button="a", help="fires all of them, one after the other")
     def finale() -> None:
-        story.touch()
         for number in range(len(rockets)):
             world.after(0.15 * number)(lambda: fire(0))
 

@@ -89,14 +89,10 @@ class Knot:
         self.story = Story(world, wait=6.0, first=1.0, on_stop=self.release)
         self.story.at(0.0)(self.tie)
         self.story.at(TIED + 6)(world.reset)
-        world.action("tie", key="k", help="two hands tie the knot", on="world")(self.by_hand)
+        self.story.action("tie", key="k", help="two hands tie the knot")(self.tie)
         world.action("begin anew", key="c", help="the rope lies as at the start", on="world")(world.reset)
         world.on_step(self.follow)
         world.on_reset(self.hands.clear)
-
-    def by_hand(self) -> None:
-        self.story.touch()
-        self.tie()
 
     def tie(self) -> None:
         """Begins."""

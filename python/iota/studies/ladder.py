@@ -38,12 +38,7 @@ def add_actions(world: iota.World, ladder: Ladder) -> Story:
     story = Story(world, wait=PATIENCE)
     for number in range(10):
         story.at(4.0 * number)(ladder.tip)
-
-    @world.action("tip", key="t", button="a", help="turns the top block over; twice, and two ripples run", on="world")
-    def tip() -> None:
-        story.touch()
-        ladder.tip()
-
+    story.action("tip", key="t", button="a", help="turns the top block over; twice, and two ripples run")(ladder.tip)
     world.at(0.6)(ladder.tip)
     return story
 

@@ -72,7 +72,7 @@ class Links:
         self.story.at(0.0)(self.push)
         self.story.at(2.0)(self.rehang)
         self.story.at(8.0)(lambda: None)
-        world.action("rehang", key="k", help="hangs the short chain on the next peg", on="world")(self.rehang_by_hand)
+        self.story.action("rehang", key="k", help="hangs the short chain on the next peg")(self.rehang)
         world.action("begin anew", key="c", help="all hangs as at the start", on="world")(self.begin_anew)
         world.on_step(self._follow)
         world.on_reset(self._forget)
@@ -106,10 +106,6 @@ class Links:
         with self.system.edit():
             for body, share in zip([*self.chain, self.weight], range(1, LINKS + 2), strict=True):
                 body.velocity += (0.4 * share / (LINKS + 1), 0, 0)
-
-    def rehang_by_hand(self) -> None:
-        self.story.touch()
-        self.rehang()
 
     def rehang(self) -> None:
         """Two fingers take the uppermost link of the short chain, lift it off its peg, and put it on the other one."""

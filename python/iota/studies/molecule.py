@@ -48,10 +48,7 @@ def build(repeat: bool = True) -> iota.World:
                 return snap(p, q)
         event.notice("Both bonds are broken", "r puts the ring together again.")
 
-    @world.action("mend", key="r", button="a", help="puts the ring together again", on="world")
-    def mend() -> None:
-        world.reset()
-
+    world.action("mend", key="r", button="a", help="puts the ring together again", on="world")(world.reset)
     return world
 
 

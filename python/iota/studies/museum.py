@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fifty working exhibits of the other studies in a museum: what its visitors see is simulated in full, the rest less; 1 goes along with one, t tints."""
+"""Fifty exhibits that work: those that visitors see are simulated in full, the others less; 1 goes along with a visitor, t tints."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class Museum:
         return iota.Vec3(x, EYE, z)
 
     def place(self, time: float) -> tuple[float, float]:
-        """Of the visitor on the floor: there and back."""
+        """The visitor walks there and back: x and z on the floor, m."""
         way = (PACE * time + 2.0) % self.lengths[-1]
         x, z = (float(np.interp(way, self.lengths, axis)) for axis in self.way.T)
         return x, z

@@ -66,7 +66,7 @@ class Pour:
         self.story.at(0.0)(lambda: self.pull(True))
         self.story.at(5.5)(self.fill)
         world.action("slide", key="k", help="pulls the slide, or pushes it back", on="world")(self.toggle)
-        world.action("fill", key="c", help="all goes back into the hopper", on="world")(self.fill_by_hand)
+        self.story.action("fill", key="c", help="all goes back into the hopper")(self.fill)
         world.on_step(self._follow)
         world.every(0.2)(self._read)
 
@@ -222,10 +222,6 @@ class Pour:
 
     def _read(self) -> None:
         self.dial.text = f"{max(0.0, self.weight() / 9.81 - self.tray.mass):.2f} kg"
-
-    def fill_by_hand(self) -> None:
-        self.story.touch()
-        self.fill()
 
     def fill(self) -> None:
         """Shuts the slide and puts all back, as at the start."""

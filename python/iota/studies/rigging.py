@@ -73,8 +73,9 @@ def build() -> iota.World:
 
     @world.on_reset
     def again() -> None:
-        winch.value, peak.value, swing.value, parts.value = 0, PEAK, SWING, "4"
         rig.begin()
+        rig.find_tackle()
+        winch.value, peak.value, swing.value, parts.value = 0, PEAK, SWING, str(rig.parts)
 
     def move(at: float, **values: float) -> None:
         @story.at(at)
@@ -112,6 +113,9 @@ class Derrick:
         self.drum = self.place_winch()
         self.begin()
         self.spans: list[iota.Constraint] = []
+        self.tackles: list[
+            tuple[iota.Constraint, int, list[iota.Constraint]]
+        ] = []  # all that were led, with parts and spans
         self.reeve(4)
         for name, ends in {
             "lift": (self.head, self.tip),
@@ -244,14 +248,24 @@ class Derrick:
         if not self.drum.alive or not all(sheave.alive for sheave in (*self.tops, *self.bottoms)):
             return  # somebody has taken the derrick apart
         self.parts = parts
-        for span in self.spans:
-            if span.alive:
-                span.destroy()
         way = reeved(parts, self.tops, self.bottoms)
         with self.system.edit():
+            for span in self.spans:
+                if span.alive:
+                    span.destroy()
             self.spans = [self.system.span(p, q) for p, q in pairwise(way)]
             terms = [(span.slide, 1.0) for span in self.spans]
-            self.ropes["tackle"] = self.system.couple([*terms, (self.drum.angle, DRUM)], one_sided=True)
+            tackle = self.system.couple([*terms, (self.drum.angle, DRUM)], one_sided=True)
+        self.tackles.append((tackle, parts, self.spans))
+        self.find_tackle()
+
+    def find_tackle(self) -> None:
+        """Reads and shows the tackle that there is: a reset or an undo brings an earlier one back."""
+        there = [led for led in self.tackles if led[0].alive]
+        if not there:
+            return
+        self.ropes["tackle"], self.parts, self.spans = there[-1]
+        way = reeved(self.parts, self.tops, self.bottoms)
         self.show("tackle", [*way, self.over, self.heel, WINCH + (0, DRUM, 0)])
 
     def show(self, name: str, places: Sequence[Any]) -> None:
@@ -279,8 +293,9 @@ class Derrick:
                 self.ropes[name].length = abs(eye.position - end) + 0.01
 
     def tension(self, name: str) -> float:
-        """The force in a rope in the last step, N."""
-        return abs(self.ropes[name].force)
+        """The force in a rope in the last step, N; 0 if it is gone."""
+        rope = self.ropes[name]
+        return abs(rope.force) if rope.alive else 0.0
 
     def expected(self) -> float:
         """The force at the winch of a tackle without friction that holds the load in the air, N."""
@@ -288,6 +303,8 @@ class Derrick:
 
     def tell(self) -> None:
         """Writes the forces at the ropes, and paints these."""
+        if not self.ropes["tackle"].alive:
+            self.find_tackle()
         places = {
             "lift": (self.head.position + self.tip.position) * 0.5 + (0, 0.12, 0),
             "port": self.tip.position * 0.25 + self.eyes[0].position * 0.75,

@@ -53,11 +53,7 @@ def build(fish: int = FISH) -> iota.World:
         story.at(time)(meal.go_on)
     story.at(26.0)(lambda: None)
 
-    @world.action("go on", key="n", button="a", help="the next event of the story, by hand", on="world")
-    def go_on() -> None:
-        story.touch()
-        meal.go_on()
-
+    story.action("go on", key="n", button="a", help="the next event of the story, by hand")(meal.go_on)
     return world
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a frozen thing would have done while nobody saw it, by a few long steps of a copy of it among the obstacles near it."""
+"""Finds how a frozen thing would have moved while nobody saw it, by a few long steps of a copy of it among the obstacles near it."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class _Copy:
                 twin.nail()
 
     def _copy_obstacles(self, system: System, seconds: float) -> None:
-        """Those near the way of the thing, which goes downwards at most as far as it falls."""
+        """Copies those near the way of the thing, which goes downwards at most as far as it falls."""
         time = min(seconds, STEPS * LONGEST)
         places = np.array([list(body.center_of_mass) for body in self.bodies])
         moved = places + time * np.array([list(body.velocity) for body in self.bodies])

@@ -35,11 +35,13 @@ class Ray:
 
 @dataclass
 class Way:
-    """The way of a held point of a jointed body. start: the point, m, at the value `began` of the coordinate."""
+    """The way of a held point of a jointed body. start: the point, m, at the value `began` of the coordinate. hand: where the
+    pointer alone would put the point, m."""
 
     joint: Constraint
     start: Vec3
     began: float
+    hand: Vec3
 
     @property
     def coordinate(self) -> float:
@@ -96,6 +98,10 @@ class Guiding:
         if event.pointer.startswith(SCREEN) and event.origin is not None and event.direction is not None:
             is_down = event.hand is not None and event.hand.trigger > 0
             self._rays[event.client, event.pointer] = Ray(event.origin, event.direction.unit(), is_down)
+            # The move of a hold may arrive before that of its pointer.
+            for key in self._ways:
+                if key[0] == event.client:
+                    self._lead(key)
 
     def _left(self, event: Event) -> None:
         self._rays = {key: ray for key, ray in self._rays.items() if key[0] != event.client}
@@ -111,15 +117,22 @@ class Guiding:
             if joint is not None and joint.alive:
                 if joint.a != event.target:
                     self._take(key, joint.a, event.point)
-                way = Way(joint, event.point, 0.0)
+                way = Way(joint, event.point, 0.0, event.point)
                 way.began = way.coordinate
                 self._ways[key] = way
             return
-        held, found = self._ways.get(key), self._clients.by_id.get(event.client)
-        hold = None if found is None else found.holds.get(event.hold)
-        ray = self._ray(event.client, event.point)
-        if held is not None and held.joint.alive and hold is not None and ray is not None:
-            hold.move(held.nearest(ray))
+        if (led := self._ways.get(key)) is not None:
+            led.hand = event.point
+            self._lead(key)
+
+    def _lead(self, key: tuple[int, int]) -> None:
+        """Moves a hold to the place on its way that is nearest to the ray of its pointer."""
+        client, number = key
+        way, found = self._ways[key], self._clients.by_id.get(client)
+        hold = None if found is None else found.holds.get(number)
+        ray = self._ray(client, way.hand)
+        if way.joint.alive and hold is not None and ray is not None:
+            hold.move(way.nearest(ray))
 
     def _take(self, key: tuple[int, int], body: Body, hand: Vec3) -> None:
         """Moves a hold to the body that goes the way: a handle turns in the hand that pulls its door."""

@@ -176,7 +176,7 @@ class Managed:
 
     @property
     def mass(self) -> float:
-        """Of all its bodies, kg."""
+        """The sum of those of its bodies, kg."""
         return sum(body.mass for body in self.bodies)
 
     @property
@@ -731,7 +731,7 @@ class Levels(Part):
         return made
 
     def _name_of(self, root: Body, members: list[Body]) -> str:
-        """What reports call it: "8 rods 'rope 4'", or without a name of its bodies "8 rods from rod 17"."""
+        """Reports call it so: "8 rods 'rope 4'", or without a name of its bodies "8 rods from rod 17"."""
         words = {_word_for(body) for body in members}
         word = words.pop() if len(words) == 1 else "body"
         plural = "bodies" if word == "body" else "boxes" if word == "box" else f"{word}s"

@@ -28,7 +28,7 @@ class Structure(Protocol):
 
 
 class Motion:
-    """Of some bodies about their center of mass. momentum: kg m/s; spin: angular momentum, kg m^2/s."""
+    """The motion of some bodies about their center of mass. momentum: kg m/s; spin: angular momentum, kg m^2/s."""
 
     def __init__(self, system: System, bodies: Sequence[Body]) -> None:
         self.points = system.array([p for body in bodies for p in body.particles])

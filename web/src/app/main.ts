@@ -3,7 +3,6 @@
 
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
-import { followerOf } from "../net/gateway.ts";
 import { ownName } from "../net/name.ts";
 import { takeToken } from "../net/token.ts";
 import type { PageListener } from "../page/events.ts";
@@ -51,6 +50,15 @@ function panelWhenNeeded({ world, session, viewer }: Page): FramePart {
       });
     },
   };
+}
+
+/** Follows a room that moves between machines. Its part is loaded at once, as the machine may be gone when the connection is lost. */
+function followRoom({ session }: Page, token: string | null): void {
+  const here = new URL(location.href);
+  if (!here.searchParams.has("room")) return;
+  void import("../net/gateway.ts").then(({ followerOf }) => {
+    session.onLost = followerOf(here, token, (url) => location.replace(url));
+  });
 }
 
 /** Loaded when there is one. */
@@ -116,7 +124,7 @@ function main(): void {
   canvas.classList.add("waiting");
   const token = takeToken();
   const page = makePage(canvas, socketUrl(token), requestOf(location.search));
-  page.session.onLost = followerOf(new URL(location.href), token, (url) => location.replace(url));
+  followRoom(page, token);
   const { viewer, selection, events, navigation } = page;
   // Before the first picture, since shadows are part of the shader programs.
   if (new URLSearchParams(location.search).get("shadows") === "none") viewer.renderer.shadowMap.enabled = false;

@@ -43,7 +43,7 @@ const goneAfter = 5;
 const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
-/** Of the distance from a script's camera to its target: the size of a scene for its pins, at most. */
+/** The size of a scene for its pins is at most this share of the distance from the script's camera to its target. */
 const nearShare = 0.6;
 /** The longest chain whose length at rest is looked for; a net is shorter than all its parts. */
 const mostLinks = 20;
@@ -147,8 +147,8 @@ export class Framing implements FramePart, PageListener {
     // In real time: a frame that took long is told as a short one.
     this.wait_ -= now === undefined ? seconds : (now - this.updated_) / 1000;
     this.updated_ = now ?? 0;
-    // A thing that moves before the page shows its first picture widens it.
-    const isEarly = this.viewer_.hidden && this.framed_ !== null && this.early_ < mostEarly;
+    // A thing that moves before the page shows its first picture widens it, unless a view was chosen already.
+    const isEarly = this.viewer_.hidden && !this.navigation_.touched && this.framed_ !== null && this.early_ < mostEarly;
     if (isEarly) {
       this.early_++;
       this.wait_ = 0;
@@ -267,14 +267,19 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.reset();
   }
 
-  /** Whether the middle of all things leaves the view, and most of them do. */
+  /** Whether the middle of all things leaves the view, and most of them do. A thing that hangs from a nail swings back. */
   private isLeaving_(shown: FittedView): boolean {
-    const { setting_: places, moving_: moving, chosen_: { size: fixed } } = this;
+    const { setting_: places, moving_: moving, chosen_: { size: fixed }, world_: { entities: { nail, membership } } } = this;
+    const hanging = new Set<number>();
+    nail.forEachPlace((body) => hanging.add(membership.articulateOf(body)));
+    hanging.delete(-1);
+    const free = moving.filter(({ slot }) => slot < 0 || !hanging.has(membership.articulateOf(slot)));
+    if (2 * free.length <= moving.length + fixed) return false;
     places.clear();
-    for (const { center } of moving) places.add(...center);
+    for (const { center } of free) places.add(...center);
     // It is brought well into the picture.
     const inner = this.calcFrame_(this.falling_ ? 0.25 : moving.length === 1 ? 0.7 : 0.9);
-    const away = shareOutside(places, shown, inner) * moving.length;
+    const away = shareOutside(places, shown, inner) * free.length;
     if (2 * away <= moving.length + fixed) return false;
     const middle = withoutFar(moving);
     places.clear();

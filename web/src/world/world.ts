@@ -177,7 +177,7 @@ export class World {
     this.takeHolds_(poses);
     this.poses.push(poses, now);
     this.entities.particleSet.takeSparks(poses.sparks);
-    this.entities.trace.takePoses(poses.time);
+    this.entities.trace.view?.takePoses(poses.time);
   }
 
   private showStyle_(style: string): void {

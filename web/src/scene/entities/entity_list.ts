@@ -3,10 +3,8 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { CustomEntity, LightEntity, PlotEntity, PointCloudEntity, ShapeSetEntity, SoundEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
+import type { ArrowEntity, AxesEntity, CustomEntity, LightEntity, PlotEntity, PointCloudEntity, ShapeSetEntity, SoundEntity, StageEntity, TextureEntity, TraceEntity, ViewpointEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
-import { ArrowView } from "./arrow.ts";
-import { AxesView } from "./axes.ts";
 import type { CustomView, Marks } from "./custom.ts";
 import { BodyView } from "./body.ts";
 import type { EntityView } from "./entity.ts";
@@ -23,7 +21,7 @@ import { StrutView } from "./strut.ts";
 import { SurfaceView } from "./surface.ts";
 import { Visuals } from "./visual.ts";
 import { TieView } from "./tie.ts";
-import { TraceView } from "./trace.ts";
+import type { TraceView } from "./trace.ts";
 import { TubeView } from "./tube.ts";
 import { WatchedRecords, Widgets } from "./widget.ts";
 
@@ -62,9 +60,9 @@ export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: 
     particleSet: new ParticleSetView(),
     label: new LabelView(poses, eye),
     line: new LineView(poses),
-    arrow: new ArrowView(poses),
-    axes: new AxesView(poses),
-    trace: new TraceView(poses),
+    arrow: new Later<ArrowEntity>(() => import("./arrow.ts").then(({ ArrowView }) => new ArrowView(poses)), changed),
+    axes: new Later<AxesEntity>(() => import("./axes.ts").then(({ AxesView }) => new AxesView(poses)), changed),
+    trace: new Later<TraceEntity, TraceView>(() => import("./trace.ts").then(({ TraceView }) => new TraceView(poses)), changed),
     pointCloud: new Later<PointCloudEntity>(() => import("./point_cloud.ts").then(({ PointCloudView }) => new PointCloudView(poses)), changed),
     marker: new MarkerView(poses, warn),
     widget: new Widgets(),
