@@ -103,6 +103,13 @@ def test_a_visitor_sets_going_what_hangs_still_and_lamps_tell_levels() -> None:
     assert walked.made.lamps.color[number] != blue
 
 
+def test_ladders_are_not_stepped_in_strides_by_whose_forces_they_would_part_wrongly(full: Walked) -> None:
+    ladders = [each for each in full.made.exhibits if each.name.startswith("Jacob's ladder")]
+    assert ladders
+    for each in ladders:
+        assert [level.name for level in each.thing.levels] == ["full", "frozen"]
+
+
 def test_t_tints_and_untints(full: Walked) -> None:
     world = full.world
     world.controls.act("tint")

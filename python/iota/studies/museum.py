@@ -40,6 +40,8 @@ HIDDEN = 0.05  # of its significance: an exhibit behind a wall
 CALM = 12.0  # s, after which a visitor sets an exhibit going once more
 COATS = ("#b5462f", "#d9a441", "#5b7f4b", "#2f6c80", "#8a5a83")
 LEVELS = ("full", "1/2", "1/4", "1/8", "frozen")  # a stiff one would be drawn otherwise
+# Its script parts and joins blocks by the forces of each step.
+LEVELS_OF = {"Jacob's ladder": ("full", "frozen")}
 TINTS = {name: crowd.TINTS[name] for name in LEVELS}
 Maker = Callable[[iota.World, iota.Vec3, int], Callable[[], None] | None]
 
@@ -89,7 +91,7 @@ class Museum:
         for each in self.exhibits:
             each.thing = world.levels.manage(
                 each.bodies,
-                levels=LEVELS,
+                levels=next((own for kind, own in LEVELS_OF.items() if each.name.startswith(kind)), LEVELS),
                 significance=partial(self.significance, each),
                 on_level=lambda thing, level: self.tint(thing, level),
                 name=each.name,
