@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,9 +22,9 @@ namespace {
 /// it sink by 1e-8 of the way that it would fall in a step. The second keeps Newton's method from cycling between sticking
 /// and slipping corners; a contact that sticks yields by a hundredth of that way, once (docs/contact.md).
 constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
-/// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one with what does not move, in sizes
-/// of the body, is left alone.
-constexpr double easing_time = 0.1, deepest = 0.1;
+/// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one, in sizes of the body, is left
+/// alone, unless both move and nothing else holds them: parts of machines often begin in each other.
+constexpr double easing_time = 0.1, deepest = 0.1, deepest_of_moving = 0.3;
 
 /// The part of a contact in the key of its row against spinning; 0 and 1 are those against rolling.
 constexpr std::uint8_t spin_row = 2;
@@ -300,7 +299,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
   const auto [basis, other_basis] = motion.bases;
   Sides sides[2]{{model, first, second, basis, other_basis}, {model, second, first, other_basis, basis}};
   const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
-  const double most = both_move ? std::numeric_limits<double>::infinity() : deepest * motion.size;
+  const double most = (both_move ? deepest_of_moving : deepest) * motion.size;
   // Parts that touch take all their places: two bodies that had been pressed together went through each other when other
   // places became their nearest ones.
   const auto are_known = [&](const contact::Touch& t, std::uint32_t p) {
@@ -315,7 +314,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (is_new && t.gap < -most && !are_known(t, p)) continue;
+    if (is_new && t.gap < -most && !((both_move || are_known(t, p)) && is_eased())) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,

@@ -80,7 +80,7 @@ RigidMotion rigid_motion_about(const Problem& problem, const Vec3& pivot, std::s
 }
 
 // The energy (R'L)' I^-1 (R'L) / 2 of a body turned by R = 1 + [a] falls by a . (L x w), its potential energy by a . torque.
-void turn_for_energy(Problem& problem, double energy, const std::optional<Vec3>& pivot) {
+void turn_for_energy(Problem& problem, double energy, double most_angle, const std::optional<Vec3>& pivot) {
   constexpr double largest_angle = 0.1;  // rad
   constexpr double most_curved = 0.3;    // of the slope: what it changes by on the way
   constexpr int passes = 4;              // each is right to first order
@@ -99,7 +99,7 @@ void turn_for_energy(Problem& problem, double energy, const std::optional<Vec3>&
     // Beside a principal axis the slope is round-off: a body would jump by up to the largest angle, and gain by the square.
     const double curvature = 2 * before.kinetic_energy() + norm(torque);
     const bool is_straight = std::abs(angle) * curvature <= most_curved * steepness;
-    if (!(is_straight && std::abs(angle) <= largest_angle && std::abs(angle) > 1e-15)) return;
+    if (!(is_straight && std::abs(angle) <= std::min(largest_angle, most_angle) && std::abs(angle) > 1e-15)) return;
     const Quaternion turn = axis_angle((1 / steepness) * slope, angle);
     for (std::size_t i = 0; i < problem.size(); ++i) {
       const Vec3 own = problem.velocity[i] - before.velocity_at(problem.position[i]);

@@ -200,7 +200,7 @@ def test_a_room_that_no_machine_has_memory_for_waits_and_says_so(
     cluster = Cluster.connect(machines.address, 0.1, 1e15)
     with running(tmp_path / "rooms", cluster=cluster) as rooms:
         token = change(rooms, do="make", room="one", source="chain")["tokens"]["host"]
-        wait_until(lambda: where(rooms, "one", token)["trouble"])
+        wait_until(lambda: where(rooms, "one", token)["trouble"], seconds=60)
         told = where(rooms, "one", token)
         assert told["state"] == "starting" and told["trouble"].startswith(
             "it waits for a machine with 0.1 cores and 1000"

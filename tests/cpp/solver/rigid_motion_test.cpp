@@ -82,7 +82,7 @@ TEST(TurnForEnergy, restores_the_energy_and_keeps_momentum_and_angular_momentum)
     Problem problem = tumbling();
     const double start = problem.kinetic_energy();
     const Vec3 momentum = momentum_of(problem), angular = angular_momentum_of(problem);
-    turn_for_energy(problem, energy);
+    turn_for_energy(problem, energy, 0.1);
     EXPECT_NEAR(problem.kinetic_energy(), start + energy, 1e-9);
     EXPECT_LT(norm(momentum_of(problem) - momentum), 1e-13);
     EXPECT_LT(norm(angular_momentum_of(problem) - angular), 1e-12);
@@ -94,7 +94,7 @@ TEST(TurnForEnergy, restores_the_energy_and_keeps_momentum_and_angular_momentum)
 
 TEST(TurnForEnergy, does_nothing_that_would_take_more_than_a_small_angle) {
   Problem problem = tumbling();
-  turn_for_energy(problem, 1e3);
+  turn_for_energy(problem, 1e3, 0.1);
   EXPECT_EQ(problem.position, tumbling().position);
   EXPECT_EQ(problem.velocity, tumbling().velocity);
 }

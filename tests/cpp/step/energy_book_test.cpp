@@ -18,6 +18,17 @@ namespace {
 
 /// Two particles on a damped spring in empty space. The stretch is s(t) = s0 e^(-ct) (cos wt + c/w sin wt) with c = d / (2 mu);
 /// the dashpot has taken what the oscillator has no more.
+TEST(EnergyBook, turns_no_body_at_rest_for_the_energy_of_its_noise) {
+  System system({.gravity = {}});
+  const BodyId body = system.bodies().create();
+  const Vec3 places[] = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.3, 0}, {0.5, -0.3, 0}, {0.5, 0, 0.3}, {0.5, 0, -0.3}};
+  std::vector<ParticleId> points;
+  for (const Vec3& place : places) points.push_back(system.particles().create(body, place));
+  for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_LT(norm(system.particles().position(points[i]) - places[i]), 1e-13) << i;
+}
+
 TEST(EnergyBook, counts_the_work_of_a_dashpot_as_dissipated_and_the_scheme_s_own_as_lost) {
   for (const IntegrationMode mode : all_modes) {
     System system{SystemOptions{.gravity = {}, .mode = mode}};
