@@ -63,7 +63,7 @@ bool may_touch(const model::Model& model, const contact::Outlines& outlines, std
 }  // namespace
 
 void ContactFinder::Known::look(const model::Model& model, std::span<const std::uint32_t> bodies) {
-  items_.clear(), slots_.clear(), at_ = 0;
+  items_.clear(), slots_.clear();
   if (model.contacts.size() == 0) return;
   const auto is_fixed = [&](std::uint32_t body) { return model.bodies[body].kind == BodyKind::static_; };
   for (const std::uint32_t body : bodies)
@@ -77,11 +77,12 @@ void ContactFinder::Known::look(const model::Model& model, std::span<const std::
   for (const auto& [pair, slot] : items_) slots_.push_back(slot);
 }
 
-std::span<const std::uint32_t> ContactFinder::Known::of(const Pair& pair) {
-  while (at_ < items_.size() && items_[at_].first < pair) ++at_;
-  const std::size_t begin = at_;
-  while (at_ < items_.size() && items_[at_].first == pair) ++at_;
-  return std::span(slots_).subspan(begin, at_ - begin);
+std::span<const std::uint32_t> ContactFinder::Known::of(const Pair& pair) const {
+  const auto begin = std::lower_bound(items_.begin(), items_.end(), std::pair(pair, std::uint32_t{0}));
+  auto end = begin;
+  while (end != items_.end() && end->first == pair) ++end;
+  return std::span(slots_).subspan(static_cast<std::size_t>(begin - items_.begin()),
+                                   static_cast<std::size_t>(end - begin));
 }
 
 double ContactFinder::Obstacle::distance(const Vec3& place) const {

@@ -100,17 +100,16 @@ class ContactFinder {
   bool is_any_extended_ = false;    ///< more than a particle
   double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s
   double h_ = 0, fall_ = 0;         ///< of the step or the rest of it, s; speed that gravity gives in this time, m/s
-  /// The contacts of some bodies by their pairs, for questions about pairs in their order.
+  /// The contacts of some bodies by their pairs.
   class Known {
    public:
     void look(const model::Model&, std::span<const std::uint32_t> bodies);
-    std::span<const std::uint32_t> of(const Pair&);  ///< not before the last one asked for
+    std::span<const std::uint32_t> of(const Pair&) const;
     std::span<const std::uint32_t> all() const { return slots_; }
 
    private:
     std::vector<std::pair<Pair, std::uint32_t>> items_;
     std::vector<std::uint32_t> slots_;
-    std::size_t at_ = 0;
   };
   // Scratch, kept for its capacity.
   Known known_;
