@@ -136,8 +136,8 @@ def draw(rows: list[Row]) -> None:
     PICTURE.write_text("\n".join([*parts, "</svg>"]) + "\n")
 
 
-def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
-    """A load of `factor` budgets: percentiles of a step, and how long it takes until all is full after the load falls."""
+def loaded(count: int, factor: float) -> tuple[iota.World, float, float, list[float]]:
+    """A crowd that offers `factor` budgets: the world, what it offers and its budget, ms, and a list that gets the time of each step."""
     world = crowd.build(count, None)
     for _ in range(20):
         world.step()
@@ -146,6 +146,12 @@ def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
     world.levels.budget_ms = limit
     taken: list[float] = []
     object.__setattr__(world.levels, "_take_ms", _noting(world.levels._take_ms, taken))
+    return world, offered, limit, taken
+
+
+def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
+    """A load of `factor` budgets: percentiles of a step, and how long it takes until all is full after the load falls."""
+    world, offered, limit, taken = loaded(count, factor)
     for _ in range(steps):
         world.step()
     after = np.array(taken[240:])
@@ -168,14 +174,7 @@ def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
 def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0) -> None:
     """The lamp's way through the valley, again and again, with a load of `factor` budgets: percentiles of all frames but the first
     700, in which the headroom is learnt."""
-    world = crowd.build(count, None)
-    for _ in range(20):
-        world.step()
-    offered = cost(world)
-    limit = offered / factor
-    world.levels.budget_ms = limit
-    taken: list[float] = []
-    object.__setattr__(world.levels, "_take_ms", _noting(world.levels._take_ms, taken))
+    world, offered, limit, taken = loaded(count, factor)
     for frame in range(1, frames + 1):
         world.step()
         if frame in (frames // 10, frames):

@@ -42,6 +42,21 @@ function fullness({ xyz, count }: Points, view: NonNullable<ReturnType<typeof fi
   return most;
 }
 
+/** A world and its framing on a page of 1280 x 720. */
+function framed(camera: PerspectiveCamera): { test: TestWorld; navigation: Navigation; framing: Framing } {
+  vi.stubGlobal("innerWidth", 1280);
+  vi.stubGlobal("innerHeight", 720);
+  const test = new TestWorld();
+  const navigation = new Navigation(camera);
+  let size = 1;
+  const viewer = {
+    camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
+    renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
+  };
+  const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+  return { test, navigation, framing };
+}
+
 describe("a fitted view", () => {
   it("shows all points and is filled by them, at any size and from any side", () => {
     for (const size of [1e-9, 1e-3, 1, 1e3]) {
@@ -158,16 +173,7 @@ describe("another scene on the same page", () => {
 
   /** The last one's view on a page to which scenes come one after the other, and the view in which the user left the one before. */
   function show(link: LinkState, ...scenes: readonly Scene[]): { view: FittedView; left: FittedView } {
-    vi.stubGlobal("innerWidth", 1280);
-    vi.stubGlobal("innerHeight", 720);
-    const test = new TestWorld();
-    const navigation = new Navigation(camera);
-    let size = 1;
-    const viewer = {
-      camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
-      renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
-    };
-    const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+    const { test, navigation, framing } = framed(camera);
     let left = navigation.goal;
     for (const scene of scenes) {
       join(test, framing, ...scene);
@@ -229,17 +235,7 @@ describe("the view of a running scene", () => {
   /** The views, one a look, of four balls, the last of which goes along a way; x in m. */
   async function watch(way: (time: number) => number, others: readonly number[] = [1, 2, 3], hangs = false): Promise<FittedView[]> {
     await import("../src/page/ways.ts"); // which the page fetches when it needs it
-    vi.stubGlobal("innerWidth", 1280);
-    vi.stubGlobal("innerHeight", 720);
-    const camera = new PerspectiveCamera(42, 16 / 9);
-    const test = new TestWorld();
-    const navigation = new Navigation(camera);
-    let size = 1;
-    const viewer = {
-      camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
-      renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
-    };
-    const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
+    const { test, navigation, framing } = framed(new PerspectiveCamera(42, 16 / 9));
     test.join();
     test.world.take({
       type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: hangs,
