@@ -105,7 +105,7 @@ def where(rooms: Rooms, name: str, token: str) -> dict[str, Any]:
 
 def enter(rooms: Rooms, name: str, token: str, visitor: str) -> PageClient:
     """As a page does: asks where the room is, and goes there."""
-    end = time.monotonic() + 30
+    end = time.monotonic() + 60
     while True:
         try:
             if url := where(rooms, name, token)["url"]:
@@ -197,13 +197,13 @@ def test_a_room_that_no_machine_has_memory_for_waits_and_says_so(
     machines: Machines, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("iota.rooms.cluster.SCARCE", 0.5)
-    cluster = Cluster.connect(machines.address, 0.1, 1e15)
+    cluster = Cluster.connect(machines.address, 0.1, 1e14)
     with running(tmp_path / "rooms", cluster=cluster) as rooms:
         token = change(rooms, do="make", room="one", source="chain")["tokens"]["host"]
         wait_until(lambda: where(rooms, "one", token)["trouble"], seconds=60)
         told = where(rooms, "one", token)
         assert told["state"] == "starting" and told["trouble"].startswith(
-            "it waits for a machine with 0.1 cores and 1000"
+            "it waits for a machine with 0.1 cores and 100000000 MB"
         )
 
 
@@ -213,6 +213,11 @@ def test_without_a_cluster_it_says_what_to_start(tmp_path: Path) -> None:
     assert done.returncode == 1 and done.stderr.splitlines() == [
         "iota: there is no Ray cluster at 127.0.0.1:1 (Connection refused). Try: ray start --head"
     ]
+
+
+def test_more_memory_than_ray_can_count_is_refused(machines: Machines) -> None:
+    with pytest.raises(ValueError, match=r"at most 1e\+14 cores and 1e\+14 bytes, not 0.1 and 1e\+15"):
+        Cluster.connect(machines.address, 0.1, 1e15)
 
 
 @needs_browser

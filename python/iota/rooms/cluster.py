@@ -31,6 +31,7 @@ SILENT = 2.0  # s, after which an actor that does not answer is taken for one th
 SCARCE = 10.0  # s, after which an actor that has no machine is told of
 IDLE = 20.0  # s, after which the actor of a room that sleeps or has failed is ended
 PATIENCE = 15.0  # s, for the actor to end its process in
+MOST = 1e14  # cores, and bytes, of a room: Ray counts ten-thousandths in 64 bits, and places whatever overflows
 
 
 @dataclass
@@ -45,6 +46,8 @@ class Cluster:
     @classmethod
     def connect(cls, address: str, cores: float, memory: float) -> Cluster:
         """address: of a Ray cluster, "auto": the one that this machine belongs to. Raises ConnectionError, ValueError."""
+        if max(cores, memory) > MOST:
+            raise ValueError(f"a room takes at most {MOST:g} cores and {MOST:g} bytes, not {cores:g} and {memory:g}")
         ray = ray_at(address)
         return cls(cores, memory, ray.util.get_node_ip_address())
 
@@ -257,7 +260,7 @@ class RoomActor:
     def end(self) -> None:
         self.ask_to_end()
         if self._ending is not None:
-            self._ray.wait([self._ending], timeout=PATIENCE)
+            self._ray.wait([self._ending], timeout=self._patience())
             self._forget()
 
     def _set_closed(self, is_closed: bool) -> None:
@@ -271,24 +274,28 @@ class RoomActor:
         if not ready:
             if self._report is not None and now - self._asked_at > SILENT:
                 self._lose(now)
-            if self._report is None and now - self._since > SCARCE:
-                self.trouble = f"it waits for a machine with {self._cluster.cores:g} cores and {self._cluster.memory / 1e6:.0f} MB to spare"
+            self._tell_of_waiting(now)
             return
         answer, self._answer = self._answer, None
         exceptions = self._ray.exceptions
         try:
             self._report = self._ray.get(answer)
-        except exceptions.ActorUnavailableError:  # Ray starts it again
+        except exceptions.ActorUnavailableError:  # Ray starts it, or starts it again
             self._lose(now)
+            self._tell_of_waiting(now)
         except exceptions.ActorDiedError as error:
             is_coming_back = self._is_there()
             self._lose(now)
             if not is_coming_back:
-                self._actor = None
+                self._actor, self._since = None, now
                 self.trouble = f"Ray gave it up: {SHORT.repr(str(error))}"
         else:
             self.trouble = self._report.trouble
             self._rest(now)
+
+    def _tell_of_waiting(self, now: float) -> None:
+        if self._report is None and now - self._since > SCARCE:
+            self.trouble = f"it waits for a machine with {self._cluster.cores:g} cores and {self._cluster.memory / 1e6:.0f} MB to spare"
 
     def _is_there(self) -> bool:
         try:
@@ -298,10 +305,10 @@ class RoomActor:
         return True
 
     def _lose(self, now: float) -> None:
-        """The actor or its machine has died."""
+        """The actor or its machine has died. Until it is there again, Ray says so to each question."""
         if self._report is not None:
             self._restarts += self._report.restarts + 1
-        self._report, self._since = None, now
+            self._report, self._since = None, now
 
     def _rest(self, now: float) -> None:
         """Ends the actor of a room in which nothing happens any more."""
@@ -314,8 +321,12 @@ class RoomActor:
 
     def _look_at_end(self, now: float) -> None:
         ready, _ = self._ray.wait([self._ending], timeout=0)
-        if ready or now - self._since > PATIENCE:
+        if ready or now - self._since > self._patience():
             self._forget()
+
+    def _patience(self) -> float:
+        """Of its end, s. An actor that has not been heard of has no process yet."""
+        return SILENT if self._report is None else PATIENCE
 
     def _forget(self) -> None:
         with suppress(Exception):  # it may have died already
