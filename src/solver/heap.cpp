@@ -23,69 +23,36 @@ void set_column(Mat3& m, int k, const Vec3& v) { m.m[0][k] = v.x, m.m[1][k] = v.
 
 }  // namespace
 
-/// How a contact answers to an overlap: by an impulse that pushes it apart with a frequency and damping that no sub-step overshoots,
-/// or not at all.
-struct Heap::Softness {
-  double rate = 0, mass = 1, impulse = 0;
-  Softness() = default;
-  Softness(double frequency, double h) {
-    constexpr double damping = 10;  // of the critical one
-    const double omega = 2 * std::numbers::pi * frequency, a1 = 2 * damping + h * omega, a2 = h * omega * a1;
-    rate = omega / a1, mass = a2 / (1 + a2), impulse = 1 / (1 + a2);
-  }
-};
-
 bool Heap::find_bodies(const Problem& problem) {
-  bool is_heap = problem.counted_angles.empty() && problem.has_used<ContactConstraint>();
-  std::vector<std::uint8_t> is_target(problem.size(), 0);
-  std::vector<std::uint32_t> lengths(problem.size(), 0);  // at each node
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (std::is_same_v<C, AffineConstraint>) {
-      for (const AffineConstraint& c : pool.items) {
-        is_heap = is_heap && c.count == 1;
-        is_target[c.nodes[0]] = 1;
-      }
-    } else if constexpr (std::is_same_v<C, DistanceConstraint>) {
-      is_heap = is_heap && (pool.items.empty() || !pool.has_laws());
-      for (const DistanceConstraint& c : pool.items)
-        for (const std::uint32_t node : c.nodes) ++lengths[node];
-    } else if constexpr (std::is_same_v<C, BilinearConstraint>) {
-      for (std::size_t i = 0; i < pool.items.size(); ++i)
-        is_heap = is_heap && pool.has_laws() && pool.law(i)->hold && pool.law(i)->rate == 0;
-    } else if constexpr (!std::is_same_v<C, ContactConstraint>) {
-      is_heap = is_heap && pool.items.empty();
-    }
-  });
+  bool is_heap = problem.has_used<ContactConstraint>();
   problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
     is_heap = is_heap && (std::is_same_v<F, GripForce> || pool.items.empty());
   });
-  if (!is_heap) return false;
-  const std::uint32_t count = find_pieces(problem, Connection::lengths, body_of_);
-  bodies_.assign(count, {});
-  for (std::uint32_t node = 0; node < problem.size(); ++node) {
-    Body& body = bodies_[body_of_[node]];
-    if (body.count == most_points) return false;
-    body.is_driven = is_target[node];
-    body.nodes[body.count++] = node;
-  }
-  for (const Body& body : bodies_)
-    for (std::uint32_t i = 0; i < body.count; ++i)
-      if (lengths[body.nodes[i]] != body.count - 1 || is_target[body.nodes[i]] != body.is_driven) return false;
+  if (!is_heap || !found_.find(problem) || !ties_.find(problem, found_)) return false;
   pairs_.clear();
+  const auto connect = [&](std::uint32_t a, std::uint32_t b) {
+    if (a != b && a != none && b != none && !found_.all[a].is_driven && !found_.all[b].is_driven)
+      pairs_.push_back({std::min(a, b), std::max(a, b)});
+  };
   for (const ContactConstraint& c : problem.items_of<ContactConstraint>()) {
-    const std::uint32_t a = body_of_[c.nodes[0]], b = body_of_[c.nodes[c.count - 1]];
-    if (a != b && !bodies_[a].is_driven && !bodies_[b].is_driven) pairs_.push_back({std::min(a, b), std::max(a, b)});
+    const auto nodes = std::span(c.nodes).first(c.count);
+    connect(found_.with(nodes.first(c.first_side > 0 ? c.first_side : c.count)),
+            found_.with(nodes.subspan(c.first_side)));
   }
+  ties_.for_each_pair(connect);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   return true;
 }
 
-// Eliminates bodies in the order of their degrees. A body with d others in its front costs a product of so many blocks.
+// Eliminates bodies in the order of their degrees. A body costs its unknowns times the square of those of its front.
 double Heap::cost_of_factor() {
   constexpr double most = 1e9;
-  constexpr double of_block = 18 * 18 * 18;  // twelve places and six lengths
-  std::vector<std::vector<std::uint32_t>> neighbors(bodies_.size());
+  const auto unknowns = [&](std::uint32_t body) {  // places and lengths
+    const double points = found_.all[body].count;
+    return 3 * points + 0.5 * points * (points - 1);
+  };
+  std::vector<std::vector<std::uint32_t>> neighbors(found_.all.size());
   for (const auto& [a, b] : pairs_) neighbors[a].push_back(b), neighbors[b].push_back(a);
   std::vector<std::vector<std::uint32_t>> by_degree(1);
   const auto list = [&](std::uint32_t body) {
@@ -93,9 +60,9 @@ double Heap::cost_of_factor() {
     if (by_degree.size() <= degree) by_degree.resize(degree + 1);
     by_degree[degree].push_back(body);
   };
-  for (std::uint32_t i = static_cast<std::uint32_t>(bodies_.size()); i-- > 0;)
-    if (!bodies_[i].is_driven) list(i);
-  std::vector<std::uint8_t> is_gone(bodies_.size(), 0);
+  for (std::uint32_t i = static_cast<std::uint32_t>(found_.all.size()); i-- > 0;)
+    if (!found_.all[i].is_driven) list(i);
+  std::vector<std::uint8_t> is_gone(found_.all.size(), 0);
   std::vector<std::uint32_t> merged;
   double cost = 0;
   for (std::size_t degree = 0; degree < by_degree.size() && cost < most;) {
@@ -107,9 +74,10 @@ double Heap::cost_of_factor() {
     by_degree[degree].pop_back();
     if (is_gone[body] || neighbors[body].size() != degree) continue;  // it is listed elsewhere
     is_gone[body] = 1;
-    const double front = static_cast<double>(degree) + 1;
-    cost += of_block * front * front;
     const std::vector<std::uint32_t> around = std::move(neighbors[body]);
+    double front = unknowns(body);
+    for (const std::uint32_t other : around) front += unknowns(other);
+    cost += unknowns(body) * front * front;
     for (const std::uint32_t other : around) {
       std::vector<std::uint32_t>& list_of_other = neighbors[other];
       merged.clear();
@@ -126,45 +94,61 @@ double Heap::cost_of_factor() {
 }
 
 void Heap::load_bodies(const Problem& problem, double h) {
-  std::vector<Vec3> momentum(bodies_.size());
-  std::vector<double> mass(bodies_.size(), 0);
-  motions_.assign(bodies_.size() + 1, {});
-  for (Body& body : bodies_)
-    body.center = {}, body.inertia = body.by_inertia_at_begin = {}, body.moved = {}, body.turn = {};
-  for (std::uint32_t node = 0; node < problem.size(); ++node) {
-    const std::uint32_t b = body_of_[node];
-    mass[b] += problem.mass[node];
-    bodies_[b].center += problem.mass[node] * problem.position[node];
-    momentum[b] += problem.mass[node] * problem.velocity[node];
+  std::vector<Vec3> momentum(found_.all.size());
+  std::vector<double> mass(found_.all.size(), 0);
+  motions_.assign(found_.all.size() + 1, {});
+  for (Body& body : found_.all)
+    body.center = {}, body.inertia = body.by_inertia_at_begin = {}, body.moved = {}, body.turn = {},
+    body.turned = Mat3::diagonal(1);
+  for (std::size_t b = 0; b < found_.all.size(); ++b)
+    for (std::uint32_t k = 0; k < found_.all[b].count; ++k) {
+      const std::uint32_t node = found_.all[b].nodes[k];
+      const double part = found_.all[b].shares[k] * problem.mass[node];
+      mass[b] += part;
+      found_.all[b].center += part * problem.position[node];
+      momentum[b] += part * problem.velocity[node];
+    }
+  for (const HeapBodies::Coupling& coupling : found_.couplings) {
+    const auto& c = problem.mass_couplings[coupling.item];
+    const std::uint32_t b = coupling.body;
+    const double part = coupling.share * c.mass;
+    mass[b] += 2 * part;
+    found_.all[b].center += part * (problem.position[c.a] + problem.position[c.b]);
+    momentum[b] += part * (problem.velocity[c.a] + problem.velocity[c.b]);
   }
-  for (const auto& c : problem.mass_couplings) {
-    const std::uint32_t b = body_of_[c.a];
-    mass[b] += 2 * c.mass;
-    bodies_[b].center += c.mass * (problem.position[c.a] + problem.position[c.b]);
-    momentum[b] += c.mass * (problem.velocity[c.a] + problem.velocity[c.b]);
-  }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (bodies_[i].is_driven || !(mass[i] > 0)) continue;
+  for (std::size_t i = 0; i < found_.all.size(); ++i) {
+    if (found_.all[i].is_driven || !(mass[i] > 0)) continue;
     motions_[i].by_mass = 1 / mass[i];
-    bodies_[i].center *= motions_[i].by_mass, motions_[i].velocity = motions_[i].by_mass * momentum[i];
+    found_.all[i].center *= motions_[i].by_mass, motions_[i].velocity = motions_[i].by_mass * momentum[i];
   }
-  std::vector<Vec3> angular(bodies_.size());
-  const auto add = [&](double m, std::uint32_t p, std::uint32_t q) {
-    const std::uint32_t b = body_of_[p];
-    const Vec3 rp = problem.position[p] - bodies_[b].center, rq = problem.position[q] - bodies_[b].center;
+  std::vector<Vec3> angular(found_.all.size());
+  const auto add = [&](std::size_t b, double m, std::uint32_t p, std::uint32_t q) {
+    const Vec3 rp = problem.position[p] - found_.all[b].center, rq = problem.position[q] - found_.all[b].center;
     angular[b] += m * cross(rp, problem.velocity[q] - motions_[b].velocity);
-    bodies_[b].inertia += m * (Mat3::diagonal(dot(rp, rq)) + -1.0 * Mat3::outer(rq, rp));
+    found_.all[b].inertia += m * (Mat3::diagonal(dot(rp, rq)) + -1.0 * Mat3::outer(rq, rp));
   };
-  for (std::uint32_t node = 0; node < problem.size(); ++node) add(problem.mass[node], node, node);
-  for (const auto& c : problem.mass_couplings) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Body& body = bodies_[i];
+  for (std::size_t b = 0; b < found_.all.size(); ++b)
+    for (std::uint32_t k = 0; k < found_.all[b].count; ++k) {
+      const std::uint32_t node = found_.all[b].nodes[k];
+      add(b, found_.all[b].shares[k] * problem.mass[node], node, node);
+    }
+  for (const HeapBodies::Coupling& coupling : found_.couplings) {
+    const auto& c = problem.mass_couplings[coupling.item];
+    add(coupling.body, coupling.share * c.mass, c.a, c.b), add(coupling.body, coupling.share * c.mass, c.b, c.a);
+  }
+  for (std::size_t i = 0; i < found_.all.size(); ++i) {
+    Body& body = found_.all[i];
     Motion& motion = motions_[i];
     body.gain = body.turning = {};
     if (motion.by_mass == 0) continue;
     const SymmetricEigen eigen = symmetric_eigen(body.inertia);
     constexpr double thin = 1e-9;
-    const double largest = std::max({eigen.values[0], eigen.values[1], eigen.values[2]});
+    double reach = 0;
+    for (std::uint32_t k = 0; k < body.count; ++k)
+      reach = std::max(reach, norm(problem.position[body.nodes[k]] - body.center));
+    // Where shared points give a body all its mass at one place, that of the place is round-off.
+    const double largest =
+        std::max({eigen.values[0], eigen.values[1], eigen.values[2], thin * reach * reach / motion.by_mass});
     for (int k = 0; k < 3; ++k)
       if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
         motion.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
@@ -174,11 +158,12 @@ void Heap::load_bodies(const Problem& problem, double h) {
     for (std::uint32_t k = 0; k < body.count; ++k) {
       body.arms[k] = problem.position[body.nodes[k]] - body.center;
       if (problem.force.empty()) continue;
-      const Vec3& force = problem.force[body.nodes[k]];
+      const Vec3 force = body.shares[k] * problem.force[body.nodes[k]];
       body.gain += (h * motion.by_mass) * force, body.turning += h * cross(body.arms[k], force);
     }
   }
-  for (const BodyTorque& t : problem.torques) bodies_[body_of_[t.nodes[0]]].turning += h * t.torque;
+  for (const BodyTorque& t : problem.torques)
+    found_.all[found_.with(std::span(t.nodes).first(t.count))].turning += h * t.torque;
 }
 
 namespace {
@@ -215,8 +200,9 @@ void Heap::load_points(Problem& problem, double h, double rate) {
     for (std::uint32_t k = 0; k < c.count; ++k) sum += c.weights[0][k];
     const bool has_world_point = c.first_side == 0 && sum < 0;
     const std::uint32_t of_first = c.first_side > 0 ? c.first_side : has_world_point ? 0 : c.count;
-    if (of_first > 0) point.a = body_of_[c.nodes[0]];
-    if (of_first < c.count) point.b = body_of_[c.nodes[of_first]];
+    const auto nodes = std::span(c.nodes).first(c.count);
+    if (of_first > 0) point.a = found_.with(nodes.first(of_first));
+    if (of_first < c.count) point.b = found_.with(nodes.subspan(of_first));
     if (!is_free(point.a) && !is_free(point.b)) continue;
     const auto place = [&](std::uint32_t node) -> const Vec3& { return x[node]; };
     auto [center, origin] = sums_of(c, 0, of_first, place);
@@ -241,11 +227,11 @@ void Heap::load_points(Problem& problem, double h, double rate) {
     const auto load_side = [&](std::uint32_t& b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
                                Vec3& gap_arm) {
       if (is_free(b)) {
-        arm = at - bodies_[b].center, gap_arm = gap_place - bodies_[b].center;
+        arm = at - found_.all[b].center, gap_arm = gap_place - found_.all[b].center;
         return;
       }
       if (b != none) point.drift += sign * moving;
-      b = static_cast<std::uint32_t>(bodies_.size()), point.is_at_rest = true;
+      b = static_cast<std::uint32_t>(found_.all.size()), point.is_at_rest = true;
     };
     load_side(point.a, center, drift_a, 1, begin.arm_a, begin.gap_a);
     load_side(point.b, origin, drift_b, -1, begin.arm_b, begin.gap_b);
@@ -270,52 +256,24 @@ void Heap::load_points(Problem& problem, double h, double rate) {
   order(points_, sorted_points_), order(begins_, sorted_begins_);
 }
 
-void Heap::load_held(Problem& problem, double h) {
-  held_.clear();
-  if (!problem.has_used<BilinearConstraint>()) return;
-  const auto& pool = problem.pool_of<BilinearConstraint>();
-  for (std::size_t i = 0; i < pool.items.size(); ++i) {
-    const BilinearConstraint& c = pool.items[i];
-    Held row{.item = static_cast<std::uint32_t>(i), .most = h * pool.law(i)->upper};
-    std::array<Vec3, BilinearConstraint::max_nodes> by_node;
-    c.gradients(problem.position.data(), 1, by_node.data());
-    for (std::uint32_t k = 0; k < c.count; ++k) {
-      const std::uint32_t b = body_of_[c.nodes[k]];
-      if (!is_free(b)) continue;
-      const bool is_first = row.a == none || row.a == b;
-      (is_first ? row.a : row.b) = b;
-      (is_first ? row.way_a : row.way_b) += by_node[k];
-      (is_first ? row.turn_a : row.turn_b) += cross(problem.position[c.nodes[k]] - bodies_[b].center, by_node[k]);
-    }
-    double inverse = 0;
-    const auto add = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
-      if (b != none) inverse += motions_[b].by_mass * dot(way, way) + dot(turn, motions_[b].by_inertia * turn);
-    };
-    add(row.a, row.way_a, row.turn_a), add(row.b, row.way_b, row.turn_b);
-    if (!(inverse > 0)) continue;
-    row.mass = 1 / inverse;
-    row.impulse = std::clamp(-h * *pool.multiplier(i), -row.most, row.most);
-    held_.push_back(row);
-  }
-}
-
 void Heap::load_grips(const Problem& problem) {
   grips_.clear();
   const std::span forces = problem.items_of<GripForce>();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const GripForce& force = forces[i];
-    Grip grip{.body = body_of_[force.arm.nodes[0]], .item = static_cast<std::uint32_t>(i)};
+    Grip grip{.body = found_.with(std::span(force.arm.nodes).first(force.arm.count)),
+              .item = static_cast<std::uint32_t>(i)};
     if (!is_free(grip.body)) continue;
     grip.error = force.arm.value(problem.position.data());
-    grip.arm = grip.error + force.arm.origin - bodies_[grip.body].center;
+    grip.arm = grip.error + force.arm.origin - found_.all[grip.body].center;
     grips_.push_back(grip);
   }
 }
 
 // Held forces, and grips by the end-point rule.
 void Heap::push(double h, const Problem& problem, HeapReport& report) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Body& body = bodies_[i];
+  for (std::size_t i = 0; i < found_.all.size(); ++i) {
+    const Body& body = found_.all[i];
     Motion& motion = motions_[i];
     if (motion.by_mass == 0) continue;
     const Vec3 gained = body.gain - h * problem.gravity, turned = motion.by_inertia * body.turning;
@@ -325,7 +283,7 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
   }
   const std::span forces = problem.items_of<GripForce>();
   for (const Grip& grip : grips_) {
-    const Body& body = bodies_[grip.body];
+    const Body& body = found_.all[grip.body];
     Motion& motion = motions_[grip.body];
     const GripForce& force = forces[grip.item];
     const Vec3 arm = rotate(body.turn, grip.arm), error = grip.error + body.moved + arm - grip.arm;
@@ -354,33 +312,15 @@ Vec3 Heap::relative_velocity(const Point& point) const {
   return point.drift + a.velocity + cross(a.spin, point.arm_a) - b.velocity - cross(b.spin, point.arm_b);
 }
 
-void Heap::apply(const Held& row, double impulse) {
-  const auto give = [&](std::uint32_t b, const Vec3& way, const Vec3& turn) {
-    if (b == none) return;
-    motions_[b].velocity += (impulse * motions_[b].by_mass) * way;
-    motions_[b].spin += motions_[b].by_inertia * (impulse * turn);
-  };
-  give(row.a, row.way_a, row.turn_a), give(row.b, row.way_b, row.turn_b);
-}
-
-void Heap::solve_held(Held& row) {
-  double rate = 0;
-  if (row.a != none) rate += dot(row.way_a, motions_[row.a].velocity) + dot(row.turn_a, motions_[row.a].spin);
-  if (row.b != none) rate += dot(row.way_b, motions_[row.b].velocity) + dot(row.turn_b, motions_[row.b].spin);
-  const double before = row.impulse;
-  row.impulse = std::clamp(before - row.mass * rate, -row.most, row.most);
-  apply(row, row.impulse - before);
-}
-
-void Heap::sweep(double h, const Softness& soft, int times) {
+void Heap::sweep(double h, const HeapSoftness& soft, int times) {
   for (int k = 0; k < times; ++k) {
+    ties_.sweep(motions_, soft, h);
     for (Point& point : points_) solve_point(point, h, soft);
-    for (Held& row : held_) solve_held(row);
   }
 }
 
 // All of it works on copies of four vectors: most of the time of a sweep is that of loads and stores.
-void Heap::solve_point(Point& point, double h, const Softness& soft) {
+void Heap::solve_point(Point& point, double h, const HeapSoftness& soft) {
   Motion &a = motions_[point.a], &b = motions_[point.b];
   Vec3 velocity_a = a.velocity, spin_a = a.spin, velocity_b = b.velocity, spin_b = b.spin;
   const auto slip = [&] {
@@ -441,25 +381,25 @@ void Heap::weigh(Point& point) const {
 // A thin rod that turns has another mass at the same place: with that of the begin its impulses grew without bound.
 bool Heap::has_turned(std::uint32_t body) const {
   constexpr double far = 0.1;  // rad
-  return body < bodies_.size() && std::abs(bodies_[body].turn.w) < 1 - far * far / 8;
+  return body < found_.all.size() && std::abs(found_.all[body].turn.w) < 1 - far * far / 8;
 }
 
 // Gaps, and the arms of forces: both sides have theirs at one place, so that angular momentum is kept.
 void Heap::refresh_points(double h) {
-  const std::size_t world = bodies_.size();
+  const std::size_t world = found_.all.size();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Point& point = points_[i];
     PointBegin& begin = begins_[i];
     begin.drifted += h * point.drift;
     Vec3 closing = begin.drifted;
     const auto moved = [&](std::uint32_t b, const Vec3& arm) {
-      return bodies_[b].moved + bodies_[b].turned * arm - arm;
+      return found_.all[b].moved + found_.all[b].turned * arm - arm;
     };
     if (point.a < world) closing += moved(point.a, begin.gap_a);
     if (point.b < world) closing -= moved(point.b, begin.gap_b);
     point.gap = begin.gap + dot(point.normal, closing);
     if (!point.is_at_rest) {
-      const Vec3 apart = 0.5 * (bodies_[point.a].moved - bodies_[point.b].moved);
+      const Vec3 apart = 0.5 * (found_.all[point.a].moved - found_.all[point.b].moved);
       point.arm_a = begin.arm_a - apart, point.arm_b = begin.arm_b + apart;
     }
     if (has_turned(point.a) || has_turned(point.b)) weigh(point);
@@ -467,8 +407,8 @@ void Heap::refresh_points(double h) {
 }
 
 void Heap::move(double h) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Body& body = bodies_[i];
+  for (std::size_t i = 0; i < found_.all.size(); ++i) {
+    Body& body = found_.all[i];
     Motion& motion = motions_[i];
     if (motion.by_mass == 0) continue;
     body.moved += h * motion.velocity;
@@ -487,21 +427,18 @@ void Heap::move(double h) {
 }
 
 void Heap::store(Problem& problem, double h, HeapReport& report) const {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Body& body = bodies_[i];
+  for (std::size_t i = 0; i < found_.all.size(); ++i) {
+    const Body& body = found_.all[i];
     const Motion& motion = motions_[i];
     if (motion.by_mass == 0) continue;
     for (std::uint32_t k = 0; k < body.count; ++k) {
+      if (found_.owner[body.nodes[k]] != i) continue;
       const Vec3 arm = rotate(body.turn, body.arms[k]);
       problem.position[body.nodes[k]] = body.center + body.moved + arm;
       problem.velocity[body.nodes[k]] = motion.velocity + cross(motion.spin, arm);
     }
   }
-  if (!held_.empty()) {
-    auto& rows = problem.pool_of<BilinearConstraint>();
-    std::fill(rows.multipliers.begin(), rows.multipliers.end(), 0.0);
-    for (const Held& row : held_) *rows.multiplier(row.item) = -row.sum / h;
-  }
+  ties_.store(problem, h);
   auto& pool = problem.pool_of<ContactConstraint>();
   std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -522,31 +459,35 @@ void Heap::store(Problem& problem, double h, HeapReport& report) const {
 HeapReport Heap::advance(Problem& problem, double h, double from, double fraction, int sub_steps) {
   HeapReport report;
   const double part = h / sub_steps;
-  const Softness pushing(0.25 / part, part), plain;
+  const HeapSoftness pushing(0.25 / part, part), plain;
   load_bodies(problem, part);
   load_points(problem, part, (fraction - from) / h);
-  load_held(problem, part);
+  ties_.begin(problem, found_, part);
   load_grips(problem);
+  const auto way_at = [&](int k) { return from + (fraction - from) * k / sub_steps; };
+  ties_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     for (const Point& point : points_)
       apply(point,
             point.impulse * point.normal + point.impulse_first * point.first + point.impulse_second * point.second);
-    for (const Held& row : held_) apply(row, row.impulse);
+    ties_.warm(motions_);
     sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
     move(part);
     refresh_points(part);
+    ties_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
     sweep(part, plain, sweeps);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       begins_[i].sum += points_[i].impulse;
       begins_[i].sum_first += points_[i].impulse_first, begins_[i].sum_second += points_[i].impulse_second;
     }
-    for (Held& row : held_) row.sum += row.impulse;
+    report.external_work += ties_.add_up();
   }
   rebound(h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
   store(problem, h, report);
+  report.are_joints_met = ties_.project(problem, fraction);
   return report;
 }
 

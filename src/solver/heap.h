@@ -2,6 +2,8 @@
 #pragma once
 
 #include "math/mat3.h"
+#include "solver/heap_bodies.h"
+#include "solver/heap_ties.h"
 #include "solver/problem.h"
 
 #include <array>
@@ -16,9 +18,10 @@ namespace iota::solver {
 struct HeapReport {
   double external_work = 0;  ///< of held forces, torques, grips and driven bodies, J
   double depth = 0;          ///< largest overlap at the end, m
+  bool are_joints_met = true;
 };
 
-/// A problem of rigid bodies that only contacts connect, beyond the size at which the equations of all contacts can be
+/// A problem of rigid bodies that contacts and joints connect, beyond the size at which the equations of all contacts can be
 /// solved at once. Its step is approximate: in short sub-steps each contact is solved alone, with impulses that are kept
 /// from one sub-step to the next ("small steps": Macklin et al., Small Steps in Physics Simulation, 2019,
 /// doi:10.1145/3309486.3340247; soft contacts and a pass that takes their push out of the velocities: E. Catto, Solver2D,
@@ -26,8 +29,9 @@ struct HeapReport {
 /// linear in the number of contacts.
 class Heap {
  public:
-  /// After a change of structure: whether only contacts connect rigid bodies, which are free, or driven as a whole.
+  /// After a change of structure: whether contacts, joints and other rows of two bodies connect rigid bodies, and no forces.
   bool find_bodies(const Problem&);
+  bool has_joints() const { return !ties_.are_none(); }
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor();
   static constexpr int most_sub_steps = 8;  ///< see heap.cpp
@@ -35,27 +39,10 @@ class Heap {
   HeapReport advance(Problem&, double h, double from, double fraction, int sub_steps = most_sub_steps);
 
  private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-  static constexpr std::size_t most_points = 4;
+  static constexpr std::uint32_t none = HeapBodies::none;
+  using Body = HeapBody;
+  using Motion = HeapMotion;
 
-  struct Body {
-    std::array<std::uint32_t, most_points> nodes{};
-    std::uint32_t count = 0;
-    bool is_driven = false;  ///< its points follow targets
-    // In a step.
-    Mat3 inertia, by_inertia_at_begin;   ///< about the center, at the begin
-    Vec3 center, moved;                  ///< at the begin; since then, m
-    Quaternion turn;                     ///< since the begin
-    Mat3 turned;                         ///< the same as a matrix
-    Vec3 gain, turning;                  ///< of held forces in a sub-step: m/s, N m s
-    std::array<Vec3, most_points> arms;  ///< of the points at the begin, m
-  };
-  /// All that a sweep needs of a body. Of what is driven, and of the world: zero.
-  struct Motion {
-    Vec3 velocity, spin;  ///< m/s, rad/s
-    double by_mass = 0;   ///< 1/kg
-    Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
-  };
   /// A place where two bodies touch. Body `none` in the loading of it: the world, the last of the motions.
   struct Point {
     std::uint32_t a = none, b = none;
@@ -79,13 +66,6 @@ class Heap {
     double gap = 0;                                 ///< at the begin, m
     double sum = 0, sum_first = 0, sum_second = 0;  ///< impulses in the step, N s
   };
-  /// A held row of one value, such as resistance against rolling: the impulse by which it acts is bounded.
-  struct Held {
-    std::uint32_t a = none, b = none, item = 0;
-    Vec3 way_a, way_b, turn_a, turn_b;  ///< the rate of its value by the velocities and spins
-    double mass = 0, most = 0;          ///< N s in a sub-step
-    double impulse = 0, sum = 0;
-  };
   struct Grip {
     std::uint32_t body = none, item = 0;
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
@@ -93,15 +73,11 @@ class Heap {
 
   void load_bodies(const Problem&, double h);
   void load_points(Problem&, double h, double rate);
-  void load_held(Problem&, double h);
   void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
-  struct Softness;
-  void sweep(double h, const Softness&, int times);
-  void solve_point(Point&, double h, const Softness&);
-  void solve_held(Held&);
-  void apply(const Held&, double impulse);
+  void sweep(double h, const HeapSoftness&, int times);
+  void solve_point(Point&, double h, const HeapSoftness&);
   void rebound(double least);
   void refresh_points(double h);
   void weigh(Point&) const;
@@ -111,8 +87,8 @@ class Heap {
   Vec3 relative_velocity(const Point&) const;
   void store(Problem&, double h, HeapReport&) const;
 
-  std::vector<std::uint32_t> body_of_;  // of each node
-  std::vector<Body> bodies_;
+  HeapBodies found_;
+  HeapTies ties_;
   std::vector<Motion> motions_;  // of the bodies, and of the world
   std::vector<Point> points_;    // from above to below
   std::vector<PointBegin> begins_;
@@ -120,9 +96,8 @@ class Heap {
   std::vector<Point> sorted_points_;
   std::vector<PointBegin> sorted_begins_;
   bool has_new_points_ = false;  // that carried nothing in the step before
-  std::vector<Held> held_;
   std::vector<Grip> grips_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };
 
 }  // namespace iota::solver

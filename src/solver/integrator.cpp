@@ -106,7 +106,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   newton_.add_times_to(times_of_thread());
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
-  if (is_heap_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_burst(), cost));
+  if (may_sweep_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_burst(), cost));
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
@@ -182,7 +182,7 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
   if (report.is_approximate) return;
   for (std::size_t i = first; i < attempts.size(); ++i) {
     const Attempt& attempt = attempts[i];
-    if (is_heap_ && attempt.compliance > exact_rows) break;  // sweeps do better
+    if (may_sweep_ && attempt.compliance > exact_rows) break;  // sweeps do better
     const bool turns = attempt.scheme == Scheme::mid_point && may_halve(part, report) &&
                        will_turn_too_far(problem, part.h);  // no need to try
     if (!turns && take(problem, part, attempt, report)) return;
@@ -193,7 +193,7 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
     }
     if (attempt.scheme == Scheme::mid_point) ++report.fallbacks;
   }
-  if (is_heap_) return sweep(problem, {.from = part.from, .h = (1 - part.from) * step_length_}, report);
+  if (may_sweep_) return sweep(problem, {.from = part.from, .h = (1 - part.from) * step_length_}, report);
   report.converged = false;
   coast(problem, part.h, report);
 }
@@ -219,9 +219,10 @@ void accept_overlaps(Problem& problem) {
 // same way.
 bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   constexpr double fewest = 4, of_closing = 60;  // iterations
+  constexpr double of_machine = 1.0 / 8;         // of the budget: joints within it are not left to sweeps
   const double budget = settings_.contact_budget;
   if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) {
-    is_heap_ = false;
+    may_sweep_ = false;
     return false;
   }
   if (!heap_) heap_ = std::make_unique<Heap>();
@@ -229,10 +230,11 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
     is_heap_ = heap_->find_bodies(problem);
     heap_cost_.reset();
   }
-  if (!is_heap_) return false;
+  if (is_heap_ && !heap_cost_) heap_cost_ = heap_->cost_of_factor();
+  may_sweep_ = is_heap_ && (!heap_->has_joints() || fewest * *heap_cost_ > of_machine * budget);
+  if (!may_sweep_) return false;
   std::uint64_t& swept = problem.unsolved_steps;
   if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole
-  if (!heap_cost_) heap_cost_ = heap_->cost_of_factor();
   cost = *heap_cost_;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = fewest * cost > settings_.contact_share * budget;
@@ -252,7 +254,14 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const double share = settings_.part * part.h / step_length_;
   const int sub_steps =
       std::clamp(static_cast<int>(std::lround(Heap::most_sub_steps * share)), 1, Heap::most_sub_steps);
+  const bool is_free = problem.is_isolated() && problem.items_of<GripForce>().empty() && !problem.has_pushes();
+  const std::optional<RigidMotion> free =
+      heap_->has_joints() && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
   const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
+  track(problem, part.to);
+  // A joint that is open within the step has its forces at two places, and is closed at its end.
+  if (free) keep_momenta(problem, *free, part.h);
+  report.converged = report.converged && swept.are_joints_met;
   energy_.measure_change(problem, part.to, swept.external_work);
   // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
   const double lifted = energy_.total - energy_.kinetic - (before.total - before.kinetic);

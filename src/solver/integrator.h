@@ -175,8 +175,9 @@ class Integrator {
   bool is_due_ = false;  ///< not analyzed yet
   double reference_length_ = 1;
   std::unique_ptr<Heap> heap_;               // if there ever were contacts
-  bool is_heap_ = false;                     // bodies that only contacts connect
+  bool is_heap_ = false;                     // see Heap::find_bodies
   bool is_heap_known_ = false;               // since the latest change of structure
+  bool may_sweep_ = false;                   // in this step, what its equations do not solve within the budget
   std::optional<double> heap_cost_;          // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed
   std::vector<std::uint32_t> center_;        // of the latest

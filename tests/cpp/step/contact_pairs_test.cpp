@@ -129,6 +129,26 @@ TEST(ContactPairs, keep_momentum_and_angular_momentum_of_what_collides) {
     }
 }
 
+TEST(ContactPairs, are_not_made_between_solids_that_a_joint_holds_deep_in_each_other) {
+  System system;
+  system.set_usual_material(Material{0.5});
+  const auto add = [&](const Capsule& shape, const Vec3& position, const Quaternion& orientation) {
+    return system.bodies().create(shape, SolidOptions{.position = position, .orientation = orientation});
+  };
+  const Quaternion upright{0, 0, std::sqrt(0.5), std::sqrt(0.5)};
+  const BodyId pelvis = add(Capsule{0.1, 0.16}, {}, {});
+  for (const double side : {-0.1, 0.1}) {
+    const BodyId thigh = add(Capsule{0.07, 0.25}, {side, -0.275, 0}, upright);
+    system.bodies().set_velocity(thigh, {0.5 + 4 * side, 0, 0.3});
+    (void)system.joints().create(
+        JointSpec{.kind = ConstraintKind::ball, .a = pelvis, .b = thigh, .at = {side, -0.1, 0}});
+  }
+  for (int i = 0; i < 60; ++i) {
+    system.step(step_of_pairs);
+    ASSERT_TRUE(system.contacts().points().empty()) << "in step " << i;
+  }
+}
+
 TEST(ContactPairs, let_a_ball_pass_its_speed_on_as_inelastic_impacts_do) {
   System system;
   system.set_gravity({}), system.set_usual_material(Material{0});

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/mat3.h"
+#include "solver/problem.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// A rigid body of a Heap: points that all have lengths between each other. Bodies may share points.
+struct HeapBody {
+  static constexpr std::size_t most_points = 4;
+
+  std::array<std::uint32_t, most_points> nodes{};
+  std::array<double, most_points> shares{};  ///< of the points' masses
+  std::uint32_t count = 0;
+  bool is_driven = false;  ///< its points follow targets
+  // In a step.
+  Mat3 inertia, by_inertia_at_begin;   ///< about the center, at the begin
+  Vec3 center, moved;                  ///< at the begin; since then, m
+  Quaternion turn;                     ///< since the begin
+  Mat3 turned;                         ///< the same as a matrix
+  Vec3 gain, turning;                  ///< of held forces in a sub-step: m/s, N m s
+  std::array<Vec3, most_points> arms;  ///< of the points at the begin, m
+
+  Vec3 arm_now(std::uint32_t k) const { return turned * arms[k]; }
+  Vec3 center_now() const { return center + moved; }
+};
+
+/// All that a sweep needs of a body. Of what is driven, and of the world: zero.
+struct HeapMotion {
+  Vec3 velocity, spin;  ///< m/s, rad/s
+  double by_mass = 0;   ///< 1/kg
+  Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
+};
+
+/// The bodies of a problem. A point that several bodies share belongs to the first of them, the others have a copy of it: its mass
+/// is shared out, as the masses that couple it with the points of each body. Any other shares would move alike, as
+/// the copies stay together, and converge more slowly.
+struct HeapBodies {
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  struct Copy {
+    std::uint32_t node, body, place;  ///< place: of the node in the body
+  };
+  struct Coupling {
+    std::uint32_t item, body;  ///< of Problem::mass_couplings
+    double share;
+  };
+
+  std::vector<HeapBody> all;
+  std::vector<std::uint32_t> owner;     ///< of each node
+  std::vector<Copy> copies;             ///< of shared points, but for the first
+  std::vector<Coupling> couplings;      ///< in the order of items
+  std::vector<std::uint8_t> is_target;  ///< of each node: a nail holds it
+
+  /// After a change of structure. False if a driven body shares a point, or a share of mass is not positive.
+  bool find(const Problem&);
+  bool have(std::uint32_t body, std::uint32_t node) const { return place_of(body, node) < all[body].count; }
+  bool is_shared(std::uint32_t node) const { return !copies.empty() && bodies_at_[node].size() > 1; }
+  /// The body that has all these points, or the first of them.
+  std::uint32_t with(std::span<const std::uint32_t> nodes) const;
+
+ private:
+  void add_body(std::uint32_t a, std::uint32_t b, const std::vector<std::vector<std::uint32_t>>& neighbors);
+  bool have_body(std::uint32_t a, std::uint32_t b) const;
+  bool share_masses(const Problem&);
+  std::uint32_t place_of(std::uint32_t body, std::uint32_t node) const;
+
+  std::vector<std::uint32_t> piece_;                   // of each node
+  std::vector<std::vector<std::uint32_t>> bodies_at_;  // each node of a piece of several bodies
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/mat3.h"
+#include "solver/heap_bodies.h"
+#include "solver/problem.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+class Newton;
+
+/// How a row answers to what is open: by an impulse that closes it with a frequency and damping that no sub-step
+/// overshoots, or not at all.
+struct HeapSoftness {
+  double rate = 0, mass = 1, impulse = 0;
+  HeapSoftness() = default;
+  HeapSoftness(double frequency, double h);
+};
+
+/// The rows of a heap that are no contacts: joints, limits, motors, friction of joints, ropes and rods between bodies, resistance
+/// against rolling, nails, and the copies of points that bodies share. In a sweep each is solved alone, with impulses
+/// within its bounds. What the sweeps leave open of equations is projected at the end of the step, by a factor of
+/// these rows alone, so that joints are exact.
+class HeapTies {
+ public:
+  HeapTies();
+  ~HeapTies();
+  HeapTies(HeapTies&&) noexcept;
+  HeapTies& operator=(HeapTies&&) noexcept;
+
+  /// After a change of structure. False if a row acts on more than two bodies that are free, or is a cone but no contact.
+  bool find(const Problem&, const HeapBodies&);
+  bool are_none() const { return ties_.empty(); }
+  /// visit(a, b): each pair of bodies that a tie connects; one of them may be HeapBodies::none.
+  template <class Visit>
+  void for_each_pair(Visit visit) const {
+    for (const Tie& tie : ties_) visit(tie.a, tie.b);
+  }
+
+  /// At the begin of a step in sub-steps of h seconds, with the impulses of the step before. All their places are those of the problem.
+  void begin(Problem&, const HeapBodies&, double h);
+  /// At the places of the bodies, for a sub-step from and to these fractions of the step's way of targets.
+  void refresh(const Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
+  void warm(std::span<HeapMotion>);
+  void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
+  /// Ends a sub-step. Returns the work of rows that drive, J.
+  double add_up();
+  /// Writes the multipliers: mean forces in h seconds.
+  void store(Problem&, double h) const;
+  /// Moves places and velocities by the least changes in the mass norm onto the equations of the ties and of the bodies, at
+  /// this fraction of the way of targets in the step. False if they were not found.
+  bool project(Problem&, double fraction);
+
+ private:
+  static constexpr std::uint32_t none = HeapBodies::none;
+  static constexpr std::uint8_t of_copies = 0xff;
+  struct Tie {
+    std::uint32_t a = none, b = none;
+    std::uint32_t item = 0;  ///< in its pool; of a copy, its number
+    std::uint8_t pool = of_copies, rows = 1;
+    bool are_equations = true;  ///< of all its rows
+    bool moves = false;         ///< its value depends on time
+    bool drives = false;        ///< its impulses may do work
+    // In a sub-step, each of the rows.
+    std::array<Vec3, 3> way_a, turn_a, way_b, turn_b;  ///< the rate of its value by the velocities and spins
+    std::array<double, 3> value{}, drift{};            ///< drift: rate of the value by targets alone
+    Mat3 mass;                                         ///< of equations: the inverse of what an impulse changes
+    std::array<double, 3> by_mass{};                   ///< of a row alone
+    std::array<double, 3> impulse{}, sum{};
+    std::array<RowLaw, 3> law;
+  };
+
+  void weigh(Tie&, std::span<const HeapMotion>) const;
+  static double rate_of(const Tie&, int row, std::span<const HeapMotion>);
+  void give(Tie&, int row, double impulse, std::span<HeapMotion>);
+
+  std::vector<Tie> ties_;  // by pools, copies last
+  std::vector<Vec3> x_, x_next_;
+  bool has_frame_ = false;
+  Problem frame_;  // all rows that are equations, but for contacts
+  std::unique_ptr<Newton> newton_;
+  std::vector<double> rates_;
+  std::vector<Vec3> change_;
+  double work_ = 0;  // of rows that drive, in a sub-step, J
+};
+
+}  // namespace iota::solver
