@@ -45,8 +45,8 @@ test: ## build, then run the tests of every language; a tenth of what only sampl
 	@$(PYTHON) tools/build.py test
 	@.venv/bin/python tools/run_tests.py $(SUITES)
 
-test-all: ## the same with all samples, and with suites whose inputs have not changed
-	@$(PYTHON) tools/build.py test
+test-all: ## the same with all samples, the wheels of all Pythons here, and with suites whose inputs have not changed
+	@$(PYTHON) tools/build.py test-all
 	@.venv/bin/python tools/run_tests.py --all $(SUITES)
 
 bench: ## build, then measure engine, packaged peers, server and page in one run (BENCH="--quick")
@@ -74,7 +74,7 @@ hostile: ## damaged snapshots and recordings under the address sanitizer, up to 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py
 
-wheel: ## build/wheel/*.whl with engine, server, page and OpenSSL, as PyPI takes it
+wheel: ## build/wheel/*.whl, one for each supported Python here, with engine, server, page and OpenSSL, as PyPI takes it
 	@$(PYTHON) tools/build.py wheel
 
 sbom: ## the bill of materials of the wheel: build/sbom/*.cdx.json (CycloneDX)

@@ -37,6 +37,10 @@ add_custom_command(
   VERBATIM)
 add_custom_target(iota_protocol_python DEPENDS "${iota_protocol_module}")
 
+if(TARGET iota_protocol) # comes with a built server
+  return()
+endif()
+
 add_custom_target(iota_protocol_files DEPENDS "${iota_protocol_header}")
 
 add_library(iota_protocol INTERFACE)

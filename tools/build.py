@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
 
-    tools/build.py build | films | test | bench | verify | soak | wheel | sbom | docs | lint
+    tools/build.py build | films | test | test-all | bench | verify | soak | wheel | sbom | docs | lint
     tools/build.py cpp --preset asan
 
 Each step prints one line and writes the rest to build/logs/STEP.log. A step with unchanged inputs is skipped silently:
@@ -419,44 +419,112 @@ def command_line() -> Step:
     )
 
 
+def supported_versions() -> list[str]:
+    """The versions of Python that pyproject.toml names, oldest first."""
+    return re.findall(r'"Programming Language :: Python :: (3\.\d+)"', (ROOT / "pyproject.toml").read_text())
+
+
+def own_version() -> str:
+    """The version of .venv's Python."""
+    return site_packages().parent.name.removeprefix("python")
+
+
+def find_python(version: str) -> Path | None:
+    """A CPython of that version on this machine with C headers: from the search path, else of pyenv."""
+    folders = [Path(folder) for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
+    pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv")
+    folders += [found / "bin" for found in sorted((pyenv / "versions").glob(f"{version}.*"), reverse=True)]
+    test = (
+        "import pathlib, platform, sys, sysconfig, venv\n"
+        "headers = pathlib.Path(sysconfig.get_path('include'), 'Python.h').is_file()\n"
+        "found = platform.python_implementation() == 'CPython' and headers and not sysconfig.get_config_var('Py_GIL_DISABLED')\n"
+        f"sys.exit(not found or '%d.%d' % sys.version_info[:2] != {version!r})\n"
+    )
+    for folder in folders:
+        python = folder / f"python{version}"
+        # One of pyenv's links is there for each of its versions, and fails for those that are not chosen.
+        if python.is_file() and subprocess.run([python, "-c", test], capture_output=True).returncode == 0:
+            return python
+    return None
+
+
+def wheel_files(version: str) -> list[Path]:
+    """The wheel of a version of Python, if it is packed."""
+    tag = "cp" + version.replace(".", "")
+    return sorted(WHEELS.glob(f"{name_in_files()}-*-{tag}-{tag}-*.whl"))
+
+
+def wheel_inputs() -> str:
+    built = sorted(path for path in (BUILD / "python" / "iota").glob("*") if path.is_file())
+    project = [
+        ROOT / "pyproject.toml",
+        ROOT / "README.md",
+        ROOT / "LICENSE",
+        *sorted((ROOT / "LICENSES").glob("*.txt")),
+        ROOT / "CMakeLists.txt",
+        *sorted((ROOT / "cmake").glob("*.cmake")),
+        ROOT / "tools" / "requirements-build.txt",
+        ROOT / "tools" / "requirements-wheel.txt",
+    ]
+    return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))
+
+
+def pack(log: Path, python: Path, *settings: str) -> None:
+    """Makes a wheel for a Python. On Linux it gets the libraries that other systems may lack, OpenSSL's, and the tag of the oldest
+    systems on which it runs: PyPI takes no other."""
+    plain = BUILD / "wheel-plain" if sys.platform == "linux" else WHEELS
+    if plain != WHEELS:
+        shutil.rmtree(plain, ignore_errors=True)
+    chosen = [word for setting in settings for word in ("--config-settings", setting)]
+    run(log, python, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", plain, *chosen)
+    if plain != WHEELS:
+        run(log, PYTHON, "-m", "auditwheel", "repair", "--wheel-dir", WHEELS, *plain.glob("*.whl"))
+    # With its dependencies, so that a test can install both without a network.
+    run(
+        log, python, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
+        "--constraint", ROOT / "tools" / "requirements-build.txt", "numpy", "segno",
+    )  # fmt: skip
+
+
 def wheel() -> Step:
-    """The wheel takes the extension that was just built and tested; `pip wheel .` without the setting compiles it. On Linux it gets the
-    libraries that other systems may lack, OpenSSL's, and the tag of the oldest systems on which it runs: PyPI takes no other."""
+    """The wheel of .venv's Python takes the extension that was just built and tested; `pip wheel .` without the setting compiles it."""
     stamp = BUILD / "stamps" / "wheel"
 
-    def now() -> str:
-        built = sorted(path for path in (BUILD / "python" / "iota").glob("*") if path.is_file())
-        project = [
-            ROOT / "pyproject.toml",
-            ROOT / "README.md",
-            ROOT / "LICENSE",
-            *sorted((ROOT / "LICENSES").glob("*.txt")),
-            ROOT / "cmake" / "python.cmake",
-            ROOT / "tools" / "requirements-wheel.txt",
-        ]
-        return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))
+    def work(log: Path) -> None:
+        shutil.rmtree(WHEELS, ignore_errors=True)  # those of other Pythons are of an earlier engine
+        pack(log, PYTHON, f"cmake.define.IOTA_PREBUILT={BUILD / 'python' / 'iota'}")
+        write_stamp(stamp, wheel_inputs())
+
+    def needed() -> bool:
+        return is_stale(stamp, wheel_inputs(), wheel_files(own_version()) or [WHEELS / "none"])
+
+    return Step("wheel", "packing the wheel", work, needed, "The log has pip's words.")
+
+
+def wheel_of(version: str) -> Step:
+    """The wheel of another Python here: its bindings, compiled, and the engine that was just built and tested."""
+    tree = BUILD / f"wheel-{version}"
+    stamp = BUILD / "stamps" / f"wheel-{version}"
 
     def work(log: Path) -> None:
-        shutil.rmtree(WHEELS, ignore_errors=True)
-        plain = BUILD / "wheel-plain" if sys.platform == "linux" else WHEELS
-        shutil.rmtree(plain, ignore_errors=True)
-        run(
-            log, PYTHON, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", plain,
-            "--config-settings", f"cmake.define.IOTA_PREBUILT={BUILD / 'python' / 'iota'}",
-        )  # fmt: skip
-        if plain != WHEELS:
-            run(log, PYTHON, "-m", "auditwheel", "repair", "--wheel-dir", WHEELS, *plain.glob("*.whl"))
-        # With its dependencies, so that a test can install both without a network.
-        run(
-            log, PYTHON, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
-            *(f"{package}=={installed_version(package)}" for package in ("numpy", "segno")),
-        )  # fmt: skip
-        write_stamp(stamp, now())
+        found = find_python(version)
+        if found is None:
+            print(f" left out: no CPython {version} with C headers is on this machine", end="")
+            return
+        python = tree / "venv" / "bin" / "python"
+        if not python.exists():
+            run(log, found, "-m", "venv", tree / "venv")
+        needs = (ROOT / "pyproject.toml").read_text().partition("requires = ")[2].partition("\n")[0]
+        run(log, python, "-m", "pip", "install", "--progress-bar", "off", *ast.literal_eval(needs))
+        pack(log, python, f"cmake.define.IOTA_BUILT={BUILD}", f"build-dir={tree / 'tree'}")
+        write_stamp(stamp, wheel_inputs())
 
-    def made() -> list[Path]:
-        return list(WHEELS.glob(f"{name_in_files()}-*.whl")) or [WHEELS / "none"]
+    def needed() -> bool:
+        if version == own_version():
+            return False
+        return is_stale(stamp, wheel_inputs(), wheel_files(version) or [WHEELS / "none"])
 
-    return Step("wheel", "packing the wheel", work, lambda: is_stale(stamp, now(), made()), "The log has pip's words.")
+    return Step(f"wheel-{version}", f"packing the wheel of Python {version}", work, needed, "The log has pip's words.")
 
 
 def sbom() -> Step:
@@ -473,11 +541,6 @@ def docs() -> Step:
     script = ROOT / "tools" / "make_docs.py"
     hint = "The log names the page and the line. The site is build/docs/site/index.html."
     return Step("docs", "making the site", lambda log: run(log, PYTHON, script), lambda: True, hint)
-
-
-def installed_version(package: str) -> str:
-    found = next(site_packages().glob(f"{package}-*.dist-info"))
-    return found.name.removesuffix(".dist-info").split("-")[1]
 
 
 # The files that cmake/sundials.cmake searches.
@@ -512,7 +575,7 @@ def sundials() -> Step:
 # --- goals ----------------------------------------------------------------------------------------------------------
 
 
-GOALS = ("build", "films", "test", "bench", "verify", "soak", "wheel", "sbom", "docs", "lint", "cpp")
+GOALS = ("build", "films", "test", "test-all", "bench", "verify", "soak", "wheel", "sbom", "docs", "lint", "cpp")
 
 
 def steps_for(goal: str, preset: str) -> list[Step]:
@@ -530,7 +593,9 @@ def steps_for(goal: str, preset: str) -> list[Step]:
             cmake_build(f"cpp-{preset}", title, preset, "iota_tests"),
         ]
     steps = [
-        system_packages("build", "test") if goal in ("test", "films", "soak", "bench") else system_packages("build"),
+        system_packages("build", "test")
+        if goal in ("test", "test-all", "films", "soak", "bench")
+        else system_packages("build"),
         python_environment("build"),
         sundials(),
         page_packages(),
@@ -538,10 +603,11 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         engine,
         command_line(),
     ]
-    if goal == "test":
+    other_wheels = [wheel_of(version) for version in supported_versions()]
+    if goal in ("test", "test-all"):
         steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film", "sweep", "ray"), beside=True))
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests")]
-        steps += [python_environment("wheel"), wheel()]
+        steps += [python_environment("wheel"), wheel(), *(other_wheels if goal == "test-all" else [])]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
     elif goal == "films":
@@ -553,10 +619,10 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         steps.insert(2, python_environment("bench", "film"))
         steps.append(peer_packages())
         steps.append(cmake_build("bench", "building the benchmarks", "release", "iota_bench"))
-    elif goal == "wheel":
-        steps += [python_environment("wheel"), wheel()]
-    elif goal == "sbom":
-        steps += [python_environment("wheel"), wheel(), sbom()]
+    elif goal in ("wheel", "sbom"):
+        steps += [python_environment("wheel"), wheel(), *other_wheels]
+        if goal == "sbom":
+            steps.append(sbom())
     return steps
 
 

