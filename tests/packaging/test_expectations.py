@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/expectations.md and docs/interaction.md name tests that are there."""
+"""docs/expectations.md, docs/interaction.md and docs/network.md name tests that are there."""
 
 from __future__ import annotations
 
@@ -30,6 +30,20 @@ def test_each_part_of_interaction_names_tests_that_exist() -> None:
     for part in re.findall(r"^\| ([a-z][^|]+?) \|", table, re.MULTILINE)[1:]:
         for word in re.split(r", |: ", part)[:1]:
             assert word in parts, f"nothing shows {part!r}"
+
+
+def test_each_attack_of_the_review_names_scripts_that_exist() -> None:
+    _, shown = (ROOT / "docs" / "network.md").read_text().split("| attack | script |")
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", shown, re.MULTILINE)
+    assert len(rows) > 10
+    makefile, soak = (ROOT / "Makefile").read_text(), (ROOT / "tools" / "soak.py").read_text()
+    for attack, scripts in rows:
+        for script in re.findall(r"`([^`]+)`", scripts):
+            if script.startswith("make "):
+                _, goal, *run = re.split(r" (?:SOAK=)?", script)
+                assert f"\n{goal}: " in makefile and all(f'"{name}": [' in soak for name in run), f"{attack}: {script}"
+            else:
+                assert (ROOT / script).is_file(), f"{attack}: {script}"
 
 
 def check_names(row: str, shown: str) -> None:
