@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amount import TRIES_ALL
 
 import iota
 from iota import _protocol as protocol
@@ -29,7 +30,7 @@ from iota.world import journal as journals
 
 HERE = Path(__file__).parent
 GOLDEN = HERE / "golden" / "journal"
-KILLS = int(os.environ.get("IOTA_KILLS", "20"))
+KILLS = int(os.environ.get("IOTA_KILLS", "20" if TRIES_ALL else "6"))
 
 
 @pytest.fixture(autouse=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nothing that is drawn passes through anything else in a study, for its first seconds or its story."""
+"""How deep things lie in each other is found. Studies are looked at while they go on, in test_studies.py."""
 
 from __future__ import annotations
 
@@ -8,30 +8,10 @@ import pytest
 from penetration import Drawn
 
 import iota
-from iota import looks, studies
+from iota import looks
 from iota.studies import shoal
 
-USUAL = 0.25  # s, between two looks
-EACH = {"lab": 1.0, "museum": 1.0}  # a room of 65 000 triangles; 900 bodies
 MOST = 0.03  # share of the smaller shape
-# A fish that feeds is between leaves, and fish do not know of weed. Blocks that are hit and turn fast may get into each
-# other, and are eased out within 0.1 s: docs/contact.md, Not here yet. So may what falls on a heap. An acrobat's own limbs do not touch,
-# nor do the threads of a flag.
-KNOWN = {"museum": 0.2, "crowd": 0.4, "undersea": 0.2, "wrecking-ball": 0.15, "pour": 0.35}
-SECONDS = {"museum": 3.0, "undersea": 16.0, "molecule": 13.0, "lab": 5.0, "pour": 4.0, "capstan": 3.0, "knot": 2.0}
-STYLES = {"chain": ("rope", "chain")}
-OTHERS = {"shoal"}  # a thousand fish: at their start below, later in test_study_cloth
-
-
-@pytest.mark.parametrize("name", sorted(set(studies.names()) - OTHERS))
-def test_nothing_passes_through_anything(name: str) -> None:
-    world = studies.module(name).build()
-    styles = [Drawn(world, style) for style in STYLES.get(name, ("",))]
-    for step in range(round(SECONDS.get(name, 8.0) / world.dt)):
-        if step % round(EACH.get(name, USUAL) / world.dt) == 0:
-            for drawn in styles:
-                assert drawn.overlaps(KNOWN.get(name, MOST)) == []
-        world.step()
 
 
 def test_no_fish_starts_in_another_one_even_in_a_crowd() -> None:

@@ -24,6 +24,7 @@ from urllib.parse import urlencode
 from urllib.request import Request, urlopen
 
 import pytest
+from amount import TRIES_ALL
 from page_client import PageClient
 from pages import listen_for_complaints, needs_browser, open_page
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
@@ -34,7 +35,7 @@ from iota.world.page import page_copy, page_folder, token_for
 
 BACK = 3.0  # s, within which a killed room has to be back
 LOSS = 0.2  # s
-KILLS = int(os.environ.get("IOTA_KILLS", "20"))
+KILLS = int(os.environ.get("IOTA_KILLS", "20" if TRIES_ALL else "6"))
 
 
 @contextmanager
