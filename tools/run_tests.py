@@ -285,6 +285,8 @@ def run(suite: Suite) -> Count:
     command = [word.replace("{result}", str(result)).replace("{cores}", str(suite.cores)) for word in suite.command]
     path = f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}"
     environment = dict(os.environ, PATH=path, CI="true", NO_COLOR="1", **suite.environment)
+    # Containers set it, and then each of some hundred processes compiles all of iota: two fifths of its start.
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
     count = Count()
     with (LOGS / f"test-{suite.name}.log").open("w") as log:
         try:

@@ -95,6 +95,14 @@ def test_a_suite_that_hangs_is_ended(runner: ModuleType, capsys: pytest.CaptureF
     assert closing_line(runner, made, capsys) == (1, "0 passed, 1 failed")
 
 
+def test_the_processes_of_a_suite_keep_what_they_have_compiled(
+    runner: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    made = suite(runner, "import sys; sys.exit(sys.dont_write_bytecode)")
+    assert closing_line(runner, made, capsys) == (0, "1 passed, 0 failed")
+
+
 def test_a_program_that_is_not_there_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     made = runner.Suite("made-up", ["/nonexistent/tests"], 10, runner.read_gtest, ROOT)
     assert closing_line(runner, made, capsys) == (1, "0 passed, 1 failed")
