@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import textwrap
+from argparse import ArgumentTypeError
 from collections.abc import Callable
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from page_client import PageClient
 import iota
 from iota import studies
 from iota.cli import main
+from iota.cli.main import positive
 
 KEYS = [
     "steps",
@@ -134,8 +136,8 @@ LONG = "n" * 300  # no file system takes such a name
         (["record", "chain", "-o", f"{LONG}.mp4"], f"{LONG}.mp4 cannot be written: File name too long", 1),
         (["run", "chain", "--links", "0"], "argument --links: must be 1 or more, not 0. Try: iota run --help", 2),
         (["run", "chain", "--links", "1000000000"], "--links: must be at most 1000000, not 1000000000", 2),
-        (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0, not -1", 2),
-        (["run", "chain", "--seconds", "nan"], "must be above 0, not nan", 2),
+        (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0 and finite, not -1", 2),
+        (["run", "chain", "--seconds", "nan"], "must be above 0 and finite, not nan", 2),
         (["run", "chain", "--port", "70000"], "argument --port: must be from 0 to 65535, not 70000", 2),
         (["run", "chain", "--port", "x"], "argument --port: invalid port value: 'x'", 2),
         (
@@ -158,6 +160,11 @@ def test_wrong_arguments_are_one_clear_line(
     refused: Callable[..., str], arguments: list[str], text: str, code: int
 ) -> None:
     assert text in refused(*arguments, code=code)
+
+
+def test_a_time_without_end_is_refused() -> None:
+    with pytest.raises(ArgumentTypeError, match="finite, not inf"):
+        positive("inf")
 
 
 def test_a_process_with_wrong_arguments_ends_with_their_code() -> None:

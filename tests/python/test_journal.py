@@ -159,6 +159,33 @@ def test_undo_and_redo_reach_across_the_end_of_a_process(make: Make) -> None:
         assert third.world.undo() and len(third.system.bodies) == left
 
 
+@pytest.mark.parametrize("kept_states", [2, 4])
+def test_undo_reaches_as_far_back_as_its_states_fit_into_the_file_of_a_process(
+    make: Make, monkeypatch: pytest.MonkeyPatch, kept_states: int
+) -> None:
+    def edit(kept: Kept) -> None:
+        for x in range(6):
+            with kept.system.edit():
+                kept.system.body(shape=iota.Sphere(0.1), position=(x, 3, 0))
+            kept.steps(1)
+
+    other = make(folder="other")
+    edit(other)
+    undo, _ = other.world._stepper.journal._log.history(set())
+    largest = max(len(state) for _, state in undo if state is not None)
+    other.end()
+    monkeypatch.setattr(journals, "MOST_HISTORY", round((kept_states + 0.9) * largest))
+    first = make()
+    edit(first)
+    first.end()
+    second = make()  # writes a file of its own
+    second.steps(2)
+    second.end()
+    third = make()
+    reached = sum(third.world.undo() for _ in range(8))
+    assert kept_states <= reached <= kept_states + 1  # earlier states are smaller
+
+
 def test_rewind_reaches_into_the_run_before(make: Make) -> None:
     def offer(kept: Kept) -> None:
         kept.world.offer("rewind")

@@ -64,6 +64,24 @@ TEST(Grip, pulls_with_its_largest_acceleration_from_afar_and_as_a_spring_from_ne
   }
 }
 
+// A hand lifts half of what hangs at a body by its hinges; what stands fixed does not hang.
+TEST(Grip, of_a_body_on_a_hinge_does_not_lift_what_stands_fixed) {
+  const auto speed = [](double mass, BodyKind kind) {
+    System system{SystemOptions{.gravity = {}}};
+    const BodyId post = system.bodies().create(), rod = system.bodies().create();
+    (void)system.particles().create(post, {-1, 0, 0}, mass);
+    const ParticleId top = system.particles().create(post, {}, mass), start = system.particles().create(rod, {}, 1);
+    (void)system.particles().create(rod, {1, 0, 0}, 1);
+    (void)system.edits().combine(top, start);
+    system.bodies().set_kind(post, kind);
+    (void)system.grips().create(rod, {1, 0, 0}, {1, 1e-3, 0});
+    (void)system.step(1e-4);
+    return norm(system.bodies().velocity(rod));
+  };
+  EXPECT_NEAR(speed(1000, BodyKind::static_), speed(1, BodyKind::static_), 1e-9 * speed(1, BodyKind::static_));
+  EXPECT_GT(speed(1000, BodyKind::dynamic), 2 * speed(1, BodyKind::dynamic)) << "what hangs counts";
+}
+
 // Islands are built in parallel: one took the grip of another into its own numbers, and read memory that is not its own.
 TEST(Grip, before_the_first_step_of_many_islands_pulls_only_its_own) {
   constexpr int chains = 200, links = 4;
