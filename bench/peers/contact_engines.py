@@ -26,7 +26,8 @@ class Iota:
         self.bodies, self.push = [], []
         pins = dict(scene.pivots)
         for k, thing in enumerate(scene.things):
-            shape = iota.Sphere(*thing.sides) if thing.is_ball else iota.Box(thing.sides)  # type: ignore[arg-type]
+            make = iota.Sphere if thing.is_ball else iota.Capsule if thing.is_capsule else iota.Box
+            shape = make(thing.sides) if make is iota.Box else make(*thing.sides)  # type: ignore[arg-type]
             turn = quaternions_of(thing.turn[None])[0]
             if thing.mass == 0:
                 self.system.obstacle(shape, position=thing.place, orientation=turn, material=material)
@@ -36,7 +37,10 @@ class Iota:
                 self.system.revolute(body, at=pins[k], axis=(0, 0, 1))
             if k in scene.push:
                 self.push.append((body, scene.push[k]))
+            body.velocity = thing.velocity
             self.bodies.append(body)
+        for i, j, at in scene.joints:
+            self.system.ball(*(self.bodies[scene.moving.index(k)] for k in (i, j)), at=at)
 
     def step(self) -> None:
         for body, force in self.push:
@@ -71,12 +75,14 @@ class Rapier:
             made = (
                 rapier.RigidBodyBuilder(kind).translation(tuple(thing.place)).rotation(tuple(vector)).can_sleep(False)
             )
-            body = self.world.add_body(made)
-            shape = (
-                rapier.Collider.ball(*thing.sides)
-                if thing.is_ball
-                else rapier.Collider.cuboid(*(side / 2 for side in thing.sides))
-            )
+            body = self.world.add_body(made.linvel(tuple(thing.velocity)))
+            if thing.is_ball:
+                shape = rapier.Collider.ball(*thing.sides)
+            elif thing.is_capsule:
+                end = thing.sides[1] / 2
+                shape = rapier.Collider.capsule_x(end, thing.sides[0])
+            else:
+                shape = rapier.Collider.cuboid(*(side / 2 for side in thing.sides))
             shape = shape.friction(scene.friction).restitution(scene.restitution)
             self.world.add_collider(shape.mass(thing.mass) if thing.mass > 0 else shape, body)
             if thing.mass > 0:
@@ -88,6 +94,15 @@ class Rapier:
             arm = np.subtract(at, scene.things[k].place) @ scene.things[k].turn
             joint = rapier.SphericalJointBuilder().local_anchor1(tuple(at)).local_anchor2(tuple(arm)).build()
             self.world.impulse_joints.insert(fixed, self.bodies[scene.moving.index(k)], joint)
+        for i, j, at in scene.joints:
+            arms = [np.subtract(at, scene.things[k].place) @ scene.things[k].turn for k in (i, j)]
+            joint = (
+                rapier.SphericalJointBuilder()
+                .local_anchor1(tuple(arms[0]))
+                .local_anchor2(tuple(arms[1]))
+                .contacts_enabled(False)
+            )
+            self.world.impulse_joints.insert(*(self.bodies[scene.moving.index(k)] for k in (i, j)), joint.build())
 
     def step(self) -> None:
         for _ in range(self.substeps):
@@ -109,6 +124,7 @@ class Mujoco:
         import mujoco
 
         self.engine = mujoco
+        self.along: list[Array] = []  # from the axes of a shape to those of its thing
         spec = mujoco.MjSpec()
         spec.option.timestep = 1 / hz
         spec.option.gravity = list(scene.gravity)
@@ -116,13 +132,27 @@ class Mujoco:
             spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
             spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
         pins = dict(scene.pivots)
+        parents = {j: (i, at) for i, j, at in scene.joints}
+        bodies, origins = {}, {}
         for k, thing in enumerate(scene.things):
-            origin = np.array(pins.get(k, thing.place))
-            turn = np.roll(quaternions_of(thing.turn[None])[0], 1)
-            body = spec.worldbody.add_body(name=f"body{k}", pos=list(origin), quat=list(turn))
-            kind = mujoco.mjtGeom.mjGEOM_SPHERE if thing.is_ball else mujoco.mjtGeom.mjGEOM_BOX
+            parent, at = parents.get(k, (None, thing.place))
+            origins[k] = origin = np.array(pins.get(k, at))
+            # A figure begins upright: its bodies have the axes of the world, and their shapes are turned.
+            frame = np.eye(3) if scene.joints else thing.turn
+            holder, beside = (spec.worldbody, 0.0) if parent is None else (bodies[parent], origins[parent])
+            turn = np.roll(quaternions_of(frame[None])[0], 1)
+            bodies[k] = body = holder.add_body(name=f"body{k}", pos=list(origin - beside), quat=list(turn))
             size = [thing.sides[0], 0, 0] if thing.is_ball else [side / 2 for side in thing.sides]
-            shape = body.add_geom(type=kind, size=size, pos=list(np.subtract(thing.place, origin)))
+            kind = mujoco.mjtGeom.mjGEOM_SPHERE if thing.is_ball else mujoco.mjtGeom.mjGEOM_BOX
+            along = thing.turn if scene.joints else np.eye(3)
+            if thing.is_capsule:  # along z
+                kind, size = mujoco.mjtGeom.mjGEOM_CAPSULE, [thing.sides[0], thing.sides[1] / 2, 0]
+                along = along @ np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])
+            shape = body.add_geom(
+                type=kind, size=size, pos=list(frame.T @ np.subtract(thing.place, origin)),
+                quat=list(np.roll(quaternions_of(along[None])[0], 1)),
+            )  # fmt: skip
+            self.along.append(along.T @ (thing.turn if scene.joints else np.eye(3)))
             shape.friction = [scene.friction, 0, 0]
             shape.condim = 3
             if hard:
@@ -131,6 +161,8 @@ class Mujoco:
                 shape.mass = thing.mass
                 if k in pins:
                     body.add_joint(type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
+                elif parent is not None:
+                    body.add_joint(type=mujoco.mjtJoint.mjJNT_BALL)
                 else:
                     body.add_freejoint()
         self.model = spec.compile()
@@ -138,6 +170,7 @@ class Mujoco:
         self.order = [self.model.body(f"body{k}").id for k in scene.moving]
         for k, force in scene.push.items():
             self.data.xfrc_applied[self.model.body(f"body{k}").id, :3] = force
+        self.turns = np.array([self.along[k] for k in scene.moving])
         self.geoms = [int(self.model.body_geomadr[k]) for k in self.order]
 
     def step(self) -> None:
@@ -145,7 +178,8 @@ class Mujoco:
 
     def poses(self) -> tuple[Array, Array]:
         self.engine.mj_kinematics(self.model, self.data)
-        return self.data.geom_xpos[self.geoms].copy(), self.data.geom_xmat[self.geoms].reshape(-1, 3, 3).copy()
+        turns = self.data.geom_xmat[self.geoms].reshape(-1, 3, 3)
+        return self.data.geom_xpos[self.geoms].copy(), turns @ self.turns
 
 
 class Bullet:
@@ -163,11 +197,16 @@ class Bullet:
         )
         bullet.setCollisionFilterGroupMask(fixed, -1, 0, 0)
         for k, thing in enumerate(scene.things):
-            shape = (
-                bullet.createCollisionShape(bullet.GEOM_SPHERE, radius=thing.sides[0])
-                if thing.is_ball
-                else bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[side / 2 for side in thing.sides])
-            )
+            if thing.is_ball:
+                shape = bullet.createCollisionShape(bullet.GEOM_SPHERE, radius=thing.sides[0])
+            elif thing.is_capsule:  # along z, here turned along x
+                radius, height = thing.sides
+                along = [0, 0.5**0.5, 0, 0.5**0.5]
+                shape = bullet.createCollisionShape(
+                    bullet.GEOM_CAPSULE, radius=radius, height=height, collisionFrameOrientation=along
+                )
+            else:
+                shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[side / 2 for side in thing.sides])
             turn = list(quaternions_of(thing.turn[None])[0])
             body = bullet.createMultiBody(thing.mass, shape, -1, list(thing.place), turn, useMaximalCoordinates=1)
             # Bullet multiplies both frictions and both restitutions.
@@ -177,6 +216,7 @@ class Bullet:
             )  # fmt: skip
             if thing.mass > 0:
                 self.bodies.append(body)
+                bullet.resetBaseVelocity(body, thing.velocity)
             if k in pins:
                 arm = np.subtract(pins[k], thing.place) @ thing.turn
                 bullet.createConstraint(
@@ -184,6 +224,11 @@ class Bullet:
                 )
             if k in scene.push:
                 self.push[body] = scene.push[k]
+        for i, j, at in scene.joints:
+            a, b = (self.bodies[scene.moving.index(k)] for k in (i, j))
+            arms = [list(np.subtract(at, scene.things[k].place) @ scene.things[k].turn) for k in (i, j)]
+            bullet.createConstraint(a, -1, b, -1, bullet.JOINT_POINT2POINT, [0, 0, 0], *arms)
+            bullet.setCollisionFilterPair(a, b, -1, -1, 0)
 
     def step(self) -> None:
         for body, force in self.push.items():

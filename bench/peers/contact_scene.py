@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Thing:
-    """A box with these sides, or a ball with one radius. mass: 0: it never moves. turn: columns are its axes."""
+    """A box with these sides, a ball with one radius, or a capsule along its x axis with a radius and the length of its cylinder.
+
+    mass: 0: it never moves. turn: columns are its axes.
+    """
 
     sides: tuple[float, ...]
     place: tuple[float, float, float]
@@ -29,13 +32,22 @@ class Thing:
         return len(self.sides) == 1
 
     @property
+    def is_capsule(self) -> bool:
+        return len(self.sides) == 2
+
+    @property
     def reach(self) -> float:
+        if self.is_capsule:
+            return self.sides[0] + self.sides[1] / 2
         return self.sides[0] if self.is_ball else float(np.linalg.norm(self.sides)) / 2
 
 
 @dataclass
 class Scene:
-    """pivots: of a moving thing and the place around which it swings. push: a constant force on things, by number, N."""
+    """pivots: of a moving thing and the place around which it swings. push: a constant force on things, by number, N.
+
+    joints: ball joints of two moving things at a place; the first thing comes before the second, which has no other one before it.
+    """
 
     things: list[Thing]
     friction: float = 0.5
@@ -43,6 +55,7 @@ class Scene:
     seconds: float = 10.0
     pivots: list[tuple[int, tuple[float, float, float]]] = field(default_factory=list)
     push: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    joints: list[tuple[int, int, tuple[float, float, float]]] = field(default_factory=list)
     gravity: tuple[float, float, float] = (0, -GRAVITY, 0)
 
     @property
@@ -124,11 +137,54 @@ def cradle() -> Scene:
     return Scene(things, friction=0.0, restitution=1.0, seconds=0.9, pivots=pivots)
 
 
+# The capsules of a figure: ends of the axis in the plane of its front, radius, mass; and its joints.
+FIGURE = [
+    ((-0.08, 0.00), (0.08, 0.00), 0.10, 10.0), ((0.00, 0.25), (0.00, 0.45), 0.12, 20.0), ((0.00, 0.72), (0.00, 0.80), 0.10, 5.0),
+    *(
+        limb for side in (-1, 1) for limb in (
+            ((0.25 * side, 0.45), (0.45 * side, 0.45), 0.05, 2.5), ((0.55 * side, 0.45), (0.75 * side, 0.45), 0.04, 2.0),
+            ((0.1 * side, -0.15), (0.1 * side, -0.40), 0.07, 7.0), ((0.1 * side, -0.55), (0.1 * side, -0.80), 0.05, 4.0),
+        )
+    ),
+]  # fmt: skip
+FIGURE_JOINTS = [
+    (0, 1, (0.0, 0.12)), (1, 2, (0.0, 0.6)),
+    *(
+        joint for side, k in ((-1, 3), (1, 7)) for joint in (
+            (1, k, (0.19 * side, 0.45)), (k, k + 1, (0.5 * side, 0.45)),
+            (0, k + 2, (0.1 * side, -0.1)), (k + 2, k + 3, (0.1 * side, -0.475)),
+        )
+    ),
+]  # fmt: skip
+
+
+def ragdolls(count: int) -> Scene:
+    """Figures of eleven capsules with ball joints fall on each other and on the ground, in layers."""
+    random = np.random.default_rng(1)
+    each = math.ceil(math.sqrt(count / 4))
+    scene = Scene([GROUND], seconds=5)
+    for k in range(count):
+        layer, rest = divmod(k, each * each)
+        x, y, z = 0.9 * (rest % each), 1.2 + 2 * layer, 0.9 * (rest // each)
+        first = len(scene.things)
+        for a, b, radius, mass in FIGURE:
+            way = np.subtract(b, a)
+            length = float(np.linalg.norm(way))
+            c, s = way / length
+            turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+            place = (x + (a[0] + b[0]) / 2, y + (a[1] + b[1]) / 2, z)
+            speed = tuple(random.normal(size=3) * 0.2)
+            scene.things.append(Thing((radius, length), place, mass, turn, speed))
+        scene.joints += [(first + i, first + j, (x + u, y + v, z)) for i, j, (u, v) in FIGURE_JOINTS]
+    return scene
+
+
 SCENES = {
     "tower": tower, "tower, 1000:1": lambda: tower(1000), "pyramid 55": lambda: pyramid(10),
     "pyramid 1035": lambda: pyramid(45), "heap 200": lambda: heap(200), "heap 1000": lambda: heap(1000),
     "slope 0.99": lambda: slope(0.99), "slope 1.2": lambda: slope(1.2), "grip 1.5": lambda: grip(1.5), "grip 20": lambda: grip(20),
     "bounce, e = 1": lambda: bounce(1.0), "bounce, e = 0.5": lambda: bounce(0.5), "cradle": cradle,
+    "ragdolls 20": lambda: ragdolls(20), "ragdolls 100": lambda: ragdolls(100),
 }  # fmt: skip
 
 
@@ -137,6 +193,8 @@ SCENES = {
 
 def overlap(a: Thing, b: Thing, place_a: Array, turn_a: Array, place_b: Array, turn_b: Array) -> float:
     """How deep two things are in each other, m: by separating axes, or by the nearest place of a box to a ball's center."""
+    if a.is_capsule or b.is_capsule:
+        return overlap_of_capsule(a, b, place_a, turn_a, place_b, turn_b)
     way = place_b - place_a
     if a.is_ball and b.is_ball:
         return a.sides[0] + b.sides[0] - float(np.linalg.norm(way))
@@ -159,13 +217,32 @@ def overlap(a: Thing, b: Thing, place_a: Array, turn_a: Array, place_b: Array, t
     return float(depth.min())
 
 
+def overlap_of_capsule(a: Thing, b: Thing, place_a: Array, turn_a: Array, place_b: Array, turn_b: Array) -> float:
+    """Of two capsules by their axes; of a capsule and another thing by nine balls along its axis."""
+    if not a.is_capsule:
+        return overlap_of_capsule(b, a, place_b, turn_b, place_a, turn_a)
+    half_a = turn_a[:, 0] * a.sides[1] / 2
+    if not b.is_capsule:
+        ball = Thing((a.sides[0],), (0, 0, 0))
+        return max(
+            overlap(ball, b, place_a + share * half_a, turn_a, place_b, turn_b) for share in np.linspace(-1, 1, 9)
+        )
+    half_b = turn_b[:, 0] * b.sides[1] / 2
+    # The nearest places of both axes, each in turn: it converges, as the distance of two segments is convex.
+    at_a, at_b = place_a, place_b
+    for _ in range(30):
+        at_b = place_b + np.clip((at_a - place_b) @ half_b / (half_b @ half_b), -1, 1) * half_b
+        at_a = place_a + np.clip((at_b - place_a) @ half_a / (half_a @ half_a), -1, 1) * half_a
+    return a.sides[0] + b.sides[0] - float(np.linalg.norm(at_a - at_b))
+
+
 class Judge:
     """Looks at poses (n, 3), (n, 3, 3) of the things that move."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.start = np.array([scene.things[k].place for k in scene.moving])
-        self.worst = self.last = 0.0
+        self.worst = self.last = self.gap = 0.0
         self.highest: list[float] = []
         self.heights: list[float] = []
         self.places: list[Array] = []
@@ -180,7 +257,16 @@ class Judge:
         reach = np.array([scene.things[k].reach for k in moving])
         near = np.linalg.norm(places[:, None] - places[None], axis=2) < reach[:, None] + reach[None]
         self.last = 0.0
+        joined = {(moving.index(i), moving.index(j)) for i, j, _ in scene.joints}
+        for i, j, at in scene.joints:
+            ends = [
+                places[k] + turns[k] @ (scene.things[n].turn.T @ np.subtract(at, scene.things[n].place))
+                for n, k in ((i, moving.index(i)), (j, moving.index(j)))
+            ]
+            self.gap = max(self.gap, float(np.linalg.norm(ends[1] - ends[0])))
         for i, j in np.argwhere(np.triu(near, 1)):
+            if (i, j) in joined:
+                continue
             self._note(scene.things[moving[i]], scene.things[moving[j]], places[i], turns[i], places[j], turns[j])
         for fixed in (thing for thing in scene.things if thing.mass == 0):
             for i, k in enumerate(moving):
@@ -223,6 +309,8 @@ class Judge:
             return bool(abs(shares[-1] - 1) < 0.07 and (abs(shares[:-1]) < 0.07).all()), "speeds " + " ".join(
                 f"{s:.2f}" for s in shares
             )
+        if name.startswith("ragdolls"):
+            return self.gap < 0.02 and self.worst < 0.05, f"gaps of joints {1000 * self.gap:.2g} mm"
         off = places[-1] - self.start
         if name.startswith("heap"):
             lost = int((places[-1, :, 1] < -0.05).sum())
