@@ -303,6 +303,66 @@ def test_what_was_stiff_twice_has_the_shape_that_it_had() -> None:
     assert system.energy.total < energy + 1
 
 
+def test_what_the_script_has_welded_stays_welded() -> None:
+    world = iota.World(iota.System(), ground=None)
+    welded = chain(world.system, (0, 0, 0))
+    links = welded.articulate.bodies
+    links[3].combine(links[4])
+    block, other = (world.system.body(shape=iota.Box((1, 1, 1)), mass=1, position=(x, 0, 0)) for x in (8, 9))
+    block.combine(other)
+    eye = [0.0, 0.0, FAR]
+    world.levels.viewers = lambda: [eye]
+    world.levels.manage(welded.articulate, levels=["full", "1/4", "stiff"])
+    for _ in range(3):
+        eye[2] = FAR
+        world.levels.budget_ms = LITTLE
+        run(world, 90)
+        assert world.levels.things[0].level.name == "stiff" and len(welded.articulate.bodies) == 2
+        eye[2] = 1.0
+        run(world, 10)
+        assert [len(body.parts) for body in welded.articulate.bodies] == [1, 1, 1, 2]
+    world.levels.off()
+    run(world, 2)
+    assert [len(body.parts) for body in welded.articulate.bodies] == [1, 1, 1, 2]
+    assert len(block.parts) == 2 and world.system.validate() == []
+
+
+def test_what_is_joined_to_something_pinned_is_never_reduced(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    pinned, other = roots[3], roots[4]
+    world.levels.pin(pinned)
+    world.levels.manage(other.articulate, levels=["full", "1/8"])
+    world.levels.budget_ms = LITTLE
+    run(world, 10)
+    with world.system.edit():
+        pinned.articulate.bodies[-1].particles[1].combine(other.articulate.bodies[-1].particles[1])
+    for _ in range(80):
+        world.step()
+        assert pinned.stride == other.stride == 1
+    assert pinned.articulate == other.articulate
+    assert sum(thing._has(pinned) for thing in world.levels.things) == 1
+
+
+def test_what_is_joined_to_something_stiff_comes_apart_and_is_near_with_all_its_points() -> None:
+    world = iota.World(iota.System(), ground=None)
+    near, far = chain(world.system, (0, 0, 0)), chain(world.system, (1.5, 0, 0))
+    eye = [0.0, 0.0, FAR]
+    world.levels.viewers = lambda: [eye]
+    for root in (near, far):
+        world.levels.manage(root.articulate, levels=["full", "stiff"])
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert [len(root.articulate.bodies) for root in (near, far)] == [1, 1]
+    with world.system.edit():
+        near.particles[-1].combine(far.particles[0])
+    run(world, 40)
+    assert len(world.levels.things) == 1
+    thing = world.levels.things[0]
+    eye[:] = [3.0, 0.0, 2.0]
+    run(world, 10)
+    assert thing.level.name == "full" and len(thing.bodies) == 10 and world.system.validate() == []
+
+
 def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE

@@ -215,7 +215,9 @@ class Scene:
         energy = system.energy
         # What falls apart and lands at once has a step now and then that only comes near, as without levels.
         assert self.is_torn or report.unconverged == 0 or report.worst_gap < 5e-3, step
-        assert energy.made == 0, step
+        # A box that slides over the end of an edge makes some millionths of its motion, at all levels.
+        motion = energy.kinetic + before.kinetic
+        assert energy.made - before.made <= 1e-5 * motion, step
         self.largest = max(self.largest, energy.kinetic)
         size = 1e-4 * (1 + energy.kinetic + before.kinetic)
         assert abs(energy.balance - before.balance) < size or self.is_edited, step

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Articulate, Body, Particle, StepReport, System, Vec3
+from iota._core import Part as Weld
 from iota.arguments import SHORT, is_number
 from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
@@ -43,6 +44,7 @@ SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page sh
 SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
 MISSED = 0.25  # s: a thing that was frozen for less has missed nothing; its last stride is over then
 CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
+JOINED = "joined"  # the reason of a change: two things have become one
 JUMP = 2.0  # m in a step: then all things are looked at
 
 
@@ -110,6 +112,8 @@ class Managed:
     _stand_in: StandIn | None = field(default=None, repr=False)
     _former: deque[StandIn] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # that an undo may bring back
     _lines: list[tuple[Particle, Particle]] = field(default_factory=list, repr=False)  # that it lacks as one body
+    _welded: deque[frozenset[Body]] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
+    _members: list[Body] = field(default_factory=list, repr=False)  # its bodies when its level was decided last
 
     @property
     def level(self) -> Level:
@@ -171,8 +175,12 @@ class Managed:
         self._stand_in = None
         if left:
             self.root, self.others = left[0], tuple(left[1:])
-            self.middle = left[0].particles[0]
+            self._measure()
             self.levels, self.index = self.levels[:1], 0
+
+    def _measure(self) -> None:
+        """Its size, its middle and its extent now."""
+        self.size, self.middle, self.extent = _measured(self.bodies)
 
     @property
     def mass(self) -> float:
@@ -206,18 +214,27 @@ class Managed:
         for root in self._roots:
             root.articulate.stride = stride
 
+    @property
+    def _welds(self) -> list[Weld]:
+        """The parts of its first body that stiffness has made of other bodies. A script may have welded more."""
+        if not self._welded:
+            return []
+        known = frozenset().union(*self._welded)
+        return [part for part in self.root.parts if part.origin in known]
+
     def _set_stiff(self, stiff: bool) -> None:
-        if stiff:
-            for p, q in self._lines:
-                if p.alive and q.alive and p.body == q.body:
-                    self.root.system.cosmetic_bond(p, q)
-            self._lines = []
-            for body in self.bodies:
-                if body != self.root:
-                    self.root.combine(body)
-        else:
-            for part in self.root.parts[1:]:
+        if not stiff:
+            for part in self._welds:
                 part.separate()
+            return
+        for p, q in self._lines:
+            if p.alive and q.alive and p.body == q.body:
+                self.root.system.cosmetic_bond(p, q)
+        self._lines = []
+        others = [body for body in self.bodies if body != self.root and len(body.parts) == 1]
+        for body in others:
+            self.root.combine(body)
+        self._welded.append(frozenset(others))
 
 
 class Levels(Part):
@@ -616,7 +633,11 @@ class Levels(Part):
             self._is_old = True
             return
         before, after = thing.level, thing.levels[index]
-        if before.stride == 0 and after.stride != 0:
+        if index and thing.bodies != thing._members:  # something was joined to it, or parted: see _living
+            thing._members = thing.bodies
+            self._is_old = True
+            return
+        if before.stride == 0 and after.stride != 0 and reason != JOINED:
             self._catch_up(thing)
 
         def change() -> None:
@@ -626,12 +647,12 @@ class Levels(Part):
                 thing._swap(self._scene, after)
             if not thing.root.alive or after not in thing.levels:
                 return  # the script has destroyed it meanwhile, or taken what stood in for it apart
-            was_stiff = len(thing.root.parts) > 1
-            if after.is_stiff or (after.name == "frozen" and before.is_stiff):
-                if not was_stiff:
-                    thing._set_stiff(True)
-            elif before.is_stiff or (was_stiff and after.name == "full"):
-                thing._set_stiff(False)
+            was_stiff = bool(thing._welds)
+            is_stiff = after.is_stiff or (was_stiff and after.stride == 0)  # frozen things cost nothing either way
+            if is_stiff != was_stiff:
+                thing._set_stiff(is_stiff)
+            if is_stiff != was_stiff or before.structure is not None or after.structure is not None:
+                thing._members = thing.bodies
             thing._set_stride(after.stride)
             if after.enter is not None:
                 after.enter(thing)
@@ -676,14 +697,38 @@ class Levels(Part):
     # --- things -----------------------------------------------------------------------------------------------------
 
     def _living(self) -> list[Managed]:
-        """The things of which something is left. Of two that were combined to one articulate the first one is kept, with what the
-        other one was managed for."""
-        found: dict[int, Managed] = {}
+        """The things of which something is left. Of those that were joined the first one is kept, full, with what the others were
+        managed for."""
+        first_of: dict[int, Managed] = {}  # by the numbers of articulates
+        joined: list[tuple[Managed, Managed]] = []
         for thing in self._things:
-            if thing._lives():
-                first = found.setdefault(thing.root.articulate.number, thing)
-                first.is_pinned = first.is_pinned or thing.is_pinned
-        return list(found.values())
+            if not thing._lives():
+                continue
+            if thing._stand_in is not None and not thing._stand_in.is_whole:
+                thing._keep_stand_in()
+            numbers = [root.articulate.number for root in thing._roots]
+            first = next((first_of[number] for number in numbers if number in first_of), thing)
+            if first is not thing:
+                joined.append((first, thing))
+            for number in numbers:
+                other = first_of.setdefault(number, first)
+                if other is not first:
+                    joined.append((first, other))
+                    first_of = {key: first if each is other else each for key, each in first_of.items()}
+        gone = {id(thing) for _, thing in joined}
+        for first, other in joined:
+            first.is_pinned = first.is_pinned or other.is_pinned
+            for thing in (first, other):
+                self._arrays.take_missed(thing, self._system.time)
+                if thing.index:
+                    self._change(thing, 0, 1.0, 0.0, JOINED)
+            if not other.can_catch_up:
+                first.can_catch_up = False
+                first.levels = tuple(level for level in first.levels if not level.is_stiff)
+        for first, _ in joined:
+            if id(first) not in gone and first._lives():
+                first._measure()
+        return [thing for thing in self._things if id(thing) not in gone and thing._lives()]
 
     def _manage_all(self) -> None:
         """Also what was made, or parted, since this was called last."""
@@ -702,13 +747,7 @@ class Levels(Part):
     def _add(
         self, root: Body, members: list[Body], can_be_stiff: bool, name: str, others: tuple[Body, ...] = ()
     ) -> Managed:
-        points = [p for body in members for p in body.particles]
-        places = np.array([list(p.position) for p in points])
-        thick = max(body.radius for body in members)
-        size = float(np.linalg.norm(np.ptp(places, axis=0))) + thick
-        center = (places.min(axis=0) + places.max(axis=0)) / 2
-        middle = int(np.linalg.norm(places - center, axis=1).argmin())
-        extent = float(np.linalg.norm(places - places[middle], axis=1).max()) + thick
+        size, middle, extent = _measured(members)
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
         levels = tuple(stiff if level is STIFF else level for level in STANDARD if can_be_stiff or level is not STIFF)
         lines: list[tuple[Particle, Particle]] = []
@@ -720,12 +759,13 @@ class Levels(Part):
             name or self._name_of(root, members),
             root,
             levels,
-            max(size, 1e-6),
-            points[middle],
+            size,
+            middle,
             extent,
             others,
             _lines=lines,
         )
+        made._members = made.bodies
         self._things.append(made)
         self._is_old = True
         return made
@@ -819,7 +859,7 @@ class Levels(Part):
             if thing._stand_in is not None:
                 thing.index = next((i for i, level in enumerate(thing.levels) if level.structure is not None), 0)
                 continue
-            stride, is_stiff = thing.root.stride, len(thing.root.parts) > 1
+            stride, is_stiff = thing.root.stride, bool(thing._welds)
             fitting = [
                 i
                 for i, level in enumerate(thing.levels)
@@ -830,6 +870,18 @@ class Levels(Part):
             ]
             thing.index = fitting[0] if fitting else 0
         self._is_old = True
+
+
+def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
+    """The size of bodies, m, the particle in their middle, and the distance of their farthest point from it, m."""
+    points = [p for body in bodies for p in body.particles]
+    places = np.array([list(p.position) for p in points])
+    thick = max(body.radius for body in bodies)
+    size = float(np.linalg.norm(np.ptp(places, axis=0))) + thick
+    center = (places.min(axis=0) + places.max(axis=0)) / 2
+    middle = int(np.linalg.norm(places - center, axis=1).argmin())
+    extent = float(np.linalg.norm(places - places[middle], axis=1).max()) + thick
+    return max(size, 1e-6), points[middle], extent
 
 
 def _word_for(body: Body) -> str:
