@@ -13,12 +13,24 @@ using ingredient::Strides;
 using ingredient::Track;
 using model::Model;
 
+namespace {
+
+/// A nailed particle, from which something hangs by a spring, wants no stride of its own.
+bool may_move(const Model& model, std::uint32_t body) {
+  if (!model::is_free(model.bodies[body].kind)) return false;
+  bool any = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) { any = any || !model.rings[model.particles[p].ring].nailed; });
+  return any;
+}
+
+}  // namespace
+
 std::uint32_t Island::agree_on_stride(Model& model) {
   if (stride_ != 0) return stride_;
   std::uint32_t shortest = Strides::frozen;
   bool any = false;
   for (const std::uint32_t body : nodes_.bodies)
-    if (model::is_free(model.bodies[body].kind)) shortest = std::min(shortest, Strides::of(model, body)), any = true;
+    if (may_move(model, body)) shortest = std::min(shortest, Strides::of(model, body)), any = true;
   stride_ = any && !idle_ ? shortest : 1;
   for (const std::uint32_t body : nodes_.bodies)
     if (model::is_free(model.bodies[body].kind)) Strides::set(model, body, stride_ == Strides::frozen ? 0 : stride_);

@@ -13,6 +13,7 @@ import iota
 from iota.studies import crowd
 from iota.world import catching_up
 from iota.world.catching_up import catch_up
+from iota.world.ties import Ties
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
 DT = 1 / 120
@@ -29,12 +30,15 @@ class Place:
         self.eye = [0.0, 2.0, 200.0]
         self.world.levels.viewers = lambda: [self.eye]
         self.thing = self.world.levels.manage(self.root.articulate, levels=["full", "frozen"])
+        for other in self.system.articulates:  # that joints tie to it
+            if other != self.root.articulate and any(len(body.particles) > 1 for body in other.bodies):
+                self.world.levels.manage(other, levels=["full", "frozen"])
 
     def freeze(self) -> None:
         self.world.levels.budget_ms = LITTLE
         for _ in range(100):
             self.world.step()
-            if self.thing.level.name == "frozen":
+            if all(thing.level.name == "frozen" for thing in self.world.levels.things):
                 return
         raise AssertionError("it is not frozen")
 
@@ -43,7 +47,8 @@ class Place:
             self.world.step()
 
     def places(self) -> np.ndarray:
-        return np.array([list(p.position) for body in self.thing.bodies for p in body.particles])
+        bodies = [body for thing in self.world.levels.things for body in thing.bodies]
+        return np.array([list(p.position) for body in bodies for p in body.particles])
 
 
 def box(world: iota.World) -> iota.Body:
@@ -134,10 +139,114 @@ def test_what_cannot_be_copied_goes_on_from_where_it_was() -> None:
     start = place.places()
     assert not catch_up(place.system, [place.root], 1.0)
     assert np.array_equal(place.places(), start) and lower.position.y == 30
-    hinge = Place(box)
-    hinge.system.revolute(hinge.root, at=(0, 9, 0), axis=(0, 0, 1), motor=(1, 5))
-    other = hinge.world.levels.manage(hinge.system.body(shape=iota.Sphere(0.1), mass=1, position=(9, 9, 9)))
-    assert other.can_catch_up
+    geared = Place(arm)
+    elbow, shoulder = geared.system.constraints
+    geared.system.gear(elbow.angle, shoulder.angle, -2.0)
+    start = geared.places()
+    bodies, ties = Ties(geared.system).around([geared.root])
+    assert not catch_up(geared.system, bodies, 1.0, ties)
+    assert np.array_equal(geared.places(), start)
+
+
+def pendulum(world: iota.World) -> iota.Body:
+    bob = world.system.body(shape=iota.Box((0.1, 1, 0.1)), mass=2, position=(0.4, 2.7, 0), orientation=("z", 53.13))
+    world.system.revolute(bob, at=(0, 3, 0), axis=(0, 0, 1), limits=(-2, 1))
+    return bob
+
+
+def arm(world: iota.World) -> iota.Body:
+    upper, lower = (
+        world.system.body(shape=iota.Box((0.1, 1, 0.1)), mass=2, position=(x, 5, 0), orientation=("z", 90))
+        for x in (0.5, 1.5)
+    )
+    world.system.revolute(upper, at=(0, 5, 0), axis=(0, 0, 1))
+    world.system.revolute(upper, lower, at=(1, 5, 0), axis=(0, 0, 1), limits=(-2, 1), friction=0.05)
+    return upper
+
+
+def hung_on_a_spring(world: iota.World) -> iota.Body:
+    nail = world.system.body().particle((0, 5, 0))
+    nail.nail()
+    bob = world.system.body(shape=iota.Sphere(0.2), mass=2, position=(0.3, 4, 0), attachments=[(0, 0.2, 0)])
+    world.system.bond(nail, bob.attachments[0], "spring", stiffness=60, damping=0.3, length=0.8)
+    return bob
+
+
+def wheel(world: iota.World) -> iota.Body:
+    made = world.system.body(shape=iota.Cylinder(0.5, 0.1), mass=2, position=(0, 3, 0))
+    world.system.revolute(made, at=(0, 3, 0), axis=(0, 0, 1), motor=(2, 5))
+    return made
+
+
+def bent_rods(world: iota.World) -> iota.Body:
+    points = [world.system.body() for _ in range(2)]
+    first, middle = (points[0].particle((x, 4, 0), mass=1) for x in (0, 0.5))
+    knee, end = (points[1].particle((x, 4, 0), mass=1) for x in (0.5, 1))
+    middle.combine(knee)
+    first.nail()
+    world.system.angle_spring(first, knee, end, 20, 0.2)
+    return points[0]
+
+
+@pytest.mark.parametrize(
+    ("make", "seconds", "off"),
+    [(pendulum, 8, 0.06), (arm, 1.5, 0.05), (hung_on_a_spring, 5, 0.1), (wheel, 9, 0.01), (bent_rods, 2, 0.15)],
+)
+def test_what_joints_and_springs_hold_has_gone_on_with_its_energy_and_phase(
+    make: Callable[[iota.World], iota.Body], seconds: float, off: float
+) -> None:
+    place, twin = Place(make), Place(make)
+    place.freeze()
+    place.run(0.1)  # the last stride is over
+    while twin.system.step_count < place.system.step_count:
+        twin.world.step()
+    start = place.places()
+    place.run(seconds)
+    assert np.array_equal(place.places(), start), "nobody sees it"
+    kinetic = 0.0
+    for _ in range(round((seconds - 0.1) / DT)):
+        twin.world.step()
+        kinetic = max(kinetic, twin.system.energy.kinetic)
+    place.eye[2] = 20.0
+    place.run(0.1)
+    gaps = []  # from when its last stride ended to when a look noticed that are some steps
+    for _ in range(30):
+        twin.world.step()
+        gaps.append(np.abs(place.places() - twin.places()).max())
+    assert min(gaps) < off
+    energy, wanted = place.system.energy, twin.system.energy
+    assert energy.total == pytest.approx(wanted.total, abs=0.05 * kinetic)
+    assert place.system.validate() == [] and place.system.worst_gap < 1e-6
+
+
+def test_what_swung_for_long_has_lost_its_energy() -> None:
+    place = Place(pendulum)
+    place.system.damping = 0.1
+    place.freeze()
+    top = place.system.energy.total
+    place.run(100.0)
+    place.eye[2] = 20.0
+    place.run(0.1)
+    lowest = -2 * 9.81 * 0.5 + 2 * 9.81 * 3
+    assert place.system.energy.total - lowest < 0.02 * (top - lowest)
+    assert place.root.position.y == pytest.approx(2.5, abs=0.01)
+
+
+def test_what_is_tied_to_something_in_full_stays_where_it_was() -> None:
+    place = Place(arm)
+    lower = place.system.constraints[1].b
+    assert lower is not None
+    place.world.levels.pin(lower)
+    place.run(0.2)
+    bodies, ties = Ties(place.system).around([place.root])
+    assert set(bodies) == {place.root, lower} and len(ties) == 2
+    place.world.levels.budget_ms = LITTLE
+    place.run(0.5)
+    assert lower.stride == 1 and place.root.stride == 1, "the shortest stride of an island counts"
+    before = place.places()
+    place.eye[2] = 20.0
+    place.run(DT)
+    assert np.abs(place.places() - before).max() < 0.2
 
 
 def test_its_work_is_bounded() -> None:

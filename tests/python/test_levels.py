@@ -363,6 +363,57 @@ def test_what_is_joined_to_something_stiff_comes_apart_and_is_near_with_all_its_
     assert thing.level.name == "full" and len(thing.bodies) == 10 and world.system.validate() == []
 
 
+def test_an_undo_inside_of_a_change_leaves_nothing_reduced_that_counts_as_full(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    world, roots = made
+    eye = [0.0, 0.0, 2.0]
+    world.levels.viewers = lambda: [eye]
+    undone: list[int] = []
+
+    def undo(thing: Managed, level: Level) -> None:
+        if level.name == "full" and not undone:
+            undone.append(world.system.step_count)
+            world.system.undo()
+
+    thing = world.levels.manage(roots[5].articulate, levels=["full", "1/8"], on_level=undo)
+    other = world.levels.manage(roots[4].articulate, levels=["full", "1/8"])
+    world.levels.budget_ms = LITTLE
+    run(world, 20)
+    with world.system.edit():
+        roots[3].particles[0].release()  # to be undone
+    run(world, 3)
+    assert roots[4].stride == roots[5].stride == 8
+    world.levels.pin(other)
+    run(world, 2)
+    eye[2] = -99.0
+    run(world, 1)
+    assert undone
+    run(world, 2)
+    assert thing.level.name == other.level.name == "full"
+    assert roots[4].stride == roots[5].stride == 1
+
+
+def test_what_an_undo_brings_back_is_managed_again(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    thing = world.levels.manage(roots[5].articulate, levels=["full", "1/8"])
+    world.levels.manage(roots[0].articulate)
+    world.levels.budget_ms = LITTLE
+    run(world, 20)
+    assert roots[5].stride == 8
+    with world.system.edit():
+        for body in roots[5].articulate.bodies:
+            body.destroy()
+    run(world, 40)
+    assert thing not in world.levels.things
+    while not roots[5].alive:
+        world.system.undo()
+    run(world, 10)
+    assert thing in world.levels.things
+    world.levels.off()
+    assert roots[5].stride == 1
+
+
 def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE

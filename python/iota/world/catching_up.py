@@ -11,24 +11,34 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Particle, System
 from iota.world.stand_ins import put
+from iota.world.ties import Tie, can_be_copied, copy_tie, needed_particles
 
 Floats = NDArray[np.float64]
 STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass through each other
+WORK, MOST_STEPS = 1600, 400  # particles times steps of a copy that takes more steps, as a pendulum does
 GAIN = 1e-3  # of the kinetic energy, J: a copy with more has come into something
+MOST_DAMPING = 3.0  # 1/s: what swings is at rest at the end
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
 
 
-def catch_up(system: System, bodies: Sequence[Body], seconds: float) -> bool:
-    """Moves a thing on by `seconds`, or by STEPS times LONGEST if that is less. Other things do not meet it on its way. False for what
-    cannot be copied: only hinges and nails may hold it, and no field but those of all may act on it."""
-    if seconds <= 0 or not _can_be_copied(system, bodies):
+def catch_up(system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie] = ()) -> bool:
+    """Moves bodies on by `seconds`. ties: all that connect them to each other and to the world but for hinges and nails. Takes up to
+    STEPS steps of LONGEST, or more of few bodies that are held; what lasts longer counts as that, but what is held has lost as much energy by
+    damping as in all the time. Others do not meet the bodies on their way. False for what cannot be copied: functions of the script,
+    fields, couplings, and what stands on something that may move."""
+    if seconds <= 0 or not _can_be_copied(system, bodies) or not all(can_be_copied(tie) for tie in ties):
         return False
-    copy = _Copy(system, bodies, seconds)
-    steps = max(1, min(STEPS, round(seconds / (4 * LONGEST / STEPS))))
+    copy = _Copy(system, bodies, seconds, ties)
+    points = sum(len(twin.particles) for twin in copy.twins)
+    most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held else STEPS
+    steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
     length = min(seconds / steps, LONGEST)
+    if copy.is_held:
+        copy.raise_damping(seconds / (steps * length))
     for _ in range(steps):
         copy.system.step(length)
-    if copy.system.energy.total > copy.energy + GAIN * (1 + copy.system.energy.kinetic):
+    energy = copy.system.energy
+    if energy.total > copy.energy + max(energy.external_work, 0.0) + GAIN * (1 + energy.kinetic):
         return False
     copy.put_back(system)
     return True
@@ -44,34 +54,51 @@ def _can_be_copied(system: System, bodies: Sequence[Body]) -> bool:
 
 
 class _Copy:
-    def __init__(self, system: System, bodies: Sequence[Body], seconds: float) -> None:
+    def __init__(self, system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie] = ()) -> None:
         self.bodies = list(bodies)
         self.system = System(gravity=system.gravity, damping=system.damping, mode="energy_keeping")
         self.system.usual_material = system.usual_material
         self.twin_of: dict[Particle, Particle] = {}
-        self.twins = [self._copy(body) for body in self.bodies]
+        needed = needed_particles(ties)
+        self.twins = [self._copy(body, needed) for body in self.bodies]
         self._copy_hinges()
+        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
+        for tie in ties:
+            copy_tie(tie, self.system, twin_bodies, self.twin_of)
+        self.is_held = bool(ties) or any(p.is_nailed for p in self.twin_of)
         self._copy_obstacles(system, seconds)
-        move_as(self.system, self.twins, self.bodies)
+        move_as(
+            self.system, [(self.twin_of[p], p) for p in self.twin_of], list(zip(self.twins, self.bodies, strict=True))
+        )
         self.energy = self.system.energy.total
 
-    def _copy(self, body: Body) -> Body:
+    def _copy(self, body: Body, needed: set[Particle]) -> Body:
         if body.solids:
             solid, places = body.solids[0], set(body.attachments)
             twin = self.system.body(
                 shape=solid.shape, mass=body.mass, position=solid.position, orientation=solid.orientation
             )
             for p in body.particles:
-                if p in places and (p.is_nailed or len(p.ring) > 1):
+                if p in needed or (p in places and (p.is_nailed or len(p.ring) > 1)):
                     self.twin_of[p] = twin.attachment(p.position)
         else:
             twin = self.system.body()
             for p in body.particles:
-                self.twin_of[p] = twin.particle(p.position, mass=p.mass)
+                if p.mass > 0:  # others are marks of joints, or places
+                    self.twin_of[p] = twin.particle(p.position, mass=p.mass)
+            for p in body.particles:
+                if p not in self.twin_of and (p in needed or p.is_nailed or len(p.ring) > 1):
+                    self.twin_of[p] = twin.attachment(p.position)
         twin.material, twin.damping = body.material, body.damping
         if body.radius > 0:
             twin.radius = body.radius
         return twin
+
+    def raise_damping(self, factor: float) -> None:
+        """So that as much is lost in the time of the copy as in `factor` times that time."""
+        self.system.damping = _raised(self.system.damping, factor)
+        for twin in self.twins:
+            twin.damping = _raised(twin.damping, factor)
 
     def _copy_hinges(self) -> None:
         done: set[Particle] = set()
@@ -103,33 +130,31 @@ class _Copy:
 
     def put_back(self, system: System) -> None:
         """The state of the copy becomes that of the thing."""
-        poses = {
-            own: (twin.center_of_mass, twin.orientation)
-            for own, twin in zip(self.bodies, self.twins, strict=True)
-            if own.solids
-        }
-        places = {
-            p: q.position
-            for own, twin in zip(self.bodies, self.twins, strict=True)
-            if not own.solids
-            for p, q in zip(own.particles, twin.particles, strict=True)
-        }
-        put(system, poses, places)
-        move_as(system, self.bodies, self.twins)
+        pairs = list(zip(self.bodies, self.twins, strict=True))
+        poses = {own: (twin.center_of_mass, twin.orientation) for own, twin in pairs if own.solids}
+        points = {p: q for p, q in self.twin_of.items() if not p.body.solids}
+        put(system, poses, {p: q.position for p, q in points.items() if p.mass > 0})
+        move_as(system, list(self.twin_of.items()), pairs)
 
 
-def move_as(system: System, bodies: Sequence[Body], twins: Sequence[Body]) -> None:
-    """Gives bodies, which are hinged, the velocities of others at the same places. Bodies of shapes have points of their own."""
-    points, velocities = [], []
-    for body, twin in zip(bodies, twins, strict=True):
+def move_as(system: System, points: Sequence[tuple[Particle, Particle]], bodies: Sequence[tuple[Body, Body]]) -> None:
+    """Gives particles and bodies, which are hinged, the velocities of others at the same places. Bodies of shapes have points of their
+    own."""
+    moved, velocities = [], []
+    for body, twin in bodies:
         if body.solids:
             velocity, turn, center = twin.velocity, twin.angular_velocity, twin.center_of_mass
-            points += body.particles
+            moved += body.particles
             velocities += [list(velocity + turn.cross(p.position - center)) for p in body.particles]
-        else:
-            points += body.particles
-            velocities += [list(p.velocity) for p in twin.particles]
-    system.array(points).velocities = np.array(velocities)
+    for p, q in points:
+        if not p.body.solids:
+            moved.append(p)
+            velocities.append(list(q.velocity))
+    system.array(moved).velocities = np.array(velocities)
+
+
+def _raised(damping: float, factor: float) -> float:
+    return min(damping * factor, max(damping, MOST_DAMPING))
 
 
 def _reach(shape: Any) -> float:

@@ -25,6 +25,7 @@ from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
 from iota.world.stand_ins import StandIn, Structure
+from iota.world.ties import Tie, Ties
 
 Floats = NDArray[np.float64]
 Place = Sequence[float] | Vec3
@@ -44,6 +45,7 @@ SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page sh
 SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
 MISSED = 0.25  # s: a thing that was frozen for less has missed nothing; its last stride is over then
 CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
+GONE = 1000  # things that are remembered after their end
 JOINED = "joined"  # the reason of a change: two things have become one
 JUMP = 2.0  # m in a step: then all things are looked at
 
@@ -107,7 +109,7 @@ class Managed:
     significance: Callable[[Managed], float] | None = None
     on_level: Callable[[Managed, Level], None] | None = None
     is_pinned: bool = False
-    can_catch_up: bool = field(default=True, repr=False)  # nothing but hinges and nails holds it
+    is_jointed: bool = field(default=False, repr=False)  # joints, bonds or angle springs hold it
     index: int = field(default=0, repr=False)
     _stand_in: StandIn | None = field(default=None, repr=False)
     _former: deque[StandIn] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # that an undo may bring back
@@ -210,6 +212,12 @@ class Managed:
     def _has(self, body: Body) -> bool:
         return any(root.articulate == body.articulate for root in self._roots)
 
+    def _be_full(self) -> None:
+        """Whatever an undo has made of it, it takes every step."""
+        for body in dict.fromkeys([*self._roots, *self._members]):
+            if body.alive and body.stride != 1:
+                body.articulate.stride = 1
+
     def _set_stride(self, stride: int) -> None:
         for root in self._roots:
             root.articulate.stride = stride
@@ -256,8 +264,12 @@ class Levels(Part):
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
+        self._ties: Ties | None = None  # as of the latest catch-up
+        self._by_root: dict[Body, Managed] = {}  # empty: as of no time
         self._things: list[Managed] = []
         self._parked: list[Managed] = []  # that were managed until `off`
+        self._gone: deque[Managed] = deque(maxlen=GONE)  # destroyed or joined: an undo may bring them back
+        self._is_restored = False  # a function of the script has made an undo or a reset within a change
         self._arrays = _Arrays(system)
         self._is_old = False
         self._manages_all = False
@@ -378,7 +390,7 @@ class Levels(Part):
         chosen = None if levels is None else self._levels(levels, can_be_stiff)
         made = self._add(roots[0], members, can_be_stiff, name, tuple(roots[1:]))
         made.levels = chosen or made.levels
-        made.can_catch_up = not is_jointed
+        made.is_jointed = is_jointed
         made.significance, made.on_level = significance, on_level
         return made
 
@@ -399,11 +411,10 @@ class Levels(Part):
             if thing.index and thing.root.alive:
                 self._change(thing, 0, 0.0, 0.0, "off")
         for thing in self._things:  # a function of the script may have undone that
-            for root in thing._roots:
-                if root.stride != 1:
-                    thing._set_stride(1)
-        self._parked = [thing for thing in self._things if thing._roots]
+            thing._be_full()
+        self._parked = [*self._things, *self._gone]
         self._things.clear()
+        self._gone.clear()
         self._manages_all = False
         self._count = -1
         self._expected_step = self._system.step_count
@@ -495,9 +506,7 @@ class Levels(Part):
             return
         if self._system.step_count != self._expected_step:
             for thing in self._parked:
-                for root in thing._roots:
-                    if root.stride != 1:
-                        thing._set_stride(1)
+                thing._be_full()
         self._expected_step = self._system.step_count + 1
 
     def _take_ms(self, ms: float) -> None:
@@ -523,7 +532,8 @@ class Levels(Part):
 
     def _plan(self) -> None:
         assert self._budget is not None
-        if self._expected_step != self._system.step_count and self._expected_step is not None:
+        if self._is_restored or (self._expected_step != self._system.step_count and self._expected_step is not None):
+            self._is_restored = False
             self._resync()
         if not self._things and not self._manages_all:
             self._manages_all = True
@@ -538,6 +548,7 @@ class Levels(Part):
         if self._is_old:
             self._things = self._living()
             self._arrays.build(self._things)
+            self._by_root = {}
             self._is_old = False
         if not self._things:
             return
@@ -663,8 +674,12 @@ class Levels(Part):
         functions = (before.leave, after.enter, thing.on_level, before.structure, after.structure)
         if all(function is None for function in functions):
             change()
-        elif not self._guard.call(f"The level {after.name!r}", change):
-            self._give_up(thing)
+        else:
+            steps, undone = self._system.step_count, self._system.redo_count
+            if not self._guard.call(f"The level {after.name!r}", change):
+                self._give_up(thing)
+            if self._system.step_count != steps or self._system.redo_count > undone:
+                self._is_restored = True
         thing.index = min(thing.index, len(thing.levels) - 1)
         if before.structure is not None or after.structure is not None:
             self._is_old = True
@@ -674,16 +689,34 @@ class Levels(Part):
         )
 
     def _catch_up(self, thing: Managed) -> None:
-        """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that."""
-        seconds = self._arrays.take_missed(thing, self._system.time)
-        if not (seconds > MISSED and thing.can_catch_up and thing._stand_in is None and thing.root.alive):
-            return
-        if self._catch_up_ms <= 0:
+        """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that. So have all that
+        joints tie to it, if all of that was."""
+        if not self._arrays.has_missed(thing):
             return
         began = time.process_time()
-        if catch_up(self._system, thing.bodies, seconds):
-            thing._set_stride(thing.level.stride)
+        things, bodies, ties = [thing], thing.bodies, list[Tie]()
+        if thing.is_jointed:
+            bodies, ties = self._all_ties().around(bodies)
+            things = list(dict.fromkeys(each for body in bodies if (each := self._thing_of_root(body)) is not None))
+        seconds = min((self._arrays.take_missed(each, self._system.time) for each in things), default=0.0)
+        if thing.is_jointed and any(body.stride != 0 for body in bodies):
+            return
+        if not (seconds > MISSED and thing.root.alive and all(each._stand_in is None for each in things)):
+            return
+        if self._catch_up_ms > 0 and catch_up(self._system, bodies, seconds, ties):
+            for each in things:
+                each._set_stride(each.level.stride)
         self._catch_up_ms -= 1e3 * (time.process_time() - began)
+
+    def _thing_of_root(self, body: Body) -> Managed | None:
+        if not self._by_root:
+            self._by_root = {root: thing for thing in self._things for root in thing._roots}
+        return self._by_root.get(body)
+
+    def _all_ties(self) -> Ties:
+        if self._ties is None or self._ties.version != self._system.structure_version:
+            self._ties = Ties(self._system)
+        return self._ties
 
     def _give_up(self, thing: Managed) -> None:
         """A function of one of its levels has failed: it is full from now on, with its own bodies."""
@@ -715,20 +748,21 @@ class Levels(Part):
                 if other is not first:
                     joined.append((first, other))
                     first_of = {key: first if each is other else each for key, each in first_of.items()}
-        gone = {id(thing) for _, thing in joined}
+        gone = {thing for _, thing in joined}
+        self._gone.extend(thing for thing in self._things if thing in gone or not thing._lives())
         for first, other in joined:
             first.is_pinned = first.is_pinned or other.is_pinned
             for thing in (first, other):
                 self._arrays.take_missed(thing, self._system.time)
                 if thing.index:
                     self._change(thing, 0, 1.0, 0.0, JOINED)
-            if not other.can_catch_up:
-                first.can_catch_up = False
+            if other.is_jointed:
+                first.is_jointed = True
                 first.levels = tuple(level for level in first.levels if not level.is_stiff)
         for first, _ in joined:
-            if id(first) not in gone and first._lives():
+            if first not in gone and first._lives():
                 first._measure()
-        return [thing for thing in self._things if id(thing) not in gone and thing._lives()]
+        return [thing for thing in self._things if thing not in gone and thing._lives()]
 
     def _manage_all(self) -> None:
         """Also what was made, or parted, since this was called last."""
@@ -742,7 +776,7 @@ class Levels(Part):
             if moving and not moving[0].is_spark and any(len(body.particles) > 1 for body in moving):
                 is_jointed = any(body in jointed for body in members)
                 made = self._add(moving[0], members, len(members) > 1 and not is_jointed, "")
-                made.can_catch_up = not is_jointed
+                made.is_jointed = is_jointed
 
     def _add(
         self, root: Body, members: list[Body], can_be_stiff: bool, name: str, others: tuple[Body, ...] = ()
@@ -849,27 +883,52 @@ class Levels(Part):
             self._is_old = True
 
     def _resync(self) -> None:
-        """The system was restored or undone: its bodies tell their levels."""
+        """The system was restored or undone: its bodies tell the levels of their things."""
         for thing in self._things:
-            if thing._stand_in is not None:
-                thing._former.append(thing._stand_in)
-            thing._stand_in = next((each for each in thing._former if each.is_whole), None)
-            if not thing._lives():
-                continue
-            if thing._stand_in is not None:
-                thing.index = next((i for i, level in enumerate(thing.levels) if level.structure is not None), 0)
-                continue
-            stride, is_stiff = thing.root.stride, bool(thing._welds)
-            fitting = [
-                i
-                for i, level in enumerate(thing.levels)
-                if level.enter is None
-                and level.structure is None
-                and level.stride == stride
-                and (level.is_stiff == is_stiff or stride == 0)
-            ]
-            thing.index = fitting[0] if fitting else 0
+            self._reread(thing)
+        for thing in self._revived():
+            self._reread(thing)
+        for thing in self._things:
+            if thing.is_pinned and thing.index and thing.root.alive:
+                self._change(thing, 0, 0.0, 0.0, "pinned")
         self._is_old = True
+
+    def _revived(self) -> list[Managed]:
+        """Things that were destroyed or joined to others, and are there again: they are managed again."""
+        known = {root.articulate.number for thing in self._things if thing._lives() for root in thing._roots}
+        found = []
+        for thing in list(self._gone):
+            bodies = [body for body in (thing.root, *thing._members) if body.alive]
+            root = next((body for body in bodies if body.articulate.number not in known), None)
+            if root is not None:
+                thing.root, thing.others = root, tuple(body for body in thing.others if body.alive)
+                thing._measure()
+                known.update(each.articulate.number for each in thing._roots)
+                self._gone.remove(thing)
+                found.append(thing)
+        self._things += found
+        return found
+
+    @staticmethod
+    def _reread(thing: Managed) -> None:
+        if thing._stand_in is not None:
+            thing._former.append(thing._stand_in)
+        thing._stand_in = next((each for each in thing._former if each.is_whole), None)
+        if not thing._lives():
+            return
+        if thing._stand_in is not None:
+            thing.index = next((i for i, level in enumerate(thing.levels) if level.structure is not None), 0)
+            return
+        stride, is_stiff = thing.root.stride, bool(thing._welds)
+        fitting = [
+            i
+            for i, level in enumerate(thing.levels)
+            if level.enter is None
+            and level.structure is None
+            and level.stride == stride
+            and (level.is_stiff == is_stiff or stride == 0)
+        ]
+        thing.index = fitting[0] if fitting else 0
 
 
 def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
@@ -903,7 +962,7 @@ class _Arrays:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._row: dict[int, int] = {}
+        self._row: dict[Managed, int] = {}
         self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
         self.changed = np.zeros(0, dtype=int)
         self.since = np.zeros(0)  # s: it has been frozen and out of sight; nan: it is not
@@ -915,7 +974,7 @@ class _Arrays:
         ]
         count, width = len(things), max((len(thing.levels) for thing in things), default=1)
         self.slices = min(max(SLICES[0], count // PER_SLICE), SLICES[1])
-        self._row = {id(thing): row for row, thing in enumerate(things)}
+        self._row = {thing: row for row, thing in enumerate(things)}
         self.own = [(row, thing) for row, thing in enumerate(things) if thing.significance is not None]
         self._asked = np.array([thing.significance is not None for thing in things], dtype=bool)
         self.level = np.array([thing.index for thing in things], dtype=int)
@@ -953,7 +1012,7 @@ class _Arrays:
         self._things = things
 
     def note(self, thing: Managed, step: int) -> None:
-        row = self._row.get(id(thing))
+        row = self._row.get(thing)
         if row is not None:
             self.level[row], self.changed[row] = thing.index, step
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
@@ -968,9 +1027,14 @@ class _Arrays:
         come: NDArray[np.intp] = indices[is_frozen & ~is_far & is_missed]
         return come
 
+    def has_missed(self, thing: Managed) -> bool:
+        """Whether it has been frozen out of sight."""
+        row = self._row.get(thing)
+        return row is not None and bool(np.isfinite(self.since[row]))
+
     def take_missed(self, thing: Managed, now: float) -> float:
         """For how long it has been frozen out of sight, s."""
-        row = self._row.get(id(thing))
+        row = self._row.get(thing)
         if row is None or not np.isfinite(self.since[row]):
             return 0.0
         seconds = now - float(self.since[row])

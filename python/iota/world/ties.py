@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Joints, bonds and angle springs: which bodies they tie together, and copies of them between copies of the bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from iota._core import AngleSpring, Body, Bond, Constraint, JointCoordinate, Particle, System
+
+Tie = Constraint | Bond | AngleSpring
+
+ANGLES, SLIDES = ("revolute", "planar", "cylindrical"), ("prismatic", "cylindrical")  # kinds of joints with an axis
+WITH_PLACE, PLAIN, BETWEEN_PARTICLES = ("ball", "weld"), ("orientation",), ("rod", "rope")
+LAWS = ("predefined", "expression")  # other ones are functions of the script
+
+
+class Ties:
+    """The ties of a system, as they are now."""
+
+    def __init__(self, system: System) -> None:
+        self.version = system.structure_version
+        self._of: dict[Body, list[Tie]] = {}
+        ties: list[Tie] = [*system.constraints, *system.bonds, *system.angle_springs]
+        for tie in ties:
+            for body in set(bodies_of(tie)):
+                self._of.setdefault(body, []).append(tie)
+
+    def around(self, bodies: Iterable[Body]) -> tuple[list[Body], list[Tie]]:
+        """Bodies, with all that moves and is connected to them by ties and hinges, and these ties."""
+        found, ties = dict.fromkeys(bodies), dict[Tie, None]()
+        waiting = list(found)
+        while waiting:
+            for tie in self._of.get(waiting.pop(), []):
+                if not tie.alive or tie in ties:
+                    continue
+                ties[tie] = None
+                for body in bodies_of(tie):
+                    for mate in body.articulate.bodies if body.kind != "static" else []:
+                        if mate not in found:
+                            found[mate] = None
+                            waiting.append(mate)
+        return list(found), list(ties)
+
+
+def bodies_of(tie: Tie) -> list[Body]:
+    """Those that it ties together, without the world."""
+    if isinstance(tie, Constraint):
+        return list(dict.fromkeys(p.body for p in tie.particles))
+    return [end.body for end in tie.ends]
+
+
+def can_be_copied(tie: Tie) -> bool:
+    """Whether `copy_tie` knows its kind."""
+    if isinstance(tie, Bond):
+        return tie.law.kind in LAWS
+    if isinstance(tie, AngleSpring):
+        return True
+    if tie.a.kind == "static" or (tie.kind in BETWEEN_PARTICLES and len(tie.particles) != 2):
+        return False
+    return tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, *BETWEEN_PARTICLES)
+
+
+def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
+    """Those of which copies of ties need copies."""
+    found: set[Particle] = set()
+    for tie in ties:
+        if isinstance(tie, Constraint):
+            found.update(tie.particles if tie.kind in BETWEEN_PARTICLES else [])
+        else:
+            found.update(tie.ends)
+    return found
+
+
+def copy_tie(tie: Tie, system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]) -> None:
+    """Makes the same one of a system between copies of its bodies, at the same places; static bodies are the world there. It does not
+    break."""
+    if isinstance(tie, AngleSpring):
+        p, middle, q = (particle_of[end] for end in tie.ends)
+        system.angle_spring(p, middle, q, tie.stiffness, tie.damping, tie.rest)
+    elif isinstance(tie, Bond):
+        if tie.active:
+            p, q = (particle_of[end] for end in tie.ends)
+            law = tie.law.name if tie.law.kind == "predefined" else tie.law.text
+            system.bond(p, q, law, implicit=tie.implicit, **tie.parameters)
+    elif tie.active:
+        copy = _copy_joint(tie, system, body_of, particle_of)
+        if any(tie.compliance):
+            copy.compliance = tie.compliance
+
+
+def _copy_joint(
+    joint: Constraint, system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]
+) -> Constraint:
+    if joint.kind in BETWEEN_PARTICLES:
+        p, q = (particle_of[end] for end in joint.particles)
+        made: Constraint = getattr(system, joint.kind)(p, q, joint.length)
+        return made
+    a, b = body_of[joint.a], None if joint.b is None or joint.b.kind == "static" else body_of[joint.b]
+    make: Any = getattr(system, joint.kind)
+    if joint.kind in PLAIN:
+        made = make(a, b)
+    elif joint.kind in WITH_PLACE:
+        made = make(a, b, at=joint.position)
+    else:
+        made = make(a, b, at=joint.position, axis=joint.axis)
+    if joint.kind in ANGLES:
+        _copy_coordinate(joint.angle, made.angle)
+    if joint.kind in SLIDES:
+        _copy_coordinate(joint.slide, made.slide)
+    return made
+
+
+def _copy_coordinate(own: JointCoordinate, copy: JointCoordinate) -> None:
+    """A new joint counts from the pose in which it is made."""
+    now = own.value
+    if own.limits is not None:
+        low, high = own.limits
+        copy.limits = (min(low - now, 0.0), max(high - now, 0.0))
+    if own.motor is not None:
+        copy.motor = own.motor
+    if own.servo is not None:
+        target, most, speed = own.servo
+        copy.servo = (target - now, most, speed)
+    if own.friction:
+        copy.friction = own.friction
+    if own.spring is not None:
+        stiffness, damping, rest = own.spring
+        copy.spring = (stiffness, damping, rest - now)
