@@ -32,7 +32,11 @@ function withoutShaders() {
   return {
     name: "without-unused-shaders",
     apply: "build" as const,
-    transform: (code: string, id: string) => (id.includes("three.module") ? withoutUnusedShaders(code) : undefined),
+    transform: (code: string, id: string) => {
+      if (id.includes("three.module")) return withoutUnusedShaders(code);
+      // The minifier leaves comments in shaders, which are strings.
+      return id.includes("/src/scene/") ? code.replace(/^ *\/\/ .*\n/gm, "") : undefined;
+    },
   };
 }
 

@@ -91,6 +91,25 @@ def test_a_viewer_who_comes_finds_all_in_full(made: tuple[iota.World, list[iota.
         assert roots[number].stride == 1
 
 
+def test_a_viewer_who_flies_past_finds_all_in_full(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    eye = [0.0, 0.0, 2.0]
+    world.levels.viewers = lambda: [eye]
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    passed = 0
+    while eye[2] > -110:
+        eye[0] = 1.5 * (eye[0] == 0.0)
+        eye[2] -= 1.0
+        world.step()
+        for root in roots:
+            places = [p.position for body in root.articulate.bodies for p in body.particles]
+            if min(abs(place - iota.Vec3(*eye)) for place in places) < world.levels.reach - 0.1:
+                passed += 1
+                assert root.stride == 1
+    assert passed > 20
+
+
 def test_two_viewers_count_as_the_nearer_one(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.viewers = lambda: [(0, 0, 2), (0, 0, -102)]

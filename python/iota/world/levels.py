@@ -47,7 +47,7 @@ MISSED = 0.25  # s: a thing that was frozen for less has missed nothing; its las
 CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
 GONE = 1000  # things that are remembered after their end
 JOINED = "joined"  # the reason of a change: two things have become one
-JUMP = 2.0  # m in a step: then all things are looked at
+LEAST_SLACK = 0.25  # m: so far viewers go at least before a thing is looked at again
 
 
 @dataclass(frozen=True)
@@ -553,12 +553,14 @@ class Levels(Part):
         if not self._things:
             return
         seen = self._eyes()
-        jumped = seen.shape != self._seen.shape or (len(seen) and np.abs(seen - self._seen).max() > JUMP)
+        moved = np.inf
+        if seen.shape == self._seen.shape:
+            moved = float(np.linalg.norm(seen - self._seen, axis=1).max(initial=0.0))
         self._seen = seen
         self._steps += 1
         arrays = self._arrays
         self._catch_up_ms = CATCH_UP
-        for part in range(arrays.slices) if jumped or is_new else (self._steps % arrays.slices,):
+        for part in arrays.due(self._steps, np.inf if is_new else moved, max((NEAR - 1) * self._reach, LEAST_SLACK)):
             rows = slice(part, None, arrays.slices)
             arrays.look(rows, part, seen, self._reach, self._sight)
             come = arrays.come_into_sight(rows, self._system.time)
@@ -1002,6 +1004,7 @@ class _Arrays:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
                 self.since[row] = since[former]
+        self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
         self._roots, self._starts, self._middles = [], [], []
         for part in range(self.slices):
             roots = [thing._roots for thing in things[part :: self.slices]]
@@ -1040,6 +1043,15 @@ class _Arrays:
         seconds = now - float(self.since[row])
         self.since[row] = np.nan
         return seconds
+
+    def due(self, step: int, moved: float, slack: float) -> list[int]:
+        """The slices that are to be looked at: one in each step, and those since whose last look the viewers may have come nearer than
+        the slack, m."""
+        self._way += moved
+        is_due = self._way > slack
+        is_due[step % self.slices] = True
+        self._way[is_due] = 0.0
+        return [int(part) for part in np.nonzero(is_due)[0]]
 
     def look(self, rows: slice, part: int, eyes: Floats, reach: float, sight: float) -> None:
         """Reads some things, and what they mean to the viewers."""

@@ -88,7 +88,12 @@ function seenNormal(stage: "vertex" | "fragment"): [string, string] {
   return [`#include <${chunk}>`, ShaderChunk[chunk].replace("varying vec3 vNormal", "centroid varying vec3 vNormal")];
 }
 
-function tint(material: MeshStandardMaterial, light: number): void {
+/** Leaves out grains of what fades. Only where something does: a discard keeps a headset from leaving out what is hidden. */
+const discard = `
+float grain = 32.0 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+if (fade > 0.5 && (fade < 32.5 ? grain > fade : grain < fade - 32.0)) discard;`;
+
+function tint(material: MeshStandardMaterial, light: number, fades: boolean): void {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, { meanLight: { value: light }, openness });
     shader.vertexShader = shader.vertexShader.replace(...seenNormal("vertex"));
@@ -102,15 +107,16 @@ function tint(material: MeshStandardMaterial, light: number): void {
         "#include <color_fragment>",
         `#include <color_fragment>
 // There are no values between 0 and 1, so 0.5 is safe from rounding. The brightness of the texture is kept.
+float fade = floor(0.5 * vTint.a + 0.25), tinted = vTint.a - 2.0 * fade;${fades ? discard : ""}
 if (vHue.r > 0.5) diffuseColor.rgb = (vHue - 1.0) * dot(diffuseColor.rgb, luma) / (meanLight * max(dot(diffuse, luma), 0.02));
 float shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));
-diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
+diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, tinted);`,
       )
       .replace("#include <lights_fragment_maps>", "#include <lights_fragment_maps>\niblIrradiance *= openness;")
-      .replace("#include <metalnessmap_fragment>", "#include <metalnessmap_fragment>\nmetalnessFactor *= 1.0 - 0.8 * vTint.a;")
-      .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += vTint.rgb * vTint.a * 0.3;");
+      .replace("#include <metalnessmap_fragment>", "#include <metalnessmap_fragment>\nmetalnessFactor *= 1.0 - 0.8 * tinted;")
+      .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += vTint.rgb * tinted * 0.3;");
   };
-  material.customProgramCacheKey = () => "iota-tint";
+  material.customProgramCacheKey = () => `iota-tint${fades}`;
 }
 
 const materials = new Map<string, MeshStandardMaterial>();
@@ -134,14 +140,17 @@ export interface MaterialOptions {
   readonly color: string | null;
   readonly opacity?: number;
   readonly side?: Side;
+  /** Whether something that it is for fades in or out. */
+  readonly fades?: boolean;
 }
 
 /**
- * For meshes with an attribute `tint` (rgb and amount), which also dulls metal and glows a little, and perhaps one `hue`: 0, or a color to
+ * For meshes with an attribute `tint` (rgb, and amount plus 2 n: n of 32 grains of the picture are drawn, or above 32 those that a fade by
+ * n - 32 does not draw), which also dulls metal and glows a little, and perhaps one `hue`: 0, or a color to
  * draw in place of the material's, plus 1. It is shared: do not dispose of it.
  */
-export function materialOf({ material: name, color, opacity = 1, side = FrontSide }: MaterialOptions): MeshStandardMaterial {
-  const key = `${name} ${color ?? ""} ${opacity} ${side}`;
+export function materialOf({ material: name, color, opacity = 1, side = FrontSide, fades = false }: MaterialOptions): MeshStandardMaterial {
+  const key = `${name} ${color ?? ""} ${opacity} ${side} ${fades}`;
   let material = materials.get(key);
   if (material === undefined) {
     const [base, image] = name.split("#");
@@ -151,7 +160,7 @@ export function materialOf({ material: name, color, opacity = 1, side = FrontSid
     if (image !== undefined) material.setValues({ color: "#fff", map: images.get(image) ?? white() });
     if (color !== null && /^#[0-9a-fA-F]{6}$/.test(color)) material.color.set(color);
     if (opacity < 1) material.setValues({ transparent: true, opacity: opacity * material.opacity });
-    tint(material, meanLight[name] ?? 1);
+    tint(material, meanLight[name] ?? 1, fades);
     materials.set(key, material);
   }
   return material;

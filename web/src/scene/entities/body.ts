@@ -40,6 +40,11 @@ const mostPieces = 64;
 /** A new look grows from this size. */
 const regrownSize = 0.6;
 const tintSeconds = 0.07;
+/** In which one body takes the place of another one. */
+const fadeSeconds = 0.3;
+/** Steps of a fade, for the shader: see `materialOf`; and its begin. */
+const fadeSteps = 32;
+const least = 1 / fadeSteps;
 /** Numbers of a placement: offset xyz, rotation xyzw, scale along x. */
 const placementSize = 8;
 
@@ -48,6 +53,7 @@ class Batch {
   readonly pool: InstancePool;
   private readonly shape_: Shape;
   private detail_: Detail = "coarse";
+  private fades_ = false;
   private readonly coarseUpTo_: number;
   /** Placement of each instance in its body's frame. */
   private placements_ = new Float32Array(placementSize);
@@ -94,6 +100,13 @@ class Batch {
     if (wanted === now) return;
     this.detail_ = wanted;
     this.pool.setGeometry(makeGeometry(this.shape_, wanted));
+  }
+
+  /** Whether some of it fade in or out. */
+  setFades(fades: boolean): void {
+    if (fades === this.fades_) return;
+    this.fades_ = fades;
+    this.pool.mesh.material = materialOf({ ...this.shape_, fades });
   }
 
   /** Returns the body whose instance has taken the index, or -1. */
@@ -170,6 +183,15 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   private readonly pieces_: number[] = [];
   private tintGoal_ = new Float32Array(0);
   private tintNow_ = new Float32Array(0);
+  /** 0: drawn as it is; up to 1: appears; up to 2: disappears. */
+  private fade_ = new Float32Array(0);
+  /** By slot: bodies that are gone or inactive, until they have faded. */
+  private readonly leaving_ = new Map<number, Body>();
+  /** Bodies made since the last frame; and whether one that stays has become inactive or active meanwhile: then others take its place. */
+  private made_: number[] = [];
+  private swaps_ = false;
+  /** Made bodies that take the place of others. */
+  private arriving_: number[] = [];
 
   /** `bodyGone` is called for each body that is destroyed, before its slot can be used again. */
   constructor(poses: PoseBuffer, visuals: Visuals, bodyGone: (body: number) => void) {
@@ -199,6 +221,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     if (slot >= mostSlots) throw new Error(`body ${slot} is not drawn: a page draws bodies with slots below ${mostSlots}`);
     this.poses.reserve(slot + 1);
     this.reserve_();
+    this.endLeaving_(slot);
+    this.made_.push(slot);
     this.grown_[slot] = entity.kind === BodyKind.static ? 1 : 0;
     this.tintNow_[4 * slot + 3] = 0;
     this.tintGoal_[4 * slot + 3] = 0;
@@ -218,17 +242,24 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
       if (isRecolored) this.color_(body);
       return;
     }
-    this.removeInstances_(body);
+    if (entity.kind === BodyKind.inactive) {
+      this.swaps_ = true;
+      this.leave_(body);
+    } else this.removeInstances_(body);
     body.entity = entity;
+    if (kind === BodyKind.inactive) {
+      this.swaps_ = true;
+      this.endLeaving_(entity.id.slot);
+      this.fade_[entity.id.slot] = least;
+    }
     this.addInstances_(body);
   }
 
   destroy(slot: number): void {
     const body = this.bodies_.get(slot);
     if (body === undefined) return;
-    this.removeInstances_(body);
     this.bodies_.delete(slot);
-    this.poses.forget(slot);
+    this.leave_(body);
     for (const outline of this.outlines_) if (outline.body === slot) outline.body = -1;
     this.bodyGone_(slot);
   }
@@ -250,6 +281,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     const grow = seconds / growSeconds;
     const ease = 1 - Math.exp(-seconds / tintSeconds);
     const { known } = this.poses;
+    const fade = this.swap_() ? Math.max(seconds / fadeSeconds, least) : 0;
     this.pieces_.length = 0;
     for (let index = 0; index < this.drawnCount_; index++) {
       const body = this.drawn_[index];
@@ -267,8 +299,10 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     for (let index = 0; index < this.drawnCount_; index++) {
       const body = this.drawn_[index];
       if (known[body] === 1) this.grown_[body] = Math.min(1, this.grown_[body] + grow);
+      if (this.fade_[body] > 0 && (this.fade_[body] += fade) >= 1) this.fade_[body] = 0;
       this.easeTint_(body, ease);
     }
+    for (const slot of this.leaving_.keys()) if ((this.fade_[slot] += fade) >= 2) this.endLeaving_(slot);
     if (this.frame_++ % lookEvery === 0) {
       for (const batches of this.batches_.values()) for (const batch of batches) batch.fit(this.calcPixels_(batch));
     }
@@ -288,6 +322,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   // --- VisualUser
 
   redraw(visual: number): void {
+    const leaving = [...this.leaving_].filter(([, { entity }]) => entity.visual === visual);
+    if (leaving.length > 0 && this.visuals_.shapesOf(visual).length === 0) return;  // goes with the last of them
+    for (const [slot] of leaving) this.endLeaving_(slot);
     const bodies = this.bodiesOf_(visual);
     for (const batch of this.batches_.get(visual) ?? []) batch.pool.dispose();
     this.batches_.delete(visual);
@@ -295,6 +332,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   }
 
   redrawAll(): void {
+    for (const slot of this.leaving_.keys()) this.endLeaving_(slot);
     for (const batches of this.batches_.values()) for (const batch of batches) batch.pool.dispose();
     this.batches_.clear();
     for (const body of this.bodies_.values()) {
@@ -446,12 +484,48 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
   private removeInstances_(body: Body): void {
     this.listed_ = false;
     for (const { batch, index } of body.instances) {
-      const moved = this.bodies_.get(batch.remove(index));
-      const instance = moved?.instances.find((other) => other.batch === batch);
-      if (instance !== undefined) instance.index = index;
+      const moved = batch.remove(index);
+      for (const bodies of [this.bodies_, this.leaving_]) {
+        const instance = bodies.get(moved)?.instances.find((other) => other.batch === batch);
+        if (instance !== undefined) instance.index = index;
+      }
     }
     body.shapes = noShapes;
     body.instances = noInstances;
+  }
+
+  /** Its instances stay until others have taken its place. */
+  private leave_(body: Body): void {
+    const { entity, instances } = body;
+    this.endLeaving_(entity.id.slot);
+    this.leaving_.set(entity.id.slot, { entity, shapes: noShapes, instances });
+    this.fade_[entity.id.slot] = 1;
+    this.listed_ = false;
+    body.shapes = noShapes;
+    body.instances = noInstances;
+  }
+
+  private endLeaving_(slot: number): void {
+    const body = this.leaving_.get(slot);
+    if (body === undefined) return;
+    this.removeInstances_(body);
+    this.leaving_.delete(slot);
+    this.fade_[slot] = 0;
+    if (!this.bodies_.has(slot)) this.poses.forget(slot);
+    if (this.visuals_.shapesOf(body.entity.visual).length === 0) this.redraw(body.entity.visual);
+  }
+
+  /** Bodies that have come and gone fade where some take the place of others. False while some of them have no place yet. */
+  private swap_(): boolean {
+    if (this.swaps_) {
+      for (const slot of this.made_) [this.grown_[slot], this.fade_[slot]] = [1, least];
+      this.arriving_ = this.made_;
+      this.made_ = [];
+    } else for (const slot of this.leaving_.keys()) if (this.fade_[slot] === 1 && !this.arriving_.length) this.endLeaving_(slot);
+    this.made_.length = 0;
+    this.swaps_ = false;
+    if (this.arriving_.length > 0) this.arriving_ = this.arriving_.filter((slot) => this.poses.known[slot] === 0 && this.bodies_.get(slot)?.instances.length);
+    return this.arriving_.length === 0;
   }
 
   /** Bodies with a visual, also one that has not arrived. */
@@ -501,21 +575,25 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return most;
   }
 
-  private drawBatch_({ pool, placements }: Batch): void {
+  private drawBatch_(batch: Batch): void {
+    const { pool, placements } = batch;
     const { position, rotation, known } = this.poses;
     const { members, count, matrices, tints } = pool;
     let tinted = false;
+    let fades = false;
     for (let index = 0; index < count; index++) {
       const body = members[index];
+      fades ||= this.fade_[body] > 0;
       const size = known[body] === 1 ? Math.max(this.grown_[body], 1e-3) : 0;
       writeMatrix(position, rotation, body, placements, placementSize * index, size, matrices, 16 * index);
       for (let channel = 0; channel < 4; channel++) {
-        const tint = this.tintNow_[4 * body + channel];
+        const tint = this.tintNow_[4 * body + channel] + (channel < 3 ? 0 : 2 * Math.round(fadeSteps * this.fade_[body]));
         if (tints[4 * index + channel] === tint) continue;
         tints[4 * index + channel] = tint;
         tinted = true;
       }
     }
+    batch.setFades(fades);
     pool.upload();
     if (tinted) pool.uploadTints();
   }
@@ -552,6 +630,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     if (this.grown_.length >= capacity) return;
     this.reach = grown(this.reach, capacity);
     this.grown_ = grown(this.grown_, capacity);
+    this.fade_ = grown(this.fade_, capacity);
     this.tintGoal_ = grown(this.tintGoal_, 4 * capacity);
     this.tintNow_ = grown(this.tintNow_, 4 * capacity);
   }
