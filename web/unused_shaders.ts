@@ -4,7 +4,7 @@
 
 /** Chunks of features, and programs of materials, that the page does not use. */
 const unusedChunks = /^(?:alphahash_|batching_|bumpmap_|clearcoat_|displacementmap_|gradientmap_|iridescence_|lights_toon_|lights_phong_|lightprobes_|logdepthbuf_|morph|skin|transmission_)\w+$/;
-const unusedPrograms = /^#define (?:TOON|PHONG|MATCAP|NORMAL)\\n/;
+const unusedPrograms = /^#define (?:TOON|PHONG|MATCAP|NORMAL|DISTANCE)\\n/;
 
 /** Names that no material of the page defines: those of MeshPhysicalMaterial, and of maps and meshes of other kinds. */
 const undefinedNames = new RegExp(`^(?:${[
