@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -289,6 +290,69 @@ def test_wrong_levels_are_refused(made: tuple[iota.World, list[iota.Body]]) -> N
     system.revolute(door, frame, at=(1, 50, 0), axis=(0, 1, 0))
     with pytest.raises(ValueError, match="joints would end"):
         manage([door], levels=["full", "stiff"])
+
+
+@pytest.mark.parametrize(
+    "viewers",
+    [lambda: None, lambda: ["a"], lambda: [None], lambda: (1.0, 2.0, 3.0), lambda: 1 / 0, lambda: [(1, 2, 3, 4)]],
+)
+def test_viewers_that_fail_are_told_and_the_eyes_of_users_count(
+    made: tuple[iota.World, list[iota.Body]], viewers: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world, roots = made
+    world.camera = iota.Camera(position=(0, 0, 2))
+    world.levels.viewers = viewers
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    told = capsys.readouterr().err
+    assert ("levels.viewers must return a list of places" in told or "ZeroDivision" in told) and told.count(
+        "Error"
+    ) == 1
+    assert world.levels.viewers is None and roots[0].stride == 1 and roots[5].stride != 1
+
+
+def test_a_place_of_two_numbers_is_a_place(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.viewers = lambda: [(0, 1)]
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert world.levels.viewers is not None and roots[0].stride == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "words"),
+    [
+        ({"name": ""}, TypeError, "name of a level"),
+        ({"stride": -1}, ValueError, "level 'x': stride must be"),
+        ({"stride": 17}, ValueError, "1 to 16, or 0"),
+        ({"stride": 2.5}, ValueError, "stride must be"),
+        ({"quality": float("nan")}, ValueError, "quality must be a number from 0 to 1"),
+        ({"share": -0.1}, ValueError, "share must be a number from 0 to 1"),
+        ({"enter": 3}, TypeError, "level 'x': enter must be a function"),
+        ({"structure": 3}, TypeError, "structure must be a function"),
+    ],
+)
+def test_a_level_without_sense_is_refused(given: dict[str, Any], error: type[Exception], words: str) -> None:
+    with pytest.raises(error, match=words):
+        Level(**{"name": "x", **given})
+
+
+def test_wrong_arguments_of_manage_are_refused(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    wrong: list[tuple[dict[str, Any], type[Exception], str]] = [
+        ({"levels": [3]}, TypeError, "names or of the type Level"),
+        ({"levels": ["full", "frozen", "frozen"]}, ValueError, "two levels 'frozen'"),
+        ({"levels": [Level("full", stride=4)]}, ValueError, "begin with 'full'"),
+        ({"significance": 3}, TypeError, "significance must be a function"),
+        ({"on_level": "loud"}, TypeError, "on_level must be a function"),
+        ({"name": 3}, TypeError, "name of a thing must be a text"),
+    ]
+    for given, error, words in wrong:
+        with pytest.raises(error, match=words):
+            world.levels.manage(roots[0].articulate, **given)
+    with pytest.raises(ValueError, match="another one"):
+        world.levels.manage(chain(iota.System(), (0, 0, 0)).articulate)
+    assert world.levels.things == []
 
 
 def test_an_undo_after_off_does_not_bring_strides_back(made: tuple[iota.World, list[iota.Body]]) -> None:

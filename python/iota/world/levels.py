@@ -37,6 +37,7 @@ HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
 FULL, AIM, LOW = 0.75, 0.1, 0.25  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
 LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
 SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes from other programs
+LONGEST_STRIDE = 16  # steps, as in the engine
 URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
 SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
@@ -70,6 +71,26 @@ class Level:
     enter: Callable[[Managed], None] | None = None
     leave: Callable[[Managed], None] | None = None
     structure: Callable[[Managed], Structure] | None = None
+
+    def __post_init__(self) -> None:
+        """Raises TypeError and ValueError for what is not a level."""
+        if not isinstance(self.name, str) or not self.name:
+            raise TypeError(f"the name of a level must be a text, not {SHORT.repr(self.name)}")
+        what = f"level {self.name!r}"
+        if not isinstance(self.stride, int) or not 0 <= self.stride <= LONGEST_STRIDE:
+            raise ValueError(
+                f"{what}: stride must be a number of steps, 1 to {LONGEST_STRIDE}, or 0 for frozen, not {SHORT.repr(self.stride)}"
+            )
+        for key, value in (("quality", self.quality), ("share", self.share)):
+            if not (is_number(value) and 0 <= value <= 1):
+                raise ValueError(f"{what}: {key} must be a number from 0 to 1, not {SHORT.repr(value)}")
+        for key in ("enter", "leave", "structure"):
+            _refuse_no_function(f"{what}: {key}", getattr(self, key))
+
+
+def _refuse_no_function(what: str, value: object) -> None:
+    if not (value is None or callable(value)):
+        raise TypeError(f"{what} must be a function that takes the thing, not {SHORT.repr(value)}")
 
 
 FULL_LEVEL = Level("full")
@@ -116,6 +137,7 @@ class Managed:
     _lines: list[tuple[Particle, Particle]] = field(default_factory=list, repr=False)  # that it lacks as one body
     _welded: deque[frozenset[Body]] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
     _members: list[Body] = field(default_factory=list, repr=False)  # its bodies when its level was decided last
+    _version: int = field(default=-1, repr=False)  # of the structure then
 
     @property
     def level(self) -> Level:
@@ -380,6 +402,12 @@ class Levels(Part):
                 roots.append(body)
                 members += body.articulate.bodies
                 known.update(body.articulate.bodies)
+        if any(body.system != self._system for body in bodies):
+            raise ValueError("manage takes bodies of the world's own system; these are of another one")
+        _refuse_no_function("significance", significance)
+        _refuse_no_function("on_level", on_level)
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a thing must be a text, not {SHORT.repr(name)}")
         for root in roots:
             if (managed := self._find(root)) is not None:
                 raise ValueError(f"{root!r} is managed already, as {managed.name!r}")
@@ -646,8 +674,7 @@ class Levels(Part):
             self._is_old = True
             return
         before, after = thing.level, thing.levels[index]
-        if index and thing.bodies != thing._members:  # something was joined to it, or parted: see _living
-            thing._members = thing.bodies
+        if index and not self._is_as_it_was(thing):
             self._is_old = True
             return
         if before.stride == 0 and after.stride != 0 and reason != JOINED:
@@ -689,6 +716,15 @@ class Levels(Part):
         self._changes.append(
             LevelChange(self._system.time, thing.name, before.name, after.name, significance, ms, reason)
         )
+
+    def _is_as_it_was(self, thing: Managed) -> bool:
+        """Whether nothing was joined to it, or parted, since its level was decided last: see _living."""
+        version = self._system.structure_version
+        if version == thing._version:
+            return True
+        members, thing._version = thing._members, version
+        thing._members = thing.bodies
+        return thing._members == members
 
     def _catch_up(self, thing: Managed) -> None:
         """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that. So have all that
@@ -820,15 +856,20 @@ class Levels(Part):
         return f"{kind} {name!r}"
 
     def _levels(self, given: Sequence[str | Level], can_be_stiff: bool) -> tuple[Level, ...]:
-        levels = []
-        for level in given:
+        levels: list[Level] = []
+        for level in [given] if isinstance(given, str) else given:
             if isinstance(level, str) and level not in BY_NAME:
                 raise ValueError(
                     f"no level is called {level!r}; there are {', '.join(map(repr, BY_NAME))}, or a Level of one's own"
                 )
+            if not isinstance(level, str | Level):
+                raise TypeError(f"levels are names or of the type Level, not {SHORT.repr(level)}")
             levels.append(BY_NAME[level] if isinstance(level, str) else level)
-        if not levels or levels[0].name != "full":
-            raise ValueError("levels begin with 'full'")
+        if not levels or levels[0] != FULL_LEVEL:
+            raise ValueError("levels begin with 'full', at which a thing is as without management")
+        names = [level.name for level in levels]
+        if twice := next((each for each in names if names.count(each) > 1), None):
+            raise ValueError(f"there are two levels {twice!r}: reports tell them by their names")
         if any(level.is_stiff for level in levels) and not can_be_stiff:
             raise ValueError(
                 "a thing can be stiff if it is one articulate of several bodies, held together by hinges alone: joints would end when its bodies become one"
@@ -851,7 +892,16 @@ class Levels(Part):
         return next((each for each in self._things if each._has(body)), None)
 
     def _eyes(self) -> Floats:
-        found = [list(map(float, place)) for place in (self._viewers or self.eyes)()]
+        """The finite places of viewers. If the function of the script fails, the eyes of users count instead from then on."""
+        found: list[list[float]] = []
+        if self._viewers is not None:
+            try:
+                found = _places(self._viewers())
+            except Exception as error:
+                self._guard.failed("levels.viewers", error, "The eyes of users count instead.")
+                self._viewers = None
+        if self._viewers is None:
+            found = _places(self.eyes())
         places = np.array(found, dtype=float).reshape(-1, 3)
         finite: Floats = places[np.isfinite(places).all(axis=1)]
         return finite
@@ -931,6 +981,15 @@ class Levels(Part):
             and (level.is_stiff == is_stiff or stride == 0)
         ]
         thing.index = fitting[0] if fitting else 0
+
+
+def _places(given: Iterable[Place]) -> list[list[float]]:
+    try:
+        return [list(Vec3(*place)) for place in given]
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"levels.viewers must return a list of places, (x, y, z) in m, not {SHORT.repr(given)}"
+        ) from None
 
 
 def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
