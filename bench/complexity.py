@@ -25,6 +25,7 @@ DT = 1 / 120
 DISTANCE = 10.0  # m
 PICTURE = Path(__file__).parent.parent / "docs" / "pictures" / "complexity.svg"
 WARM = 60  # steps, in full
+STEADY = 80  # chains
 LEARNING = 700  # frames of a walk until the headroom is learnt
 STRIDES = {"full": 1, "1/2": 2, "1/4": 4, "1/8": 8, "frozen": 0}
 LEVELS = ("full", "1/2", "1/4", "1/8", "stiff", "frozen")
@@ -174,20 +175,31 @@ def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
 
 def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0) -> None:
     """The lamp's way through the valley, again and again, with a load of `factor` budgets: percentiles of all frames but the first
-    700, in which the headroom is learnt, or the first half of a short walk."""
+    700, in which the headroom is learnt, or the first half of a short walk. Beside it chains that nobody manages, whose work is the same in
+    each step, so that their percentiles tell what other programs do to processor times."""
     world, offered, limit, taken = loaded(count, factor)
+    steady = kind(2, STEADY)
     learning = min(LEARNING, frames // 2)
+    others: list[float] = []
     began = time.process_time()
     for frame in range(1, frames + 1):
         world.step()
+        others.append(cost(steady, 1))
         if frame > learning and (frame % max(1, frames // 10) == 0 or frame == frames):
-            shares = np.array(taken[learning:]) / limit
-            found = " ".join(f"{np.percentile(shares, p):.2f}" for p in (50, 90, 99, 99.9, 100))
+            print(f"{count} things, {offered:.1f} ms offered, {frame} frames: p50 p90 p99 p99.9 most")
+            print("  ", spread(np.array(taken[learning:]) / limit), "of the budget")
+            print("  ", spread(np.array(others[learning:]) / np.median(others)), "of the usual, chains in full")
+            left = 1e3 * (time.process_time() - began) / frame - np.mean(others)
             print(
-                f"{count} things, {offered:.1f} ms offered, {frame} frames: p50 p90 p99 p99.9 most {found} of the budget;"
-                f" {1e3 * (time.process_time() - began) / frame:.2f} ms a frame in all"
+                f"   {left:.2f} ms a frame with the script and the management;"
+                f" a usual step may take {world.levels._full:.2f} of the budget; {world.levels}",
+                flush=True,
             )
-            print(f"a usual step may take {world.levels._full:.2f} of it; {world.levels}", flush=True)
+
+
+def spread(values: np.ndarray) -> str:
+    """Percentiles."""
+    return " ".join(f"{np.percentile(values, p):.2f}" for p in (50, 90, 99, 99.9, 100))
 
 
 def _noting(function: Callable[[float], None], taken: list[float]) -> Callable[[float], None]:
@@ -215,9 +227,9 @@ def control(count: int = 10_000) -> None:
     plan = world.levels._plan
 
     def timed() -> None:
-        began = time.perf_counter()
+        began = time.process_time()
         plan()
-        planned.append(1e3 * (time.perf_counter() - began))
+        planned.append(1e3 * (time.process_time() - began))
 
     object.__setattr__(world.levels, "_plan", timed)
     for _ in range(600):
@@ -235,7 +247,7 @@ def main() -> None:
     elif wanted == "budget":
         budget(*map(int, sys.argv[2:3]))
     elif wanted == "walk":
-        walk(*map(int, sys.argv[2:4]))
+        walk(*map(int, sys.argv[2:5]))
     elif wanted == "control":
         control()
 

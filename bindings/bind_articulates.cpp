@@ -17,10 +17,7 @@ struct ArticulateView {
 
   std::uint32_t number() const { return body.use().bodies().articulate(body.id); }
   std::vector<BodyHandle> bodies() const {
-    System& engine = body.use();
-    std::vector<BodyId> own = engine.bodies().ids();
-    std::erase_if(own, [&, number = number()](const BodyId id) { return engine.bodies().articulate(id) != number; });
-    return wrap_all<BodyHandle>(body.system_object, body.system, own);
+    return wrap_all<BodyHandle>(body.system_object, body.system, body.use().bodies().articulate_of(body.id));
   }
   bool contains(const BodyHandle& other) const {
     return other.system == body.system && other.use().bodies().articulate(other.id) == number();

@@ -97,6 +97,7 @@ class Bodies : public View {
       BodyId) const;                       ///< its particles with mass, without the four points of its solids
   std::uint32_t articulate(BodyId) const;  ///< a number that the bodies of one articulate share
   std::vector<std::vector<BodyId>> articulates() const;
+  std::vector<BodyId> articulate_of(BodyId) const;  ///< its bodies, in order of slots; none of an obstacle
   std::uint32_t articulate_count() const;
   ///@}
 

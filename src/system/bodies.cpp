@@ -211,6 +211,17 @@ std::vector<ParticleId> Bodies::particles(BodyId body) const {
   return ids;
 }
 
+std::vector<BodyId> Bodies::articulate_of(BodyId id) const {
+  const model::Model& m = core_.model;
+  if (m.obstacles.has(core_.slot(id))) return {};
+  std::vector<std::uint32_t> slots;
+  m.for_each_body_of(articulate(id), [&](std::uint32_t body) { slots.push_back(body); });
+  std::ranges::sort(slots);
+  std::vector<BodyId> out;
+  for (const std::uint32_t slot : slots) out.push_back(m.bodies.id(slot));
+  return out;
+}
+
 std::uint32_t Bodies::articulate(BodyId id) const { return core_.model.bodies[core_.slot(id)].articulate; }
 
 BodyKind Bodies::kind(BodyId id) const { return core_.model.bodies[core_.slot(id)].kind; }

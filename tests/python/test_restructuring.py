@@ -273,3 +273,13 @@ def test_a_combine_may_keep_the_first_where_it_is(system: iota.System) -> None:
     ):
         with pytest.raises(ValueError, match=text):
             r.combine(left, **bad)
+
+
+def test_an_obstacle_is_of_an_articulate_without_bodies_and_bodies_of_one_are_in_order() -> None:
+    system = iota.System()
+    rods = [system.body() for _ in range(5)]
+    ends = [[rod.particle((k + side, 0, 0)) for side in (0, 1)] for k, rod in enumerate(rods)]
+    for k in (3, 0, 2, 1):  # not in order
+        ends[k][1].combine(ends[k + 1][0])
+    assert rods[2].articulate.bodies == rods and len(rods[4].articulate) == 5
+    assert system.obstacle(iota.Box((1, 1, 1)), (0, 9, 0)).articulate.bodies == []

@@ -1082,7 +1082,7 @@ class _Arrays:
 
     def come_into_sight(self, rows: slice, now: float) -> NDArray[np.intp]:
         """The frozen things that have. Notes those that are out of sight."""
-        indices = np.arange(len(self.since))[rows]
+        indices = np.arange(*rows.indices(len(self.since)))
         is_frozen = self.strides[indices, self.level[indices]] == 0
         is_missed, is_far = np.isfinite(self.since[indices]), self.is_far[indices]
         self.since[indices[is_frozen & is_far & ~is_missed]] = now

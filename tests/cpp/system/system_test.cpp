@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -76,6 +77,16 @@ void make_carousel(System& system, int pendulums) {
     system.particles().create(link, at + Vec3{0.01, -0.1, 0}, 0.02);
     (void)system.edits().combine(hinge, top);
   }
+}
+
+TEST(Body, tells_the_bodies_of_its_articulate_in_order) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 4});
+  const BodyId lone = system.bodies().create();
+  EXPECT_EQ(system.bodies().articulate_of(system.particles().body(chain.lower[2])).size(), 4u);
+  EXPECT_TRUE(std::ranges::is_sorted(system.bodies().articulate_of(system.particles().body(chain.lower[0])), {},
+                                     &BodyId::slot));
+  EXPECT_EQ(system.bodies().articulate_of(lone), std::vector{lone});
 }
 
 TEST(Body, of_a_thousand_hinges_stays_exact) {
