@@ -497,6 +497,21 @@ def test_what_an_undo_brings_back_is_managed_again(made: tuple[iota.World, list[
     assert roots[5].stride == 1
 
 
+def test_a_joint_that_is_made_later_is_not_ended_by_stiffness() -> None:
+    world = iota.World(iota.System(), ground=None)
+    first, other = chain(world.system, (0, 0, 0)), chain(world.system, (0, 0, -20))
+    world.levels.viewers = lambda: [(0, 0, FAR)]
+    for root in (first, other):
+        world.levels.manage(root.articulate, levels=["full", "1/4", "stiff"])
+    links = first.articulate.bodies
+    rope = world.system.rope(links[0].particles[1], links[4].particles[1])
+    world.levels.budget_ms = LITTLE
+    run(world, 90)
+    assert rope.alive and len(first.articulate.bodies) == 5
+    assert len(other.articulate.bodies) == 1, "this one is stiff"
+    assert [thing.level.name for thing in world.levels.things] == ["1/4", "stiff"]
+
+
 def test_off_makes_all_full(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE

@@ -286,7 +286,8 @@ class Levels(Part):
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
-        self._ties: Ties | None = None  # as of the latest catch-up
+        self._ties: Ties | None = None  # None: to be found when they are needed
+        self._version = -1  # of the structure after the latest changes of levels, which make and end no ties
         self._by_root: dict[Body, Managed] = {}  # empty: as of no time
         self._things: list[Managed] = []
         self._parked: list[Managed] = []  # that were managed until `off`
@@ -515,6 +516,7 @@ class Levels(Part):
         try:
             with self._costs.of("levels"):
                 self._plan()
+            self._version = self._system.structure_version
         except StaleIdError:  # destroyed by the script since the last step, or within it
             self._is_old = True
             with suppress(StaleIdError), self._costs.of("levels"):
@@ -560,6 +562,8 @@ class Levels(Part):
 
     def _plan(self) -> None:
         assert self._budget is not None
+        if self._version != self._system.structure_version:
+            self._ties = None
         if self._is_restored or (self._expected_step != self._system.step_count and self._expected_step is not None):
             self._is_restored = False
             self._resync()
@@ -677,6 +681,8 @@ class Levels(Part):
         if index and not self._is_as_it_was(thing):
             self._is_old = True
             return
+        if after.is_stiff and self._is_jointed_by_now(thing, thing.bodies):
+            return
         if before.stride == 0 and after.stride != 0 and reason != JOINED:
             self._catch_up(thing)
 
@@ -733,7 +739,7 @@ class Levels(Part):
             return
         began = time.process_time()
         things, bodies, ties = [thing], thing.bodies, list[Tie]()
-        if thing.is_jointed:
+        if self._is_jointed_by_now(thing, bodies):
             bodies, ties = self._all_ties().around(bodies)
             things = list(dict.fromkeys(each for body in bodies if (each := self._thing_of_root(body)) is not None))
         seconds = min((self._arrays.take_missed(each, self._system.time) for each in things), default=0.0)
@@ -752,9 +758,18 @@ class Levels(Part):
         return self._by_root.get(body)
 
     def _all_ties(self) -> Ties:
-        if self._ties is None or self._ties.version != self._system.structure_version:
+        if self._ties is None:
             self._ties = Ties(self._system)
         return self._ties
+
+    def _is_jointed_by_now(self, thing: Managed, bodies: list[Body]) -> bool:
+        """The script may have made joints since it came under management. Such a thing is never stiff, as they would end."""
+        if not thing.is_jointed and self._all_ties().hold(bodies):
+            level = thing.level
+            thing.is_jointed = self._is_old = True
+            thing.levels = tuple(each for each in thing.levels if not each.is_stiff or each is level)
+            thing.index = thing.levels.index(level)
+        return thing.is_jointed
 
     def _give_up(self, thing: Managed) -> None:
         """A function of one of its levels has failed: it is full from now on, with its own bodies."""

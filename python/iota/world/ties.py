@@ -19,12 +19,15 @@ class Ties:
     """The ties of a system, as they are now."""
 
     def __init__(self, system: System) -> None:
-        self.version = system.structure_version
         self._of: dict[Body, list[Tie]] = {}
         ties: list[Tie] = [*system.constraints, *system.bonds, *system.angle_springs]
         for tie in ties:
             for body in set(bodies_of(tie)):
                 self._of.setdefault(body, []).append(tie)
+
+    def hold(self, bodies: Iterable[Body]) -> bool:
+        """Whether one of them is an end of a tie."""
+        return any(tie.alive for body in bodies for tie in self._of.get(body, []))
 
     def around(self, bodies: Iterable[Body]) -> tuple[list[Body], list[Tie]]:
         """Bodies, with all that moves and is connected to them by ties and hinges, and these ties."""
