@@ -47,7 +47,7 @@ WAVE_HANDLER = """    @handles(protocol.Wave, share=0.1)
 LINES = {
     "src/ingredient/ingredient_list.h": {
         '#include "ingredient/bonds.h"': '#include "ingredient/balloons.h"\n',
-        "    AngleSprings>": "    Balloons,\n",
+        "    Strides>": "    Balloons,\n",
     },
     "include/iota/system.h": {
         "#include <iota/bodies.h>": "#include <iota/balloons.h>\n",
@@ -80,7 +80,15 @@ LINES = {
 """,
     },
     "bindings/bind_constraints.cpp": {
-        '  simple("weld"': '  simple("level", ConstraintKind::level, "A point of a keeps the height of a point of b.");\n',
+        '  type.def(\n      "weld",': """  type.def(
+      "level",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::level;
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "A point of a keeps the height of a point of b.");
+""",
     },
     "protocol/schema.json": {'    {\n      "name": "profile",': WAVE},
     "python/iota/world/inputs.py": {"    @handles(protocol.Key": WAVE_HANDLER},

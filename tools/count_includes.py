@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-# What records of the model have as members, and vectors: docs/why.md says why.
+# Records of the model have these as members, or are made of vectors: docs/why.md says why.
 EVERYWHERE = {
     f"iota/{name}.h" for name in ("vec3", "ids", "kinds", "attributes", "joint_options", "materials", "view_event")
 }

@@ -96,7 +96,7 @@ JOINTS = [Thing(name, (f"ConstraintKind::{name}", f'"{name}"'),
           for name in ("ball", "universal", "revolute", "cylindrical", "prismatic", "weld", "rod", "rope", "path",
                        "inside", "outside", "touching", "apart")]  # fmt: skip
 
-# Those of the schema. This list only keeps rows for older spellings of the schema.
+# The messages are those of the schema. This list only keeps rows for older spellings of the schema.
 MESSAGES = ["hello", "select", "grab_start", "grab_move", "grab_end", "action", "control", "welcome", "poses", "notice",
             "clients", "pong", "ping", "scene", "effect"]  # fmt: skip
 

@@ -108,7 +108,7 @@ def add_lists(source: Path, made: list[Path]) -> None:
 
 
 def add_films(source: Path) -> None:
-    """What `make films` has recorded, on the page of its study."""
+    """Puts what `make films` has recorded on the page of its study."""
     for film in sorted(FILMS.glob("*.mp4")):
         page = source / "docs" / "studies" / f"{film.stem}.md"
         if not page.is_file():

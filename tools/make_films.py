@@ -23,7 +23,7 @@ SHEETS = ROOT / "docs" / "pictures" / "studies"
 # As wide as the page that the studies' cameras are chosen for.
 SIZE, THUMBNAIL_SIZE = "640x360", "480x270"
 COLUMNS = 3  # of a sheet
-# What a film shows of a study, if not only what happens by itself.
+# The scripts of films that show more of a study than happens by itself.
 SCRIPTS = {
     "chain": """from iota import looks
 from iota.studies import chain

@@ -61,7 +61,7 @@ class Count:
     failed: int = 0
     skipped: int = 0
     failures: list[str] = field(default_factory=list)
-    #: Those that failed once and passed when they were repeated.
+    #: Tests that failed once and passed when they were repeated.
     repeated: list[str] = field(default_factory=list)
     #: Seconds and name of each test.
     durations: list[tuple[float, str]] = field(default_factory=list)
@@ -75,7 +75,7 @@ class Count:
         self.durations += other.durations
 
     def skip(self, name: str) -> None:
-        """Where a browser or a package is missing, tests would drop out silently: that is a failure."""
+        """Tests would drop out silently if a browser or a package is missing: that is a failure."""
         if any(fnmatch(name, expected) for expected in EXPECTED_SKIPS):
             self.skipped += 1
         else:
@@ -186,12 +186,12 @@ def web_sources() -> list[Path]:
 
 
 def drawn_by() -> list[Path]:
-    """What pictures, studies and packages in a browser depend on."""
+    """The files that pictures, studies and packages in a browser depend on."""
     return [*built(), *build.files_under(ROOT / "python" / "iota", skip=["page"]), *web_sources()]
 
 
 def placed_by() -> list[Path]:
-    """What rooms and sweeps on several machines depend on, by themselves: a study or a picture changes nothing there."""
+    """The files that rooms and sweeps on several machines depend on, by themselves: a study or a picture changes nothing there."""
     package = ROOT / "python" / "iota"
     folders = [path for name in ("rooms", "journal", "cli") for path in build.files_under(package / name)]
     files = [package / name for name in ("machines.py", "saving.py", "sweeping.py")]
@@ -199,7 +199,7 @@ def placed_by() -> list[Path]:
 
 
 def installed_by() -> list[Path]:
-    """What the wheel is made of and tested with; it is made again when one of its own inputs has changed."""
+    """The files that the wheel is made of and tested with; it is made again when one of its own inputs has changed."""
     return [*build.files_under(ROOT / "build" / "wheel"), ROOT / "tests" / "packaging" / "test_wheel.py"]
 
 
@@ -431,7 +431,7 @@ def stamp(suite: Suite) -> Path:
 
 
 def digest(suite: Suite) -> str:
-    """Of the files that the suite depends on and its command; nothing if it runs always."""
+    """The digest of the files that the suite depends on and its command; nothing if it runs always."""
     return build.digest(" ".join(suite.command), suite.inputs()) if suite.inputs else ""
 
 

@@ -132,7 +132,7 @@ def step_costs(build: object, seconds: float = 3.0) -> tuple[float, float, float
 
 @dataclass
 class PageCost:
-    """Of a frame of the page: processor time of its script, which includes submitting the drawing, ms; draw calls, and
+    """The cost of a frame of the page: processor time of its script, which includes submitting the drawing, ms; draw calls, and
     triangles with shadows."""
 
     script: float

@@ -240,7 +240,7 @@ class Signature:
 
 
 class PythonSignature(Signature):
-    """That of a function in Python, of which only the words and the number of arguments are judged: it checks values itself."""
+    """The signature of a function in Python, of which only the words and the number of arguments are judged: it checks values itself."""
 
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         super().__init__(name, text_of(function))

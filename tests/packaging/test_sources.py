@@ -37,6 +37,24 @@ def test_every_source_file_names_the_license_in_its_first_lines() -> None:
     assert not without
 
 
+def test_a_comment_of_the_product_does_not_begin_with_a_word_that_leaves_its_subject_out() -> None:
+    begin = re.compile(r"\s*(///?<?|#:?|/\*\*|\"\"\")\s*(Of|What|Where|Those|That)\b")
+    goes_on = re.compile(r"\s*(//|#|\*)")
+    found = []
+    for path in files():
+        name = path.relative_to(ROOT).as_posix()
+        if path.suffix not in SOURCES or not name.startswith(
+            ("src/", "include/", "bindings/", "python/", "tools/", "web/src/")
+        ):
+            continue
+        before = ""
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if begin.match(line) and not goes_on.match(before):
+                found.append(f"{name}:{number}: {line.strip()}")
+            before = line
+    assert not found, "\n".join(found)
+
+
 def test_every_python_requirement_is_pinned() -> None:
     for path in (ROOT / "tools").glob("requirements-*.txt"):
         for line in path.read_text().splitlines():

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from iota._core import Vec3
 
-# Of structs and entities by their name: name, type, limit of bytes or items (0: none), limit of each item.
+# The fields of structs and entities by their name: name, type, limit of bytes or items (0: none), limit of each item.
 Fields = dict[str, tuple[tuple[str, str, int, int], ...]]
 
 

@@ -34,7 +34,7 @@ class SchemaError(Exception):
 
 @dataclass(frozen=True)
 class Type:
-    """Of a field: a scalar, "string", "bytes", "struct" or "array"."""
+    """The type of a field: a scalar, "string", "bytes", "struct" or "array"."""
 
     kind: str
     max: int = 0  # bytes of a string, items of an array
@@ -44,7 +44,7 @@ class Type:
 
     @property
     def element(self) -> Type:
-        """Of an array."""
+        """The type of an array's items."""
         assert self.item is not None
         return self.item
 

@@ -51,7 +51,7 @@ class Found:
 
     @property
     def schema(self) -> str:
-        """That of the snapshots and states of undo; empty if the header is damaged."""
+        """The schema of the snapshots and states of undo; empty if the header is damaged."""
         schema = self.header.get("schema")
         return schema if isinstance(schema, str) else ""
 

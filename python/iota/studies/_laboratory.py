@@ -140,7 +140,7 @@ def shell(room: Furniture) -> None:
 
 
 def pyramid(room: Furniture, key: Key, foot: Place, side: float, height: float) -> None:
-    """That points out of the back wall."""
+    """A pyramid that points out of the back wall."""
     x, y, z = foot
     h = side / 2
     vertices = [(x - h, y - h, z), (x + h, y - h, z), (x + h, y + h, z), (x - h, y + h, z), (x, y, z + height)]

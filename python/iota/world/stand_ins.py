@@ -62,7 +62,7 @@ class Motion:
         return velocities
 
     def energy_of(self, momentum: Floats) -> float:
-        """That of the center of mass, J."""
+        """The kinetic energy of the center of mass, J."""
         return 0.5 * float(momentum @ momentum) / self.mass
 
 

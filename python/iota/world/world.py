@@ -383,7 +383,7 @@ class World:
         return self._unkept.get(key, default) if journal is None else journal.get(key, default)
 
     def _find_journal(self) -> Journal | None:
-        """That of the script, or of the command line."""
+        """The script's journal, or that of the command line."""
         options = run_options.current()
         if self._stepper.journal is None and options.keep is not None and not self._stepper.has_begun:
             self.keep(options.keep, options.fresh)

@@ -4,7 +4,7 @@
 const key = "iota.name";
 const longest = 40;
 
-/** That of the address, or else the kept one; empty without either. */
+/** The name in the address, or else the kept one; empty without either. */
 export function ownName(asked: string | null): string {
   try {
     return (asked ?? localStorage.getItem(key) ?? "").slice(0, longest);

@@ -62,7 +62,7 @@ export class Headset implements PageListener, FramePart {
   private toPlace_ = false;
   /** Raises the eyes of who sits to those of who stands, m of the user's. */
   private raised_ = 0;
-  /** That the panel shows. */
+  /** The pace that the panel shows. */
   private ratio_ = "";
   private pressedBy_: Input | null = null;
   private everConnected_ = false;

@@ -412,7 +412,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return this.bodies_.get(body)?.entity.name ?? "";
   }
 
-  /** That name, else the one of its look or the word for its shape, as in "ball"; empty if there is no such body. */
+  /** The body's own name, else the one of its look or the word for its shape, as in "ball"; empty if there is no such body. */
   nameOf(body: number): string {
     const found = this.bodies_.get(body);
     if (found === undefined) return "";
