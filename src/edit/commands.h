@@ -33,7 +33,7 @@ struct Step {
 struct TakeSnapshot {
   static constexpr bool keeps_energy = true;
 };
-inline void apply(Editor& e, const TakeSnapshot&) { e.islands.renew(); }
+inline void apply(Editor& e, const TakeSnapshot&) { e.islands.renew(e.model); }
 
 // One per line, to avoid merge conflicts.
 // clang-format off

@@ -82,7 +82,7 @@ void Door::apply_queue(StepReport& report) {
 Snapshot Door::take_snapshot(For reader) {
   record(TakeSnapshot{});
   if (reader == For::others) return editor_.snapshot();
-  editor_.islands.renew();
+  editor_.islands.renew(editor_.model);
   return editor_.pack();
 }
 

@@ -94,7 +94,7 @@ Snapshot Editor::own_state(const Snapshot& state, std::string_view schema) {
 }
 
 Snapshot Editor::snapshot(Origin origin) {
-  if (origin == Origin::anywhere) islands.renew();
+  if (origin == Origin::anywhere) islands.renew(model);
   keys_saved_below_ = held.functions.next_key;
   return pack(origin);
 }

@@ -11,7 +11,7 @@
 
 namespace iota::edit {
 
-/// That of this program.
+/// The schema of this program.
 const Schema& own_schema();
 const std::string& own_schema_text();
 

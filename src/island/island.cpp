@@ -61,7 +61,7 @@ void Island::clear() {
 }
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
-                      std::vector<std::uint32_t>& node_of_ring) {
+                      std::vector<std::uint32_t>& node_of_ring, const KeptOrders& orders) {
   clear();
   nodes_.build(model, articulates, node_of_ring);
   idle_ = has_no_free_body(model);
@@ -71,7 +71,9 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
   for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
-  integrator_->compile(problem_);
+  thread_local solver::KnownOrder order;
+  orders.find(nodes_.rings, order);
+  integrator_->compile(problem_, order);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
   look_whether_still(model);
 }
@@ -177,7 +179,7 @@ void Island::store_corrections(Model& model) const {
     model.corrections.set(model.particles[nodes_.carried[i]].ring, sum_over(nodes_.carriers[i], correction_of));
 }
 
-// Of all nodes, or of some.
+// Stores all nodes, or some.
 void Island::store_projection(Model& model, bool positions, MovedRings& moved,
                               std::span<const std::uint32_t> only) const {
   const auto put = [&](std::uint32_t node) {
@@ -206,7 +208,10 @@ void Island::use_solver(const std::array<char, 32>& name) {
     }
   }
   integrator_->set_external(solver_.get());
-  if (solver_) integrator_->compile(problem_);  // it needs unknowns without gaps, unlike an island that follows
+  if (!solver_) return;
+  solver::KnownOrder order;
+  find_order(order.nodes);
+  integrator_->compile(problem_, order);  // it needs unknowns without gaps, unlike an island that follows
 }
 
 bool Island::is_driven(const Model& model) const {
@@ -361,7 +366,7 @@ bool Island::project(Model& model, bool positions) {
   return met && (!positions || meets_pinned(model));
 }
 
-// Of what has been loaded.
+// Projects what has been loaded.
 bool Island::project_all(Model& model, bool positions) {
   if (idle_) {
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});

@@ -4,6 +4,7 @@
 #include "ingredient/ingredient_list.h"
 #include "ingredient/model.h"
 #include "ingredient/quantities.h"
+#include "island/kept_orders.h"
 #include "solver/advance_report.h"
 
 #include <iota/solver.h>
@@ -49,7 +50,7 @@ class Island {
   /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after.
   /// Islands have no ring in common, so they may be built in parallel with the same scratch.
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
-                std::vector<std::uint32_t>& node_of_ring);
+                std::vector<std::uint32_t>& node_of_ring, const KeptOrders& orders = {});
 
   /// A change of its bodies and of what acts on them.
   struct Change {
@@ -66,6 +67,10 @@ class Island {
   /// places. This takes the time of what has changed. False if so much has changed that it must be assembled.
   bool follow(model::Model&, std::span<const std::uint32_t> articulates, const Change&,
               std::vector<std::uint32_t>& node_of_ring, MovedRings&);
+  /// Whether it should have its order of elimination again. With contacts it may not be analyzed yet, and is when it is
+  /// solved; after many changes an order may have come to cost too much.
+  bool keeps_order() const;
+  double order_work() const;  ///< see KnownOrder
   /// Appends the rings of its nodes in order of elimination.
   void append_order(std::vector<std::uint32_t>& rings) const;
   /// Updates pulls that were added or removed: see Structure::touch_pull. False if it must be assembled.
@@ -112,7 +117,7 @@ class Island {
   /// Stores the latest try, of h seconds, in the model. Without a try since the last commit it stores nothing.
   const solver::AdvanceReport& commit(model::Model&, double h);
 
-  /// Of the latest try, or of the last step.
+  /// The report of the latest try, or of the last step.
   const solver::AdvanceReport& latest() const { return last_; }
   /// `last`: of its last step; of a loose body, for whose state it is loaded, that of the body.
   IslandReport report(const model::Model&, const solver::AdvanceReport& last) const;
@@ -134,7 +139,7 @@ class Island {
   bool is_still() const { return is_still_; }
   /// A step in which it is still.
   void skip_step() { last_ = {}, has_stepped_ = true; }
-  /// Of its bodies while it is still: measured once in an epoch, which is not 0.
+  /// The quantities of its bodies while it is still: measured once in an epoch, which is not 0.
   const ingredient::Book& still_book(const model::Model& model, std::uint64_t epoch) {
     if (book_epoch_ != epoch) still_book_ = ingredient::calc_book(model, bodies()), book_epoch_ = epoch;
     return still_book_;
@@ -191,6 +196,7 @@ class Island {
   void store_step(model::Model&, double h, bool is_instant) const;
   void store_corrections(model::Model&) const;
   bool project_all(model::Model&, bool positions);
+  void find_order(std::vector<std::uint32_t>& nodes) const;
   std::vector<std::uint32_t> nodes_of(const model::Model&, std::span<const std::uint32_t> bodies) const;
   void store_projection(model::Model&, bool moved, MovedRings&, std::span<const std::uint32_t> only = {}) const;
   void store_carried(model::Model&, MovedRings&) const;

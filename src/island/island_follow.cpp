@@ -40,7 +40,7 @@ struct Around {
 struct Lists {
   std::vector<std::uint32_t> changed, leaving;
   Around around;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
+  std::vector<std::uint32_t> order;
 };
 thread_local Lists lists_at_hand;
 
@@ -85,14 +85,27 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
   return are_few;
 }
 
-void Island::append_order(std::vector<std::uint32_t>& rings) const {
-  auto& order = lists_at_hand.order;  // rank and ring
+// Rows by themselves have ranks among those of the nodes.
+void Island::find_order(std::vector<std::uint32_t>& order) const {
   order.clear();
-  for (std::uint32_t node = 0; node < nodes_.size(); ++node)
-    order.push_back({integrator_->node_rank(node), nodes_.rings[node]});
-  std::sort(order.begin(), order.end());
-  for (const auto& [rank, ring] : order) rings.push_back(ring);
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    const std::uint32_t rank = integrator_->node_rank(node);
+    if (rank >= order.size()) order.resize(rank + 1, none);
+    order[rank] = node;
+  }
+  std::erase(order, none);
 }
+
+void Island::append_order(std::vector<std::uint32_t>& rings) const {
+  find_order(lists_at_hand.order);
+  for (const std::uint32_t node : lists_at_hand.order) rings.push_back(nodes_.rings[node]);
+}
+
+bool Island::keeps_order() const {
+  return problem_.items_of<solver::ContactConstraint>().empty() && integrator_->is_order_fine();
+}
+
+double Island::order_work() const { return integrator_->order_work(); }
 
 bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of_ring) {
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;

@@ -20,10 +20,18 @@ void Islands::forget() {
   knows_all_ = false, order_is_old_ = true;
 }
 
-void Islands::renew() {
+void Islands::renew(Model& model) {
   renew_ = true;
-  for (const auto& home : home_of_leader_)
-    if (home) home->island.forget_past();
+  auto& [rings, ends, work] = model.eliminations;
+  rings.clear(), ends.clear(), work.clear();
+  for (const auto& home : home_of_leader_) {
+    if (!home) continue;
+    home->island.forget_past();
+    // An order of few points is found again: it depends on the structure alone, unlike that of a dissection by places.
+    if (!home->is_built || home->is_small() || !home->island.keeps_order()) continue;
+    home->island.append_order(rings);
+    ends.push_back(static_cast<std::uint32_t>(rings.size())), work.push_back(home->island.order_work());
+  }
 }
 
 void Islands::wait(std::uint32_t articulate) {
@@ -100,6 +108,8 @@ void Islands::make_ready(Model& model, std::uint32_t body) {
 bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) {
   model.take_touched(touched_);
   const bool renews = std::exchange(renew_, false);
+  kept_orders_.read(model);
+  if (!model.eliminations.ends.empty()) model.eliminations = {};
   if (!knows_all_) {
     touched_.articulates.clear();
     model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.articulates.push_back(a); });
@@ -112,7 +122,8 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
       if (home && home->has_followed) drop(*home);
   const bool any_is_due =
       std::any_of(suspected_.begin(), suspected_.end(), [&](const Home* home) { return is_due(*home, model); });
-  if (touched_.articulates.empty() && touched_.local.pulled.empty() && waiting_.empty() && !any_is_due) return false;
+  if (touched_.articulates.empty() && touched_.local.pulled.empty() && waiting_.empty() && !any_is_due)
+    return kept_orders_.clear(), false;
   ++epoch_;
   order_is_old_ = awake_is_old_ = true;
   places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
@@ -129,6 +140,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   if (!waiting_.empty()) find_groups(model), settle_groups(model, moved);  // of homes that could not follow
   build_fresh(model, parallel, moved);
   note_suspects(model);
+  kept_orders_.clear();
   return any || !fresh_.empty() || !fresh_loose_.empty();
 }
 
@@ -459,7 +471,7 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
     moved_by_[i].before.clear(), moved_by_[i].is_asked_for = moved.is_asked_for;
     const auto carry_along = [&](Island& island) { island.carry_along(model, moved_by_[i]); };
     if (i >= fresh_.size()) return borrow(model, fresh_loose_[i - fresh_.size()], carry_along);
-    fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_);
+    fresh_[i]->island.assemble(model, fresh_[i]->articulates, node_of_ring_, kept_orders_);
     fresh_[i]->is_built = true;
     carry_along(fresh_[i]->island);
   });

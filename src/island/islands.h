@@ -53,8 +53,9 @@ class Islands {
   }
   bool update(model::Model&, const Parallel&, MovedRings&);
   void forget();
-  /// The next steps depend on the model alone: rebuilds islands that have followed edits, and forgets factors.
-  void renew();
+  /// The next steps depend on the model alone, for a snapshot of it: rebuilds islands that have followed edits, and forgets
+  /// factors. Their orders of elimination become part of the model until they are built.
+  void renew(model::Model&);
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
   /// The islands that are not still: a step costs what moves, not what rests.
@@ -244,6 +245,7 @@ class Islands {
   std::vector<std::uint32_t> node_of_ring_;
   FreeBodies free_bodies_;
   Lenders lenders_;
+  KeptOrders kept_orders_;   // of the present update
   std::uint64_t epoch_ = 1;  // another one after each change of structure
   bool knows_all_ = false, order_is_old_ = true, awake_is_old_ = true;
 };

@@ -188,6 +188,16 @@ class Structure {
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
   Meshes meshes;  ///< of solids
+  /// The rings of islands in their orders of elimination, one after the other, the end of each and its usual work: when a
+  /// snapshot is taken, until the islands are built from it.
+  struct {
+    std::vector<std::uint32_t> rings, ends;
+    std::vector<double> work;
+    template <class Archive>
+    void archive(Archive& ar) {
+      ar.vector(rings), ar.vector(ends), ar.vector(work);
+    }
+  } eliminations;
   SlotTable<Twin, Id<"twin">> twins;
   SideTable<std::uint32_t> first_twin;  ///< of particles
   SlotTable<Attributes, Id<"attributes">> attributes;
@@ -530,7 +540,7 @@ void Structure::archive(Archive& ar) {
   table("corrections", corrections, rings.slot_count());
   value("structure_version", structure_version), value("spark_changes", spark_changes);
   table("particle_survivors", particle_survivors_), table("body_survivors", body_survivors_);
-  table("meshes", meshes);
+  table("meshes", meshes), table("eliminations", eliminations);
 }
 
 }  // namespace iota::model

@@ -40,8 +40,9 @@ enum class Hessian { exact, clamped, none };
 class Assembly {
  public:
   /// Analyzes the structure of the problem; call again after nodes, constraints or forces were added or removed ...
-  /// Returns whether it was like the latest one, whose places in the matrix are then kept.
-  bool compile(Problem&);
+  /// Returns whether it was like the latest one, whose places in the matrix are then kept. order: of the nodes;
+  /// empty: it is found.
+  bool compile(Problem&, const KnownOrder& order = {});
   /// ... or, if they were added and removed by the problem's own functions, follow the change: removes marked nodes and
   /// finds new places near the changes, in a fraction of the time.
   void follow(Problem&);

@@ -71,6 +71,7 @@ class ThreadGraph {
   explicit ThreadGraph(const Problem& problem) {
     graph_.node_count = static_cast<std::uint32_t>(problem.size());
     graph_.couplings.clear(), graph_.constraints.clear(), graph_.nodes.clear(), graph_.places.clear();
+    graph_.order.clear();
   }
   ~ThreadGraph() {
     if (graph_.node_count > most_kept_nodes) graph_ = {};
@@ -156,7 +157,7 @@ double set_reference_lengths(Problem& problem) {
 
 }  // namespace
 
-bool Assembly::compile(Problem& problem) {
+bool Assembly::compile(Problem& problem, const KnownOrder& order) {
   reference_length_ = set_reference_lengths(problem);
   if (const std::uint64_t before = std::exchange(structure_, problem.structure());
       before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() &&
@@ -171,7 +172,8 @@ bool Assembly::compile(Problem& problem) {
   ThreadGraph room(problem);
   CouplingGraph& graph = room.get();
   fill(graph, problem);
-  pattern_ = PatternCache::of_thread().find(graph);
+  graph.order = order;
+  pattern_ = order.is_empty() ? PatternCache::of_thread().find(graph) : nullptr;
   if (!pattern_) own_pattern().analyze(graph), pattern_ = own_pattern_;
   factor_.reset(*pattern_);
   forget_factors();

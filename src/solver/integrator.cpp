@@ -41,10 +41,10 @@ int most_iterations(double budget, double cost) {
 
 }  // namespace
 
-void Integrator::compile(Problem& problem) {
+void Integrator::compile(Problem& problem, const KnownOrder& order) {
   forget_past(problem);
   is_due_ = !problem.items_of<ContactConstraint>().empty();
-  if (!is_due_) return analyze(problem);
+  if (!is_due_) return analyze(problem, order);
   if (!problem.has_slots()) problem.forget_slots();  // fit_pools resizes them
   problem.fit_pools();
   reference_length_ = mean_reference_length(problem);
@@ -60,9 +60,9 @@ void Integrator::forget_past(Problem& problem) {
   if (spin_) spin_->forget();
 }
 
-void Integrator::analyze(Problem& problem) {
+void Integrator::analyze(Problem& problem, const KnownOrder& order) {
   is_due_ = false;
-  const bool is_alike = newton_.compile(problem);
+  const bool is_alike = newton_.compile(problem, order);
   if (spin_) is_alike ? spin_->forget_masses() : spin_->forget();
   make_room(problem);
 }

@@ -24,8 +24,8 @@ namespace iota::solver {
 /// step allocates nothing.
 class Integrator {
  public:
-  /// Problems with contacts are analyzed when they are solved: heaps may never be.
-  void compile(Problem& problem);
+  /// Problems with contacts are analyzed when they are solved, without the order: heaps may never be. order: see Assembly.
+  void compile(Problem& problem, const KnownOrder& order = {});
   /// Whether it can follow a change of structure; else the problem is built and compiled again.
   bool can_follow() const { return !is_due_; }
   /// After a change of structure by the problem's own functions: see Problem::open.
@@ -69,6 +69,12 @@ class Integrator {
 
   /// The place of a node in the order of elimination of what is compiled.
   std::uint32_t node_rank(std::uint32_t node) const { return is_due_ ? node : newton_.node_rank(node); }
+  /// Whether that order takes little more than when it was found, and that work: see KnownOrder. Of an analyzed problem.
+  bool is_order_fine() const {
+    constexpr double most = 1.5;
+    return !is_due_ && newton_.pattern().calc_work() <= most * order_work();
+  }
+  double order_work() const { return newton_.pattern().usual_work(); }
   /// The next step depends on the problem alone, to the bit.
   void forget_past(Problem&);
   double reference_length() const { return reference_length_; }  ///< of what is compiled, m
@@ -94,7 +100,7 @@ class Integrator {
   };
   void make_room(const Problem&);
   void make_ready(Problem&);
-  void analyze(Problem&);
+  void analyze(Problem&, const KnownOrder& order = {});
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
   void look_at(Problem&);

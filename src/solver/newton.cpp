@@ -19,8 +19,8 @@ using Set = NewtonSettings;
 
 }  // namespace
 
-bool Newton::compile(Problem& problem) {
-  const bool is_alike = assembly_.compile(problem);
+bool Newton::compile(Problem& problem, const KnownOrder& order) {
+  const bool is_alike = assembly_.compile(problem, order);
   make_room(problem);
   return is_alike;
 }

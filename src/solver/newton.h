@@ -32,7 +32,7 @@ struct [[nodiscard]] NewtonReport {
 class Newton {
  public:
   /// Allocates and analyzes the structure of the problem, or follows it: see Assembly.
-  bool compile(Problem& problem);
+  bool compile(Problem& problem, const KnownOrder& order = {});
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
   void place_forces_by_velocity(Problem& problem) const { assembly_.place_forces_by_velocity(problem); }
@@ -59,7 +59,8 @@ class Newton {
   bool has_external() const { return external_ != nullptr; }
   /// The next step does not begin with the factors of the last one: it depends on nothing but the problem's state.
   void forget_factors() { assembly_.forget_factors(); }
-  std::uint32_t node_rank(std::uint32_t node) const { return assembly_.pattern().node_rank(node); }
+  std::uint32_t node_rank(std::uint32_t node) const { return pattern().node_rank(node); }
+  const BlockPattern& pattern() const { return assembly_.pattern(); }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what

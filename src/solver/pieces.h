@@ -9,7 +9,7 @@
 
 namespace iota::solver {
 
-/// What joins points to pieces: lengths and coupled masses, as in rigid bodies and what shares their points; all rows that
+/// Connections join points to pieces: lengths and coupled masses, as in rigid bodies and what shares their points; all rows that
 /// act; or forces between points as well.
 enum class Connection : std::uint8_t { lengths, rows, rows_and_forces };
 

@@ -51,7 +51,7 @@ struct RowLaw {
   bool is_one_sided() const { return (lower == 0) != (upper == 0); }
   /// The value as far as it has a force: that of a slack rope is 0. Its dashpot does not act before its spring.
   double stretch(double g) const { return !is_one_sided() ? g : lower == 0 ? std::max(g, 0.0) : std::min(g, 0.0); }
-  /// Of a compliant row, by its value and its rate, N.
+  /// The force of a compliant row, by its value and its rate, N.
   double spring_force(double g, double speed) const {
     if (g != 0 && stretch(g) == 0) return 0;
     return std::clamp(g / compliance + damping * speed, lower, upper);
@@ -277,7 +277,7 @@ struct Problem {
   }
   bool has_used_springs() const { return has_used<SpringForce>() || has_used<RadialForce>(); }
   bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
-  /// Of an item in a constraint pool, by the pool's place among those that the folds visit.
+  /// The key of an item in a constraint pool, by the pool's place among those that the folds visit.
   ItemKey key_of(std::size_t pool, std::size_t item) const {
     ItemKey key;
     for_each_constraint_pool([&](const auto& p) {

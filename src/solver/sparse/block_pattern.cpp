@@ -17,7 +17,7 @@ void BlockPattern::analyze(CouplingGraph& graph) {
   PatternBuilder::of_thread(*this, graph).analyze();
   find_panels();
   find_leaves();
-  analyzed_work_ = calc_work(), analyzed_nodes_ = node_count();
+  analyzed_work_ = graph.order.work > 0 ? graph.order.work : calc_work(), analyzed_nodes_ = node_count();
 }
 
 // The multiplications of a factorization, up to a factor.
@@ -29,6 +29,10 @@ double BlockPattern::calc_work() const {
     work += v.pivot * rows * rows;
   }
   return work;
+}
+
+double BlockPattern::usual_work() const {
+  return analyzed_work_ * std::max(1.0, static_cast<double>(node_count()) / std::max(1u, analyzed_nodes_));
 }
 
 bool BlockPattern::follow(CouplingGraph& graph, const GraphChange& change) {
@@ -44,9 +48,7 @@ bool PatternBuilder::follow_part(BlockPattern& pattern, CouplingGraph& graph, co
   // do, in heaps, and what a thousand multiplications a node do, in chains; a step takes about four factorizations. The
   // order is made anew once it has cost as much.
   const double always_fine = 20000 + 1000.0 * pattern.node_count();  // multiplications
-  const double growth =
-      std::max(1.0, static_cast<double>(pattern.node_count()) / std::max(1u, pattern.analyzed_nodes_));
-  const double usual = growth * pattern.analyzed_work_;
+  const double usual = pattern.usual_work();
   const double wasted = pattern.calc_work() - usual;
   pattern.wasted_work_ = wasted > 0 ? pattern.wasted_work_ + wasted : 0;
   return pattern.wasted_work_ <= 0.5 * usual + always_fine;

@@ -77,7 +77,7 @@ class BlockPattern {
     std::uint8_t stride = 1;     ///< pivot size of its vertex: the next row's diagonal entry is stride + 1 further
   };
 
-  /// Orders the nodes and lays out the storage; gives each constraint its unknown.
+  /// Orders the nodes, unless the graph has their order, and lays out the storage; gives each constraint its unknown.
   void analyze(CouplingGraph&);
 
   /// Updates the pattern for a graph that has changed in a few places: the order stays, new nodes are placed beside
@@ -110,6 +110,9 @@ class BlockPattern {
 
   /// The place of a node in the order of elimination, among those of nodes and of rows by themselves.
   std::uint32_t node_rank(std::uint32_t node) const { return node_vertex_[node]; }
+  /// The work of a factorization, in multiplications, when the order was found, as that of the present number of nodes.
+  double usual_work() const;
+  double calc_work() const;  ///< of one now
   std::uint32_t node_unknown(std::uint32_t node) const { return vertices_[node_vertex_[node]].unknown; }
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
@@ -135,7 +138,6 @@ class BlockPattern {
   std::vector<std::uint32_t> panel_vertices_, panel_of_;
   BlockStorage diagonal_storage_, lower_storage_, unknown_storage_, entry_storage_, pair_storage_;
   std::uint32_t widest_front_ = 0;
-  double calc_work() const;
   double analyzed_work_ = 0;          // of the latest analysis
   std::uint32_t analyzed_nodes_ = 0;  // its nodes
   double wasted_work_ = 0;            // since then, see `follow_part`

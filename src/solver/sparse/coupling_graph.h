@@ -14,6 +14,17 @@ namespace iota::solver {
 /// the scratch of a larger one is a considerable part of its memory.
 inline constexpr std::uint32_t most_kept_nodes = 4096;
 
+/// An order in which nodes are eliminated, that an analysis need not find.
+struct KnownOrder {
+  std::vector<std::uint32_t> nodes;
+  /// The multiplications of a factorization when it was found, as those of the present number of nodes: if it comes to
+  /// take much more, another order is found. 0: those that it takes now.
+  double work = 0;
+
+  bool is_empty() const { return nodes.empty(); }
+  void clear() { nodes.clear(), work = 0; }
+};
+
 /// Which nodes and rows are coupled, before any order is known. A node has three unknowns (its position); a
 /// constraint has 1 to 3 rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
 struct CouplingGraph {
@@ -37,6 +48,7 @@ struct CouplingGraph {
   std::vector<Constraint> constraints;
   std::vector<std::uint32_t> nodes;  ///< of the constraints, one after the other
   std::vector<Vec3> places;          ///< of the nodes, which a dissection cuts apart; or empty
+  KnownOrder order;                  ///< empty: to be found
 
   std::span<const std::uint32_t> nodes_of(const Constraint& c) const {
     return {nodes.data() + c.first_node, c.node_count};

@@ -61,12 +61,16 @@ void PatternBuilder::follow(const GraphChange& change, FunctionRef<void()> compl
 
 // A constraint makes its nodes a clique, as its multipliers are eliminated among them.
 void PatternBuilder::order_all_nodes() {
-  std::vector<std::array<std::uint32_t, 2>>& edges = edges_;
-  edges.assign(graph_->couplings.begin(), graph_->couplings.end());
-  for (const auto& c : graph_->constraints)
-    for (auto nodes = graph_->nodes_of(c); !nodes.empty(); nodes = nodes.subspan(1))
-      for (const std::uint32_t other : nodes.subspan(1)) edges.push_back({nodes[0], other});
-  find_elimination_order(graph_->node_count, edges, graph_->places, node_order_);
+  if (const auto& known = graph_->order.nodes; known.size() == graph_->node_count) {
+    node_order_.assign(known.begin(), known.end());
+  } else {
+    std::vector<std::array<std::uint32_t, 2>>& edges = edges_;
+    edges.assign(graph_->couplings.begin(), graph_->couplings.end());
+    for (const auto& c : graph_->constraints)
+      for (auto nodes = graph_->nodes_of(c); !nodes.empty(); nodes = nodes.subspan(1))
+        for (const std::uint32_t other : nodes.subspan(1)) edges.push_back({nodes[0], other});
+    find_elimination_order(graph_->node_count, edges, graph_->places, node_order_);
+  }
   old_nodes_ = graph_->node_count;
   pattern_->node_vertex_.resize(graph_->node_count);  // until there are vertices: places in the order
   for (std::uint32_t i = 0; i < graph_->node_count; ++i) pattern_->node_vertex_[node_order_[i]] = i;

@@ -22,7 +22,7 @@ namespace iota::solver {
 /// An analysis uses all nodes, following a change only the touched ones.
 class PatternBuilder {
  public:
-  /// That of this thread, which keeps the room of small patterns: these are made too often to allocate it each time.
+  /// The builder of this thread, which keeps the room of small patterns: these are made too often to allocate it each time.
   static PatternBuilder& of_thread(BlockPattern&, CouplingGraph&);
   void analyze();
   /// BlockPattern::follow of a graph that has no more than what couples with the touched nodes and with the nodes of their

@@ -18,7 +18,7 @@ class PatternCache {
   /// The pattern of a graph, whose constraints get their unknowns; null: analyze it. It is not small, comes for the first
   /// time, or patterns that are in use have all places where it could be kept.
   std::shared_ptr<const BlockPattern> find(CouplingGraph&);
-  /// That of this thread, since problems are compiled on several threads.
+  /// The cache of this thread, since problems are compiled on several threads.
   static PatternCache& of_thread();
 
   /// With more nodes graphs are seldom equal. With more than 42 their order might depend on places: their elimination

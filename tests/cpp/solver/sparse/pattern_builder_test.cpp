@@ -3,6 +3,8 @@
 
 #include "tests/cpp/solver/sparse/dense_twin.h"
 
+#include <numeric>
+
 namespace iota::solver {
 namespace {
 
@@ -247,6 +249,32 @@ TEST(BlockPattern, follows_a_chain_closed_to_a_ring_and_opened_again) {
   (void)pattern.follow(graph, {.touched = {0, 59}, .removed_rows = {unknown}});
   Twin(pattern, graph, true, random).expect_equal_solutions();
   EXPECT_EQ(pattern.fill(), fill);
+}
+
+TEST(PatternBuilder, eliminates_nodes_in_an_order_that_is_given_and_gives_the_pattern_that_had_it) {
+  std::mt19937 random(5);
+  ChangingGraph some(random, 40);
+  CouplingGraph& graph = some.graph;
+  std::vector<std::uint32_t> order(graph.node_count);
+  std::iota(order.begin(), order.end(), 0u);
+  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) {
+    return some.pattern.node_rank(a) < some.pattern.node_rank(b);
+  };
+  std::sort(order.begin(), order.end(), by_rank);
+  BlockPattern again, other;
+  graph.order.nodes = order;
+  again.analyze(graph);
+  EXPECT_EQ(again.fill(), some.pattern.fill());
+  for (std::uint32_t n = 0; n < graph.node_count; ++n) EXPECT_EQ(again.node_rank(n), some.pattern.node_rank(n));
+  std::shuffle(graph.order.nodes.begin(), graph.order.nodes.end(), random);
+  other.analyze(graph);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    EXPECT_LT(other.node_rank(graph.order.nodes[i - 1]), other.node_rank(graph.order.nodes[i]));
+  EXPECT_GT(other.calc_work(), some.pattern.calc_work());
+  EXPECT_EQ(other.usual_work(), other.calc_work());
+  graph.order.work = some.pattern.usual_work();  // found for a better one
+  other.analyze(graph);
+  EXPECT_EQ(other.usual_work(), some.pattern.calc_work());
 }
 
 }  // namespace
