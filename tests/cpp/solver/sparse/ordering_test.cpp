@@ -41,6 +41,20 @@ TEST(Ordering, is_a_permutation_of_any_graph) {
   }
 }
 
+// Small graphs are matrices of bits, larger ones lists.
+TEST(Ordering, of_a_small_graph_is_that_of_a_part_of_a_large_one) {
+  std::mt19937 random(4);
+  for (std::uint32_t n = 2; n <= 256; n += 1 + n / 16) {
+    std::vector<Edge> edges;
+    for (std::uint32_t i = 1; i < n; ++i) edges.push_back({static_cast<std::uint32_t>(random() % i), i});
+    for (std::uint32_t i = 0; i < 2 * n; ++i)
+      edges.push_back({static_cast<std::uint32_t>(random() % n), static_cast<std::uint32_t>(random() % n)});
+    auto in_large = order_of(n + 256, edges);
+    std::erase_if(in_large, [&](std::uint32_t node) { return node >= n; });
+    ASSERT_EQ(order_of(n, edges), in_large) << n << " nodes";
+  }
+}
+
 TEST(Ordering, is_a_permutation_of_a_net_that_is_dissected) {
   const CouplingGraph graph = net(60, true, false);
   auto order = order_of(graph.node_count, graph.couplings, graph.places);
