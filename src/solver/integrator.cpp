@@ -322,7 +322,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     energy_.measure_kinetic(problem);
   }
   if (!is_mid_point) give_spin_back(problem, stage, energy.dissipated, report);
-  if (has_bounced(problem))
+  if (has_impacts(problem, stage))
     settle_impacts(problem, stage, energy, report);
   else if (is_mid_point)
     project_velocities_after_step(problem, stage, report);

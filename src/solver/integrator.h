@@ -140,7 +140,7 @@ class Integrator {
 
   bool find_bounces(Problem&, const Part&) const;
   static void forget_bounces(Problem&);
-  static bool has_bounced(const Problem&);
+  bool has_impacts(const Problem&, const Stage&) const;
   static bool has_driven_rows(const Problem&);
   void settle_impacts(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
   void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);

@@ -53,19 +53,38 @@ void Integrator::forget_bounces(Problem& problem) {
   for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.floor = 0, c.meets = false;
 }
 
-bool Integrator::has_bounced(const Problem& problem) {
+// Without a restitution it is a projection as after each step, but for the friction: what was hit at the end of the step had
+// none of it, and what was hit at its begin twice as much as its impulse allows.
+bool Integrator::has_impacts(const Problem& problem, const Stage& stage) const {
   if (!problem.has_used<ContactConstraint>()) return false;
   const auto& pool = problem.pool_of<ContactConstraint>();
-  for (std::size_t k = 0; k < pool.items.size(); ++k)
-    if (pool.items[k].restitution > 0 && pool.states.has_been_met(k * ContactConstraint::rows)) return true;
+  const double least = stage.h * norm(problem.gravity), per_time = 2 / stage.h;
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const ContactConstraint& c = pool.items[k];
+    if (!pool.states.has_been_met(k * ContactConstraint::rows)) continue;
+    if (c.restitution > 0) return true;
+    if (!(c.friction > 0) || !stage.is_mid_point()) continue;
+    const Gradients<ContactConstraint> gradients(c, problem.position.data(), stage.fraction);
+    double speed = 0;  // before the step
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      Vec3 rows[ContactConstraint::rows];
+      gradients.of_node(static_cast<int>(i), rows);
+      const std::uint32_t node = c.nodes[i];
+      speed += dot(rows[0], problem.velocity[node] - per_time * newton_.displacement()[node]);
+    }
+    if (speed < -least) return true;
+  }
   return false;
 }
 
 // `step`: the balance of what was solved.
 void Integrator::settle_impacts(Problem& problem, const Stage& stage, const StepEnergy& step, AdvanceReport& report) {
   const bool drives = drives_rows_ && has_driven_rows(problem);
-  const double spare =
-      step.total_before + step.external_work - energy_.total - std::max(0.0, step.dissipated);  // by friction
+  const bool any_bounces = std::ranges::any_of(problem.items_of<ContactConstraint>(),
+                                               [](const ContactConstraint& c) { return c.restitution > 0; });
+  double spare = step.total_before + step.external_work - energy_.total;
+  // A rebound may not have what friction took.
+  if (any_bounces) spare -= std::max(0.0, step.dissipated);
   const double most = drives ? std::numeric_limits<double>::infinity() : energy_.kinetic + std::max(0.0, spare);
   const std::optional<double> kinetic = newton_.settle_impacts(
       problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0}, most);

@@ -105,6 +105,24 @@ TEST(Impacts, beside_the_line_of_centers_keep_both_momenta) {
   }
 }
 
+// mu times the impulse along the normal, whenever in its step it lands.
+TEST(Impacts, have_the_friction_of_their_impulse_at_any_time_of_a_step) {
+  constexpr double mu = 0.1, radius = 0.1, h = 1.0 / 120, speed = 2;
+  for (const double e : {0.0, 0.5, 1.0})
+    for (const double part : {0.01, 0.25, 0.5, 0.75, 0.99}) {
+      System system = make_hall(Material{.friction = mu, .restitution = e});
+      system.set_gravity({});
+      const BodyId ball = drop_ball(system, (3 + part) * speed * h, radius);
+      system.bodies().set_velocity(ball, {3, -speed, 0});
+      for (int i = 0; i < 20; ++i) EXPECT_EQ(system.step(h).unconverged, 0);
+      const Vec3 velocity = system.bodies().velocity(ball);
+      EXPECT_NEAR(velocity.x, 3 - mu * (1 + e) * speed, 1e-7) << e << " " << part;
+      EXPECT_NEAR(velocity.y, e * speed, 1e-7) << e << " " << part;
+      EXPECT_NEAR(system.bodies().angular_velocity(ball).z, -2.5 * mu * (1 + e) * speed / radius, 0.01)
+          << e << " " << part;
+    }
+}
+
 // Balls in a row that touch, the first of which arrive from the left.
 std::vector<double> speeds_of_row(const std::vector<double>& masses, std::size_t moving, double restitution,
                                   IntegrationMode mode) {

@@ -7,6 +7,7 @@ from iota.verify.cases import (
     classical,
     conservation,
     contact,
+    dominoes,
     friction,
     gyres,
     held,
@@ -54,5 +55,6 @@ CASES = [
         impacts.impacts,
         stacks.stacks,
         gyres.spinning,
+        dominoes.dominoes,
     )
 ]
