@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where and in which direction all pairs of convex shapes meet, by an independent distance of their poses."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+from convex_reference import distance
+from scipy.spatial.transform import Rotation
+
+import iota
+
+NEAR = 0.02  # in sizes, the distance from which they are shot
+KINDS = ("sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "hull")
+
+
+def shape_of(kind: str, size: float, random: np.random.Generator) -> Any:
+    a, b, c = size * random.uniform(0.3, 1, 3)
+    if kind == "hull":
+        return iota.Mesh.convex_hull(size / 2 * random.normal(size=(12, 3)))
+    makers = {
+        "sphere": lambda: iota.Sphere(a / 2),
+        "box": lambda: iota.Box((a, b, c)),
+        "capsule": lambda: iota.Capsule(a / 4, b),
+        "cylinder": lambda: iota.Cylinder(a / 2, b),
+        "cone": lambda: iota.Cone(a / 2, b),
+        "ellipsoid": lambda: iota.Ellipsoid((a, b, c)),
+    }
+    return makers[kind]()
+
+
+class Meeting:
+    """A body is shot from nearby at another one that floats. Nothing else acts, without friction and rebound."""
+
+    def __init__(self, kinds: tuple[str, str], seed: int) -> None:
+        random = np.random.default_rng(seed)
+        self.size = 10.0 ** random.uniform(-3, 1)  # m
+        self.system = iota.System()
+        self.system.gravity = (0, 0, 0)
+        self.system.usual_material = iota.Material(friction=0)
+        self.shapes = [shape_of(kind, self.size * random.uniform(0.3, 1), random) for kind in kinds]
+        turns = [random.normal(size=4) for _ in kinds]
+        self.turns = [Rotation.from_quat(turn).as_matrix() for turn in turns]
+        way = random.normal(size=3)
+        way /= np.linalg.norm(way)
+        places = np.array([np.zeros(3), 2.5 * self.size * way])
+        for _ in range(20):  # until it is near
+            apart, normal = distance(self.shapes[0], places[0], self.turns[0], self.shapes[1], places[1], self.turns[1])
+            if abs(apart - NEAR * self.size) < 1e-3 * NEAR * self.size:
+                break
+            places[1] -= (apart - NEAR * self.size) / max(-float(normal @ way), 0.2) * way
+        self.bodies = [
+            self.system.body(shape=shape, density=1000, position=place, orientation=turn)
+            for shape, place, turn in zip(self.shapes, places, turns, strict=True)
+        ]
+        self.bodies[1].velocity = -self.size * way
+        self.centers = [  # of mass, in the frames of the shapes
+            turn.T @ (np.array(body.center_of_mass) - place)
+            for turn, body, place in zip(self.turns, self.bodies, places, strict=True)
+        ]
+
+    def distance(self, shift: Any = 0.0) -> tuple[float, Any]:
+        """Of the two, the second one moved by a shift."""
+        poses = []
+        for number, (shape, body, center) in enumerate(zip(self.shapes, self.bodies, self.centers, strict=True)):
+            turn = Rotation.from_quat(body.orientation).as_matrix()
+            poses += [shape, np.array(body.center_of_mass) - turn @ center + number * np.asarray(shift), turn]
+        return distance(*poses)
+
+
+@pytest.mark.parametrize("kinds", itertools.combinations_with_replacement(KINDS, 2), ids="-".join)
+def test_bodies_act_on_each_other_where_they_touch_and_along_their_normal(kinds: tuple[str, str]) -> None:
+    for seed in range(3):
+        meeting = Meeting(kinds, seed)
+        target, dt = meeting.bodies[0], 1 / 1000  # in which it moves by a thousandth of the size
+        for _ in range(round(5 * NEAR / dt)):
+            assert meeting.system.step(dt).unconverged == 0
+            if np.linalg.norm(target.velocity) > 1e-6 * meeting.size:
+                break
+        impulse = np.array(target.velocity)
+        assert impulse.any(), "they miss each other"
+        gap, _ = meeting.distance()
+        along = impulse / np.linalg.norm(impulse)
+        _, normal = meeting.distance(-1e-3 * meeting.size * along)
+        assert abs(gap) < 1e-5 * meeting.size
+        assert (
+            np.linalg.norm(along - normal) < 0.01
+        )  # it has moved by a part of a thousandth since the contact was found
