@@ -567,7 +567,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
     row.weights = c.weights;
-    row.impulse = {};
+    row.impulse = {}, row.share = 1;
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
     row.constant[1] -= h * c.drift;
@@ -585,8 +585,8 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.normal_compliance = normal_softness * of_center;
     row.compliance = tangent_softness * of_place;
     row.reference = std::max({size_of(row, c, problem), c.radius, 1e-9});
-    // Its compliance goes with the square of the step. In a longer one it keeps its strain, in a shorter one its force: so
-    // its energy never rises. The force of an impact in a short part, taken over, was worth a hundred times the motion.
+    // Its compliance goes with the square of the step, see ContactConstraint::fit. The force of an impact in a short part,
+    // taken over, was worth a hundred times the motion.
     const double kept = c.duration < h ? c.duration * c.duration / (h * h) : 1;
     double* const l = rows.multiplier(i);
     l[0] = -kept * c.push, l[1] = -kept * dot(c.drag, c.first), l[2] = -kept * dot(c.drag, c.second);
@@ -614,7 +614,7 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
     else if (c.turns)
       c.normal = unit_or(arm(Arm::turned), c.normal);
     c.is_of_sweeps = row.is_of_sweeps;
-    c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second), c.duration = h;
+    c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second), c.duration = row.share * h;
     c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
     const Vec3 before = std::exchange(c.continues, 0) ? c.impulse : Vec3{};
     c.impulse = before - (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);

@@ -247,8 +247,15 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   return is_beyond;
 }
 
+void Integrator::fit_contacts(Problem& problem, double share) {
+  if (!problem.has_used<ContactConstraint>()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) pool.items[k].fit(share, pool.multiplier(k));
+}
+
 // To the end of the step, in place of the equations of all contacts: these would close its overlaps at once.
 void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
+  fit_contacts(problem, 1);
   has_corrected_ = is_instant_ = false;
   const EnergyBalance before = energy_;
   const double share = settings_.part * part.h / step_length_;
@@ -295,6 +302,8 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   stage.tolerance *= settings_.tolerance, stage.compliance = attempt.compliance;
   stage.part = is_soft ? 1 : compliance_part(part, attempt.scheme);
   stage.is_held = holds_.count > 1;
+  // Parts of a step that only its solution needs are solved more easily with the compliances of the whole one.
+  if (settings_.max_error > 0) fit_contacts(problem, part.h / step_length_);
   problem.copy_multipliers_to(multipliers_saved_);
   (void)find_bounces(problem, part);
   const Trial trial{.scheme = attempt.scheme,

@@ -138,6 +138,7 @@ class Integrator {
   bool solve_softer_contacts(Problem&, const Stage&, AdvanceReport&);
   bool is_out_of_budget();
 
+  static void fit_contacts(Problem&, double share);
   bool find_bounces(Problem&, const Part&) const;
   static void forget_bounces(Problem&);
   bool has_impacts(const Problem&, const Stage&) const;

@@ -35,6 +35,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double drag_before[2] = {};                    ///< friction of the step before if it slipped and mu_s is above mu, N
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
+  double share = 1;                              ///< of the step, for which the compliances are
   double reference = 1;
   double pivots[2] = {};  ///< rates of the tangential rows at the end of a step in which they stick, see rate_of, m/s
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
@@ -110,6 +111,15 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
         if (has_wires)
           *blocks += product(0, 3) * by_both_sides + product(3, 0) * by_both_sides_back + product(3, 3) * by_sides;
       }
+  }
+
+  /// For a (sub-)step that is a part of the step. A place would yield in a short one by more than it moves in that, and hold
+  /// what slides. In a longer one it keeps its strain, in a shorter one its force: so its energy never rises.
+  void fit(double part, double* multipliers) {
+    const double ratio = part * part / (share * share);
+    if (ratio == 1) return;
+    normal_compliance *= ratio, compliance *= ratio, share = part;
+    for (int r = 0; r < 3 && ratio > 1; ++r) multipliers[r] /= ratio;
   }
 
   static constexpr bool is_tangent(int r) { return r > 0; }
