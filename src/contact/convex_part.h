@@ -29,7 +29,7 @@ struct ConvexPart {
   Vec3 middle;
   std::array<Vec3, 3> axes;  ///< of a box and an ellipsoid; the first is that of a cylinder and a cone
   Vec3 half;                 ///< half the sizes of the core along the axes
-  Vec3 spin;                 ///< of the body, rad/s
+  Vec3 spin;                 ///< of the body in half a step, rad
   bool is_box = false;
   double radius = 0;
   double size = 0;                   ///< of the whole part

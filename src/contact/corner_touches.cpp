@@ -98,9 +98,9 @@ void visit_rim(std::uint32_t number, const Vec3& center, const Vec3& axis, doubl
 }
 
 /// visit(feature): in the shape's frame, of those that may be nearest to a plane in the direction `down`. What is round in
-/// several ways is as round as along the way that it rolls.
+/// several ways is as round as along the way that it rolls, where it touches in the middle of the step. turn: of half a step, rad.
 template <class Visit>
-void visit_features(const Shape& shape, const Vec3& down, const Vec3& spin, Visit visit) {
+void visit_features(const Shape& shape, const Vec3& down, const Vec3& turn, Visit visit) {
   constexpr std::uint32_t rim = 1 + points_of_rim;  // numbers
   if (const auto* const s = std::get_if<Sphere>(&shape)) {
     visit({0, {}, s->radius});
@@ -121,17 +121,17 @@ void visit_features(const Shape& shape, const Vec3& down, const Vec3& spin, Visi
     for (std::uint32_t k = 0; k < (t->stretch > 0 ? 2u : 1u); ++k)
       visit_rim(rim * k, {(k ? 0.5 : -0.5) * t->stretch, 0, 0}, {0, 0, 1}, t->radius, t->tube, down, visit);
   } else if (const auto* const e = std::get_if<Ellipsoid>(&shape)) {
-    const Vec3 half = 0.5 * e->size;
-    const Vec3 scaled{half.x * down.x, half.y * down.y, half.z * down.z};
+    const Vec3 half = 0.5 * e->size, ahead = unit(down - cross(turn, down));
+    const Vec3 scaled{half.x * ahead.x, half.y * ahead.y, half.z * ahead.z};
     const Vec3 twice{half.x * scaled.x, half.y * scaled.y, half.z * scaled.z};
     const double reach = norm(scaled);
     // The radius of curvature, by the Hessian of the support function |A d|: along t, or the mean.
-    const Vec3 t = cross(spin, down), a{half.x * t.x, half.y * t.y, half.z * t.z};
+    const Vec3 t = cross(turn, ahead), a{half.x * t.x, half.y * t.y, half.z * t.z};
     const double along = dot(twice, t), squared = dot(t, t), cubed = reach * reach * reach;
     const double radius = squared > 0 ? (dot(a, a) / reach - along * along / cubed) / squared
                                       : 0.5 * (dot(half, half) / reach - dot(twice, twice) / cubed);
     const double ball = std::clamp(radius, 0.0, dot(half, half) / std::min({half.x, half.y, half.z}));
-    visit({0, (1 / reach) * twice - ball * down, ball});
+    visit({0, (1 / reach) * twice - ball * ahead, ball});
   }
 }
 

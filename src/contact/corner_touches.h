@@ -29,7 +29,8 @@ class CornerFinder {
     bool is_turned = false;
     std::uint32_t planes = 0;
   };
-  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of the body with the corners, rad/s.
+  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of the body with the corners in half
+  /// a step, rad.
   void find(const PartList& corners, const Vec3& spin, const PartList& planes, double within, const Names&,
             std::vector<Touch>& found);
 

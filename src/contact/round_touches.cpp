@@ -46,8 +46,10 @@ Clipper::End end_of_rim(const ConvexPart& part, const Vec3& center, std::uint32_
   return {center + out, part.radius, {part.number, lowest_of_rim + rim}};
 }
 
-/// A ball that is as curved as an ellipsoid along the way that it rolls.
-void set_ball(const ConvexPart& part, const Vec3& down, ConvexPart& ball) {
+/// A ball that is as curved as an ellipsoid along the way that it rolls, where it touches in the middle of the step: the place that
+/// touches at its begin made rolling one of first order.
+void set_ball(const ConvexPart& part, const Vec3& direction, ConvexPart& ball) {
+  const Vec3 turned = direction - cross(part.spin, direction), down = (1 / norm(turned)) * turned;
   const auto local = [&](const Vec3& v) {
     return Vec3{dot(v, part.axes[0]), dot(v, part.axes[1]), dot(v, part.axes[2])};
   };

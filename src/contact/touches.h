@@ -27,7 +27,7 @@ class TouchFinder {
   TouchFinder(const TouchFinder&) = delete;
   TouchFinder& operator=(const TouchFinder&) = delete;
 
-  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of each body, rad/s. way: of the first
+  /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of each body in half a step, rad. way: of the first
   /// relative to the second in the coming step, m, where known: see find_axis.
   void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
             double within, std::vector<Touch>& found, const Vec3& way = {});

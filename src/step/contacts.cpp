@@ -344,7 +344,8 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   const contact::Outline& outline = placed(outlines, *mover);
   if (other) (void)placed(outlines, *other);
   const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
-  touches_.find(outline, spins[0], outlines.described(second), spins[1], within(*mover, other), found_, way);
+  touches_.find(outline, (0.5 * h_) * spins[0], outlines.described(second), (0.5 * h_) * spins[1],
+                within(*mover, other), found_, way);
   keep_the_outermost(found_, size);
   if (found_.empty()) return false;
   ingredient::Contacts::take(model, first, second, former, found_,

@@ -38,7 +38,7 @@ TEST(Touches, have_the_gap_of_the_lowest_point_of_the_shape) {
     const Vec3 down = rotate(conjugate(q), {0, -1, 0});
     const double lowest = (position + rotate(q, shape::support(shape, down))).y;
     std::vector<Touch> found;
-    finder.find(outline_of(shape, position, q), {1, 2, 3}, ground, {}, 10, found);
+    finder.find(outline_of(shape, position, q), {1e-6, 2e-6, 3e-6}, ground, {}, 10, found);
     ASSERT_FALSE(found.empty());
     double least = std::numeric_limits<double>::infinity();
     for (const Touch& touch : found) {
@@ -117,7 +117,7 @@ TEST(Touches, of_random_pairs_have_gaps_that_are_not_larger_than_their_distance)
     const double size = std::min(size_of_box(first.solids[0]), size_of_box(second.solids[0]));
     bring_near(first.solids[0], second.solids[0], rotate(random.turn(), {1, 0, 0}), random.number(0, 0.2) * size, size);
     std::vector<Touch> found;
-    finder.find(first, random.vector(1), second, random.vector(1), 0.1 * size, found);
+    finder.find(first, random.vector(1e-6), second, random.vector(1e-6), 0.1 * size, found);
     const double distance = upper_distance(first.solids[0], second.solids[0], 1000);
     if (distance > 0.099 * size) continue;  // it went past
     ASSERT_FALSE(found.empty()) << kind << " " << other_kind;

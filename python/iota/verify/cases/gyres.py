@@ -206,7 +206,7 @@ def _rattleback(run: Run) -> None:
         ]
         word = "stable" if spin < 0 else "reversing"
         name = f"rattleback, {word} sense, 1/{per_second} s: largest error of its end, of its half length"
-        run.at_most(name, errors[-1], run.size(0.1, 0.2) if spin > 0 else run.size(2e-3, 2e-3))
+        run.at_most(name, errors[-1], run.size(0.01, 0.02) if spin > 0 else 1e-4)
         run.note(f"order of convergence, {word} sense", math.log2(errors[-2] / errors[-1]))
         run.note(f"spin at the end by the equations of motion, {word} sense, rad/s", float(spins[-1]))
         same = np.sign(math.remainder(ends[-1], 2 * math.pi)) == -np.sign(spins[-1])
