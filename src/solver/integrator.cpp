@@ -106,7 +106,11 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   newton_.add_times_to(times_of_thread());
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
-  if (may_sweep_) iterations_left_ = std::min(iterations_left_, most_iterations(settings.contact_burst(), cost));
+  constexpr double of_joints = 4;  // a blow of a machine may take longer than one of what lies about
+  if (may_sweep_) {
+    const double burst = (heap_->has_joints() ? of_joints : 1) * settings.contact_burst();
+    iterations_left_ = std::min(iterations_left_, most_iterations(burst, cost));
+  }
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
