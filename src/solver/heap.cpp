@@ -146,7 +146,7 @@ void Heap::load_bodies(const Problem& problem, double h) {
     double reach = 0;
     for (std::uint32_t k = 0; k < body.count; ++k)
       reach = std::max(reach, norm(problem.position[body.nodes[k]] - body.center));
-    // Where shared points give a body all its mass at one place, that of the place is round-off.
+    // Shared points may give a body all its mass at one place: its inertia is round-off then.
     const double largest =
         std::max({eigen.values[0], eigen.values[1], eigen.values[2], thin * reach * reach / motion.by_mass});
     for (int k = 0; k < 3; ++k)

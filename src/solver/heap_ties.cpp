@@ -190,7 +190,7 @@ void HeapTies::weigh(Tie& tie, std::span<const HeapMotion> motions) const {
     }
   for (int r = 0; r < tie.rows; ++r) tie.by_mass[r] = matrix.m[r][r];
   if (tie.rows != 3 || !tie.are_equations) return;
-  // Of a point on the line of a rod nothing turns about that: such directions have no impulse of their own.
+  // A rod does not turn about its line: a little more in each direction keeps the matrix regular.
   const double size = std::max({matrix.m[0][0], matrix.m[1][1], matrix.m[2][2]});
   for (int r = 0; r < 3; ++r) matrix.m[r][r] += 1e-12 * size;
   for (int k = 0; k < 3; ++k) {

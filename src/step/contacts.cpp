@@ -89,21 +89,28 @@ double ContactFinder::Obstacle::distance(const Vec3& place) const {
   return is_half_space ? dot(normal, place - origin) : geometry::distance(box, place);
 }
 
-void ContactFinder::list_obstacles(model::Model& model, contact::Outlines& outlines) {
+void ContactFinder::list_obstacles(const model::Model& model, const contact::Outlines& outlines) {
   obstacles_.clear();
   model.bodies.for_each([&](std::uint32_t body, const model::Body& record) {
-    if (record.kind != BodyKind::static_ || !outlines.has(body) || !model.material(body)) return;
-    const contact::Outline& outline = outlines.placed(body);
-    const bool is_sensor = model.material(body)->touches == Touches::sensor;
-    Obstacle obstacle{body, contact::bounds(outline), false, is_sensor, {}, {}};
-    if (outline.solids.size() == 1 && outline.lines.empty())
-      if (const auto* const half = std::get_if<HalfSpace>(&outline.solids[0].form->shape)) {
-        obstacle.is_half_space = true, obstacle.origin = outline.solids[0].position;
-        obstacle.normal = rotate(outline.solids[0].turn, (1 / norm(half->normal)) * half->normal);
-      }
-    obstacles_.push_back(obstacle);
+    if (record.kind == BodyKind::static_ && outlines.has(body) && model.material(body)) obstacles_.push_back(body);
   });
-  std::sort(obstacles_.begin(), obstacles_.end(), [](const Obstacle& a, const Obstacle& b) { return a.body < b.body; });
+}
+
+const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& model, contact::Outlines& outlines,
+                                                          std::uint32_t body) {
+  if (all_obstacles_.size() <= body) all_obstacles_.resize(model.bodies.slot_count());
+  Obstacle& obstacle = all_obstacles_[body];
+  if (obstacle.look == look_) return obstacle;
+  const contact::Outline& outline = outlines.placed(body);
+  obstacle = {.look = look_,
+              .box = contact::bounds(outline),
+              .is_sensor = model.material(body)->touches == Touches::sensor};
+  if (outline.solids.size() == 1 && outline.lines.empty())
+    if (const auto* const half = std::get_if<HalfSpace>(&outline.solids[0].form->shape)) {
+      obstacle.is_half_space = true, obstacle.origin = outline.solids[0].position;
+      obstacle.normal = rotate(outline.solids[0].turn, (1 / norm(half->normal)) * half->normal);
+    }
+  return obstacle;
 }
 
 void ContactFinder::begin_look(const model::Model& model, double h) {
@@ -144,19 +151,31 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
   return of_way * steps * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
-// Few obstacles are looked at one by one.
-void ContactFinder::find_obstacles(model::Model& model, const contact::Outlines& outlines) {
+// Few obstacles are looked at one by one, many by the tree.
+void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outlines) {
+  constexpr std::size_t few = 16;
+  if (movers_.empty() || obstacles_.empty()) return;
+  const contact::OutlineTree* const tree = obstacles_.size() > few ? &outlines.refresh(model.step) : nullptr;
   for (const std::uint32_t slot : movers_) {
     const Mover& mover = mover_at(model, outlines, slot);
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
     const double reach_of_stride = mover.steps > 1 ? mover.reach + within(mover, nullptr, mover.steps) : reach;
-    for (const Obstacle& obstacle : obstacles_) {
-      if (is_scripted && !obstacle.is_sensor) continue;
+    const auto look_at = [&](std::uint32_t body) {
+      const Obstacle& obstacle = obstacle_at(model, outlines, body);
+      if (is_scripted && !obstacle.is_sensor) return;
       const double distance = obstacle.distance(mover.place);
-      if (distance <= reach) pairs_.push_back({mover.body, obstacle.body});
+      if (distance <= reach) pairs_.push_back({mover.body, body});
       if (mover.steps > 1 && distance <= reach_of_stride) ingredient::Strides::note_near(model, mover.body);
+    };
+    if (!tree) {
+      for (const std::uint32_t body : obstacles_) look_at(body);
+      continue;
     }
+    const Vec3 most = reach_of_stride * Vec3{1, 1, 1};
+    tree->overlapping({mover.place - most, mover.place + most}, [&](std::uint32_t body) {
+      if (model.bodies[body].kind == BodyKind::static_ && model.material(body)) look_at(body);
+    });
   }
 }
 

@@ -43,10 +43,10 @@ class ContactFinder {
 
  private:
   struct Obstacle {
-    std::uint32_t body;
-    geometry::Bounds box;
-    bool is_half_space, is_sensor;
-    Vec3 origin, normal;                 ///< of a half-space
+    std::uint64_t look = 0;  ///< in which it was measured
+    geometry::Bounds box{};
+    bool is_half_space = false, is_sensor = false;
+    Vec3 origin{}, normal{};             ///< of a half-space
     double distance(const Vec3&) const;  ///< m, at most
   };
   /// A body that may touch others.
@@ -64,12 +64,13 @@ class ContactFinder {
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
-  void list_obstacles(model::Model&, contact::Outlines&);
+  void list_obstacles(const model::Model&, const contact::Outlines&);
+  const Obstacle& obstacle_at(const model::Model&, contact::Outlines&, std::uint32_t body);
   /// A body at the time of this look, the begin of the step or of a part of it.
   Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void begin_look(const model::Model&, double h);
   void list_movers(model::Model&, const contact::Outlines&);
-  void find_obstacles(model::Model&, const contact::Outlines&);
+  void find_obstacles(model::Model&, contact::Outlines&);
   void find_pairs(model::Model&, contact::Outlines&);
   /// A pair as it moves now, measured once for a step or a part of it.
   struct Meeting {
@@ -113,7 +114,8 @@ class ContactFinder {
   };
   // Scratch, kept for its capacity.
   Known known_;
-  std::vector<Obstacle> obstacles_;
+  std::vector<std::uint32_t> obstacles_;
+  std::vector<Obstacle> all_obstacles_;  ///< by body slot
   std::vector<Mover> all_movers_;  ///< by body slot
   std::uint64_t look_ = 0;
   std::vector<std::uint32_t> movers_;  ///< those that are awake

@@ -47,7 +47,7 @@ class Ties:
 
 
 def bodies_of(tie: Tie) -> list[Body]:
-    """Those that it ties together, without the world."""
+    """The bodies that it ties together, without the world."""
     if isinstance(tie, Constraint):
         return list(dict.fromkeys(p.body for p in tie.particles))
     return [end.body for end in tie.ends]
@@ -65,7 +65,7 @@ def can_be_copied(tie: Tie) -> bool:
 
 
 def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
-    """Those of which copies of ties need copies."""
+    """The bodies of which copies of ties need copies."""
     found: set[Particle] = set()
     for tie in ties:
         if isinstance(tie, Constraint):

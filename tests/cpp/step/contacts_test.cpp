@@ -70,6 +70,30 @@ TEST(Contacts, are_the_same_far_from_the_origin) {
   }
 }
 
+TEST(Contacts, are_the_same_among_a_hundred_obstacles_that_are_not_in_reach) {
+  std::vector<std::vector<Vec3>> ways;
+  for (const int others : {0, 100}) {
+    System system;
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 3; ++i)
+      boxes.push_back(make_solid(system, Box{{0.2, 0.2, 0.2}}, {.position = {0.1 * i, 0.5 + 0.3 * i, 0}}));
+    (void)make_ground(system, 0.5);
+    for (int i = 0; i < 8; ++i)  // steps of stairs
+      system.bodies().set_material(
+          system.bodies().create_obstacle(Box{{0.2, 0.05, 1}}, {-0.4 + 0.2 * i, 0.05 * (i % 3), 0}, {}), Material{0.3});
+    for (int i = 0; i < others; ++i)
+      system.bodies().set_material(
+          system.bodies().create_obstacle(Box{{0.2, 0.2, 0.2}}, {5 + 0.3 * (i % 10), 0.1, 0.3 * (i / 10)}, {}),
+          Material{0.3});
+    ways.emplace_back();
+    for (int step = 0; step < 120; ++step) {
+      (void)system.step(1.0 / 120);
+      for (const BodyId box : boxes) ways.back().push_back(system.bodies().center_of_mass(box));
+    }
+  }
+  EXPECT_EQ(ways[0], ways[1]);
+}
+
 TEST(Contacts, stop_a_sliding_box_after_the_way_that_friction_says) {
   for (const double friction : {0.1, 0.4, 0.8}) {
     System system;

@@ -70,7 +70,7 @@ class Row:
         return self.gap + self.thickness
 
     def behind(self, lean: float) -> tuple[float, float, float, float]:
-        """Of the one whose edge lies on the face of one with this lean: its lean, first and second derivatives by it, and the
+        """The one whose edge lies on the face of one with this lean: its lean, first and second derivatives by it, and the
         ratio of the torques of the force between them, on the one in front and against that on the one behind."""
         c, s = math.cos(lean), math.sin(lean)
         # height sin(its lean - lean) = pitch cos(lean) - thickness
