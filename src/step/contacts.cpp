@@ -102,9 +102,8 @@ const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& mo
   Obstacle& obstacle = all_obstacles_[body];
   if (obstacle.look == look_) return obstacle;
   const contact::Outline& outline = outlines.placed(body);
-  obstacle = {.look = look_,
-              .box = contact::bounds(outline),
-              .is_sensor = model.material(body)->touches == Touches::sensor};
+  obstacle = {
+      .look = look_, .box = contact::bounds(outline), .is_sensor = model.material(body)->touches == Touches::sensor};
   if (outline.solids.size() == 1 && outline.lines.empty())
     if (const auto* const half = std::get_if<HalfSpace>(&outline.solids[0].form->shape)) {
       obstacle.is_half_space = true, obstacle.origin = outline.solids[0].position;

@@ -116,7 +116,7 @@ class ContactFinder {
   Known known_;
   std::vector<std::uint32_t> obstacles_;
   std::vector<Obstacle> all_obstacles_;  ///< by body slot
-  std::vector<Mover> all_movers_;  ///< by body slot
+  std::vector<Mover> all_movers_;        ///< by body slot
   std::uint64_t look_ = 0;
   std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
