@@ -165,7 +165,7 @@ def ragdolls(count: int) -> Scene:
     scene = Scene([GROUND], seconds=5)
     for k in range(count):
         layer, rest = divmod(k, each * each)
-        x, y, z = 0.9 * (rest % each), 1.2 + 2 * layer, 0.9 * (rest // each)
+        x, y, z = 1.7 * (rest % each), 1.2 + 2 * layer, 0.5 * (rest // each)
         first = len(scene.things)
         for a, b, radius, mass in FIGURE:
             way = np.subtract(b, a)

@@ -238,13 +238,12 @@ bool Island::meets_pinned(const Model& model) const {
   return !any_ingredient([&](const auto& i) { return !i.meets_pinned(model); });
 }
 
+// The order of bodies depends on which islands have met; a restored one has another.
 model::Articulate& Island::articulate(Model& model) const {
-  return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
+  return model.articulates[model.bodies[*std::min_element(nodes_.bodies.begin(), nodes_.bodies.end())].articulate];
 }
 
-const model::Articulate& Island::articulate(const Model& model) const {
-  return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
-}
+const model::Articulate& Island::articulate(const Model& model) const { return articulate(const_cast<Model&>(model)); }
 
 void Island::try_step(const Model& model, double h, const Limits& limits) {
   if (tried_ != Tried::nothing) integrator_->take_back();

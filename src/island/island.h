@@ -215,7 +215,8 @@ class Island {
   /// Falls asleep once it has been slow for long enough, if sleep is on.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&);
   void look_whether_still(const model::Model&);
-  model::Articulate& articulate(model::Model&) const;  ///< of its first body: has the island's state between steps
+  model::Articulate& articulate(
+      model::Model&) const;  ///< of its body with the lowest slot: has the island's state between steps
   const model::Articulate& articulate(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
   std::string name_of_row(const model::Model&, const solver::RowName&) const;

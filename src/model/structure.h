@@ -152,7 +152,7 @@ struct Articulate {
   std::uint32_t velocity_dirty =
       0;                      ///< velocities were assigned and may violate constraints: project before the next step
   std::uint32_t to_wake = 0;  ///< it was touched since the last step
-  double slow_time = 0;       ///< s; of an island, at the articulate of its first body
+  double slow_time = 0;       ///< s; of an island, at the articulate of its body with the lowest slot
   std::uint64_t standing_steps = 0;  ///< since the last attempt to close a conflict
   double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
   std::uint64_t unsolved_steps = 0;  ///< in a row, of which no part was solved

@@ -142,6 +142,7 @@ void Stepper::advance_in_parts(StepReport& report) {
                                            {.is_first = round == 0, .may_cut = may_cut, .of_sweeps = of_sweeps}));
     }
     islands.update(model, editor_.parallel);
+    (void)islands.awake(model);  // islands share the budget by their sizes now, not by those of the step before
     std::size_t kept = 0;
     for (std::size_t i = 0; i < hasty_.size(); ++i) {
       island::Island* const island = islands.of_articulate(hasty_[i]);
