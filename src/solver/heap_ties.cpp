@@ -306,10 +306,9 @@ bool HeapTies::project(Problem& problem, double fraction) {
     }
   });
   newton_->find_velocity_change(frame_, rates_, change_);
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    if (!std::isfinite(change_[i].x + change_[i].y + change_[i].z)) return false;
-    problem.position[i] = frame_.position[i], problem.velocity[i] += change_[i];
-  }
+  if (!std::all_of(change_.begin(), change_.end(), [](const Vec3& v) { return is_finite(v); })) return false;
+  std::copy(frame_.position.begin(), frame_.position.end(), problem.position.begin());
+  for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] += change_[i];
   return true;
 }
 
