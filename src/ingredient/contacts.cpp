@@ -125,6 +125,7 @@ void touch(Model& model, const Contact& c, bool by_motion) {
 
 void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
   const Contact c = model.contacts[slot];
+  if (by_motion) model.dissipated += c.energy;  // of an edit it is in the account of edits
   model.contacts.destroy(slot);
   touch(model, c, by_motion);
 }
@@ -388,6 +389,7 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> slots) {
     if (c.found_in != 0) continue;
     c.found_in = model.step + 1, c.continues = 0;
     if (std::exchange(c.is_off, 1)) continue;
+    model.dissipated += c.energy;
     c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
     c.roll_rows = c.spin_rows = 0, c.twist = 0;
     touch(model, c, true);
@@ -596,7 +598,14 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const double drag = std::hypot(l[1], l[2]), most = row.largest_hold(l);
     if (c.static_friction > c.friction && drag > most) l[1] *= most / drag, l[2] *= most / drag;
     if (c.energy == 0) std::fill_n(l, 3, 0.0);  // it has left
+    row.unstored = c.energy - solver::strain_energy(row, l);
   });
+}
+
+double Contacts::after_step(Model&, double, Problem& problem) {
+  double dissipated = 0;
+  for (const solver::ContactConstraint& row : problem.items_of<solver::ContactConstraint>()) dissipated += row.unstored;
+  return dissipated;
 }
 
 void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& problem) const {

@@ -122,6 +122,7 @@ class Contacts : public NoAnswers {
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
+  double after_step(Model&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   std::string name_of_row(const Model&, solver::ItemKey) const;
 };

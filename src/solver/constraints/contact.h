@@ -47,6 +47,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   bool has_wires = false;       ///< round: two wires that cross, one along arm 2, one along arm 3
   double bends[2] = {1, 0};     ///< k_2, k_3
   bool meets = false;           ///< in this (sub-)step, by the velocities with which it begins
+  double unstored = 0;          ///< of the strain that the step before has left: other compliances store less, J
   bool leaves = false;          ///< at its end after an impact, so that its rows store nothing
 
   /// Arms 2 to 4, which do not turn with a body.

@@ -70,6 +70,19 @@ TEST(Contacts, are_the_same_far_from_the_origin) {
   }
 }
 
+/// A short step stores less of the strain that a blow has left in a long one, and a contact that ends stores nothing.
+TEST(Contacts, have_the_strain_that_is_left_of_a_blow_in_the_account_of_energy) {
+  System system;
+  (void)make_ground(system, 0.8);
+  for (int i = 0; i < 4; ++i)
+    (void)make_solid(system, Box{{0.3, 0.2, 0.4}},
+                     {.position = {0.1 * i, 0.4 + 0.5 * i, 0}, .velocity = {3, -4, 1}, .spin = {1, 30, 8}}, 0.8);
+  for (int i = 0; i < 120; ++i) {
+    const Energy energy = system.step(i % 3 == 0 ? 1.0 / 60 : 1.0 / 600).energy;
+    EXPECT_LT(std::abs(energy.balance()), 2e-4 * energy.edits) << i;  // it was 2e-2
+  }
+}
+
 TEST(Contacts, are_the_same_among_a_hundred_obstacles_that_are_not_in_reach) {
   std::vector<std::vector<Vec3>> ways;
   for (const int others : {0, 100}) {
