@@ -239,11 +239,13 @@ bool Island::meets_pinned(const Model& model) const {
 }
 
 // The order of bodies depends on which islands have met; a restored one has another.
-model::Articulate& Island::articulate(Model& model) const {
-  return model.articulates[model.bodies[*std::min_element(nodes_.bodies.begin(), nodes_.bodies.end())].articulate];
+std::uint32_t Island::keeper(const Model& model) const {
+  return model.bodies[*std::min_element(nodes_.bodies.begin(), nodes_.bodies.end())].articulate;
 }
 
-const model::Articulate& Island::articulate(const Model& model) const { return articulate(const_cast<Model&>(model)); }
+model::Articulate& Island::articulate(Model& model) const { return model.articulates[keeper(model)]; }
+
+const model::Articulate& Island::articulate(const Model& model) const { return model.articulates[keeper(model)]; }
 
 void Island::try_step(const Model& model, double h, const Limits& limits) {
   if (tried_ != Tried::nothing) integrator_->take_back();

@@ -215,8 +215,9 @@ class Island {
   /// Falls asleep once it has been slow for long enough, if sleep is on.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&);
   void look_whether_still(const model::Model&);
-  model::Articulate& articulate(
-      model::Model&) const;  ///< of its body with the lowest slot: has the island's state between steps
+  /// The articulate of its body with the lowest slot: it has the island's state between steps.
+  std::uint32_t keeper(const model::Model&) const;
+  model::Articulate& articulate(model::Model&) const;
   const model::Articulate& articulate(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
   std::string name_of_row(const model::Model&, const solver::RowName&) const;

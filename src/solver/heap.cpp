@@ -426,7 +426,7 @@ void Heap::move(double h) {
   }
 }
 
-void Heap::store(Problem& problem, double h, HeapReport& report) const {
+void Heap::store(Problem& problem, double h, HeapReport& report) {
   for (std::size_t i = 0; i < found_.all.size(); ++i) {
     const Body& body = found_.all[i];
     const Motion& motion = motions_[i];

@@ -85,7 +85,7 @@ class Heap {
   bool has_turned(std::uint32_t body) const;
   void apply(const Point&, const Vec3& impulse);
   Vec3 relative_velocity(const Point&) const;
-  void store(Problem&, double h, HeapReport&) const;
+  void store(Problem&, double h, HeapReport&);
 
   HeapBodies found_;
   HeapTies ties_;

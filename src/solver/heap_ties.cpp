@@ -2,6 +2,7 @@
 #include "solver/heap_ties.h"
 
 #include "solver/newton.h"
+#include "solver/row_rates.h"
 #include "solver/stage.h"
 
 #include <algorithm>
@@ -21,6 +22,18 @@ bool has_laws(const ConstraintPool<C>& pool, std::size_t i) {
 }
 
 }  // namespace
+
+// The ties of copies, which have no constraint, come after all others.
+template <class P, class Visit>
+std::size_t HeapTies::visit_rows(P& problem, Visit visit) {
+  std::size_t next = 0;
+  std::uint8_t number = 0;
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (; next < ties_.size() && ties_[next].pool == number; ++next) visit(ties_[next], pool);
+    ++number;
+  });
+  return next;
+}
 
 HeapSoftness::HeapSoftness(double frequency, double h) {
   constexpr double damping = 10;  // of the critical one
@@ -69,8 +82,12 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
     const HeapBodies::Copy& copy = bodies.copies[k];
     ties_.push_back({.a = bodies.owner[copy.node], .b = copy.body, .item = k, .rows = 3});
   }
-  has_frame_ = have_joints;
-  if (!have_joints) return true;
+  has_frame_ = is_frame_due_ = have_joints;
+  return true;
+}
+
+void HeapTies::build_frame(const Problem& problem) {
+  is_frame_due_ = false;
   frame_.clear();  // contacts come and go, and joints stay: then the pattern is kept
   frame_.add_nodes(problem.size());
   for (std::uint32_t i = 0; i < problem.size(); ++i) frame_.add_mass(i, problem.mass[i]);
@@ -83,27 +100,19 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
   if (!newton_) newton_ = std::make_unique<Newton>();
   newton_->compile(frame_);
   change_.resize(problem.size());
-  return true;
 }
 
-void HeapTies::begin(Problem& problem, const HeapBodies& bodies, double h) {
-  std::size_t next = 0;
-  std::uint8_t number = 0;
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (; next < ties_.size() && ties_[next].pool == number; ++next) {
-      Tie& tie = ties_[next];
-      const C& c = pool.items[tie.item];
-      tie.moves = c.is_moving();
-      for (const std::uint32_t node : pool.nodes_of(c))
-        tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
-      tie.drives = tie.moves;
-      for (int r = 0; r < C::rows; ++r) {
-        tie.law[r] = pool.has_laws() ? pool.law(tie.item)[r] : RowLaw{};
-        tie.impulse[r] = std::clamp(-h * pool.multiplier(tie.item)[r], -h * tie.law[r].upper, -h * tie.law[r].lower);
-        tie.drives = tie.drives || (tie.law[r].hold && tie.law[r].rate != 0);
-      }
+void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h) {
+  visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
+    const C& c = pool.items[tie.item];
+    tie.moves = c.is_moving();
+    for (const std::uint32_t node : pool.nodes_of(c)) tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
+    tie.drives = tie.moves;
+    for (int r = 0; r < C::rows; ++r) {
+      tie.law[r] = pool.has_laws() ? pool.law(tie.item)[r] : RowLaw{};
+      tie.impulse[r] = std::clamp(-h * pool.multiplier(tie.item)[r], -h * tie.law[r].upper, -h * tie.law[r].lower);
+      tie.drives = tie.drives || (tie.law[r].hold && tie.law[r].rate != 0);
     }
-    ++number;
   });
   for (Tie& tie : ties_) {
     tie.sum = {};
@@ -114,8 +123,7 @@ void HeapTies::begin(Problem& problem, const HeapBodies& bodies, double h) {
 void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::span<const HeapMotion> motions, double h,
                        double from, double to) {
   if (ties_.empty()) return;
-  x_.resize(problem.size());
-  for (std::uint32_t node = 0; node < problem.size(); ++node) x_[node] = problem.position[node];
+  x_ = problem.position;
   for (std::size_t i = 0; i < bodies.all.size(); ++i) {
     const HeapBody& body = bodies.all[i];
     if (body.is_driven) continue;
@@ -128,36 +136,30 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
     x_[c.nodes[0]] = c.target_start + from * (c.target - c.target_start);
     x_next_[c.nodes[0]] = c.target_start + to * (c.target - c.target_start);
   }
-  std::size_t next = 0;
-  std::uint8_t number = 0;
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (; next < ties_.size() && ties_[next].pool == number; ++next) {
-      Tie& tie = ties_[next];
-      const C& c = pool.items[tie.item];
-      pool.value(tie.item, x_.data(), from, tie.value.data());
-      tie.drift = {};
-      if (tie.moves) {
-        std::array<double, 3> later{};
-        pool.value(tie.item, x_next_.data(), to, later.data());
-        for (int r = 0; r < C::rows; ++r) tie.drift[r] = (later[r] - tie.value[r]) / h;
-      }
-      tie.way_a = tie.turn_a = tie.way_b = tie.turn_b = {};
-      const Gradients<C> gradients(c, x_.data(), from);
-      for (int i = 0; i < c.node_count(); ++i) {
-        const std::uint32_t node = c.nodes[i];
-        const bool is_of_a = tie.a != none && bodies.have(tie.a, node);
-        if (!is_of_a && !(tie.b != none && bodies.have(tie.b, node))) continue;
-        Vec3 rows[C::rows];
-        gradients.of_node(i, rows);
-        const Vec3 arm = x_[node] - bodies.all[is_of_a ? tie.a : tie.b].center_now();
-        for (int r = 0; r < C::rows; ++r) {
-          (is_of_a ? tie.way_a : tie.way_b)[r] += rows[r];
-          (is_of_a ? tie.turn_a : tie.turn_b)[r] += cross(arm, rows[r]);
-        }
-      }
-      weigh(tie, motions);
+  std::size_t next = visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
+    const C& c = pool.items[tie.item];
+    pool.value(tie.item, x_.data(), from, tie.value.data());
+    tie.drift = {};
+    if (tie.moves) {
+      std::array<double, 3> later{};
+      pool.value(tie.item, x_next_.data(), to, later.data());
+      for (int r = 0; r < C::rows; ++r) tie.drift[r] = (later[r] - tie.value[r]) / h;
     }
-    ++number;
+    tie.way_a = tie.turn_a = tie.way_b = tie.turn_b = {};
+    const Gradients<C> gradients(c, x_.data(), from);
+    for (int i = 0; i < c.node_count(); ++i) {
+      const std::uint32_t node = c.nodes[i];
+      const bool is_of_a = tie.a != none && bodies.have(tie.a, node);
+      if (!is_of_a && !(tie.b != none && bodies.have(tie.b, node))) continue;
+      Vec3 rows[C::rows];
+      gradients.of_node(i, rows);
+      const Vec3 arm = x_[node] - bodies.all[is_of_a ? tie.a : tie.b].center_now();
+      for (int r = 0; r < C::rows; ++r) {
+        (is_of_a ? tie.way_a : tie.way_b)[r] += rows[r];
+        (is_of_a ? tie.turn_a : tie.turn_b)[r] += cross(arm, rows[r]);
+      }
+    }
+    weigh(tie, motions);
   });
   for (; next < ties_.size(); ++next) {
     Tie& tie = ties_[next];
@@ -263,18 +265,15 @@ double HeapTies::add_up() {
   return std::exchange(work_, 0);
 }
 
-void HeapTies::store(Problem& problem, double h) const {
-  std::size_t next = 0;
-  std::uint8_t number = 0;
-  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-    for (; next < ties_.size() && ties_[next].pool == number; ++next)
-      for (int r = 0; r < C::rows; ++r) pool.multiplier(ties_[next].item)[r] = -ties_[next].sum[r] / h;
-    ++number;
+void HeapTies::store(Problem& problem, double h) {
+  visit_rows(problem, [&]<class C>(const Tie& tie, ConstraintPool<C>& pool) {
+    for (int r = 0; r < C::rows; ++r) pool.multiplier(tie.item)[r] = -tie.sum[r] / h;
   });
 }
 
 bool HeapTies::project(Problem& problem, double fraction) {
   if (!has_frame_) return true;
+  if (is_frame_due_) build_frame(problem);
   newton_->forget_factors();  // a restored heap has none
   frame_.position = problem.position, frame_.velocity = problem.velocity, frame_.mass = problem.mass;
   for (std::size_t i = 0; i < frame_.mass_couplings.size(); ++i)
@@ -290,19 +289,12 @@ bool HeapTies::project(Problem& problem, double fraction) {
   std::fill(displacement.begin(), displacement.end(), Vec3{});
   if (!newton_->solve(frame_, stage).converged) return false;
   std::copy(newton_->solution().begin(), newton_->solution().end(), frame_.position.begin());
-  // Rates of targets alone: what follows them has them already.
-  rates_.clear();
+  find_row_rates(frame_, fraction, rates_);
+  auto rate = rates_.begin();  // what follows a target has its rate already
   frame_.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (const C& c : pool.items) {
-      double sum[C::rows] = {};
-      const Gradients<C> gradients(c, frame_.position.data(), fraction);
-      for (int i = 0; i < c.node_count(); ++i) {
-        Vec3 rows[C::rows];
-        gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) sum[r] += dot(rows[r], frame_.velocity[c.nodes[i]]);
-      }
-      if (c.is_moving()) std::fill(sum, sum + C::rows, 0.0);
-      rates_.insert(rates_.end(), sum, sum + C::rows);
+      if (c.is_moving()) std::fill(rate, rate + C::rows, 0.0);
+      rate += C::rows;
     }
   });
   newton_->find_velocity_change(frame_, rates_, change_);

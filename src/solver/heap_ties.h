@@ -44,7 +44,7 @@ class HeapTies {
   }
 
   /// At the begin of a step in sub-steps of h seconds, with the impulses of the step before. All their places are those of the problem.
-  void begin(Problem&, const HeapBodies&, double h);
+  void begin(const Problem&, const HeapBodies&, double h);
   /// At the places of the bodies, for a sub-step from and to these fractions of the step's way of targets.
   void refresh(const Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
   void warm(std::span<HeapMotion>);
@@ -52,7 +52,7 @@ class HeapTies {
   /// Ends a sub-step. Returns the work of rows that drive, J.
   double add_up();
   /// Writes the multipliers: mean forces in h seconds.
-  void store(Problem&, double h) const;
+  void store(Problem&, double h);
   /// Moves places and velocities by the least changes in the mass norm onto the equations of the ties and of the bodies, at
   /// this fraction of the way of targets in the step. False if they were not found.
   bool project(Problem&, double fraction);
@@ -76,14 +76,18 @@ class HeapTies {
     std::array<RowLaw, 3> law;
   };
 
+  /// visit(tie, pool): each tie with a constraint. Returns how many they are.
+  template <class P, class Visit>
+  std::size_t visit_rows(P&, Visit);
+  void build_frame(const Problem&);
   void weigh(Tie&, std::span<const HeapMotion>) const;
   static double rate_of(const Tie&, int row, std::span<const HeapMotion>);
   void give(Tie&, int row, double impulse, std::span<HeapMotion>);
 
   std::vector<Tie> ties_;  // by pools, copies last
   std::vector<Vec3> x_, x_next_;
-  bool has_frame_ = false;
-  Problem frame_;  // all rows that are equations, but for contacts
+  bool has_frame_ = false, is_frame_due_ = false;  // it is built where the first step is swept: most machines are exact
+  Problem frame_;                                  // all rows that are equations, but for contacts
   std::unique_ptr<Newton> newton_;
   std::vector<double> rates_;
   std::vector<Vec3> change_;

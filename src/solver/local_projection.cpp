@@ -2,6 +2,7 @@
 #include "solver/local_projection.h"
 
 #include "solver/largest.h"
+#include "solver/row_rates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +42,10 @@ bool LocalProjection::project(Problem& problem, std::span<const std::uint32_t> c
   for (std::uint32_t reach = first_reach;; is_built = false) {
     if (!is_built && !(choose_part(problem, reach) && build_part(problem))) return false;
     load_part(problem);
-    find_rates(rates_before_);
+    find_row_rates(part_, 0, rates_before_);
     Outcome outcome = positions ? solve_positions() : Outcome::done;
     if (outcome == Outcome::done) {
-      find_rates(rates_);
+      find_row_rates(part_, 0, rates_);
       std::size_t row = 0;
       part_.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
         for (std::size_t i = 0; i < pool.items.size(); ++i)
@@ -185,23 +186,6 @@ LocalProjection::Outcome LocalProjection::solve_velocities(std::span<const doubl
   if (outcome == Outcome::done)
     for (std::size_t i = 0; i < inner_count_; ++i) part_.velocity[i] += change_[i];
   return outcome;
-}
-
-// The rate of each row.
-void LocalProjection::find_rates(std::vector<double>& rates) const {
-  rates.clear();
-  part_.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (const C& c : pool.items) {
-      double sum[C::rows] = {};
-      const Gradients<C> gradients(c, part_.position.data(), 0);
-      for (int i = 0; i < c.node_count(); ++i) {
-        Vec3 rows[C::rows];
-        gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) sum[r] += dot(rows[r], part_.velocity[c.nodes[i]]);
-      }
-      rates.insert(rates.end(), sum, sum + C::rows);
-    }
-  });
 }
 
 LocalProjection::Outcome LocalProjection::judge(std::span<const Vec3> change) {

@@ -34,7 +34,6 @@ class LocalProjection {
   void load_part(const Problem&);
   Outcome solve_positions();
   Outcome solve_velocities(std::span<const double> rates);
-  void find_rates(std::vector<double>& rates) const;
   Outcome judge(std::span<const Vec3> change);
 
   std::vector<std::uint32_t> center_;             // of the part, in order
