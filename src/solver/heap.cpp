@@ -19,7 +19,6 @@ constexpr int first_sweeps = 8;     // where contacts begin
 constexpr double fastest_push = 1;  // m/s, with which an overlap ends
 
 Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
-void set_column(Mat3& m, int k, const Vec3& v) { m.m[0][k] = v.x, m.m[1][k] = v.y, m.m[2][k] = v.z; }
 
 }  // namespace
 
@@ -292,8 +291,8 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
     Mat3 matrix;
     for (int k = 0; k < 3; ++k) {
       const Vec3 unit = unit_vector(k);
-      set_column(matrix, k,
-                 unit + resistance * (motion.by_mass * unit + cross(motion.by_inertia * cross(arm, unit), arm)));
+      matrix.set_column(k,
+                        unit + resistance * (motion.by_mass * unit + cross(motion.by_inertia * cross(arm, unit), arm)));
     }
     const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
     motion.velocity += motion.by_mass * impulse, motion.spin += motion.by_inertia * cross(arm, impulse);
@@ -412,17 +411,9 @@ void Heap::move(double h) {
     Motion& motion = motions_[i];
     if (motion.by_mass == 0) continue;
     body.moved += h * motion.velocity;
-    const Vec3 angular = rotate(body.turn, body.inertia * rotate(conjugate(body.turn), motion.spin));
-    const auto spin_of = [&](const Quaternion& turn) {
-      return rotate(turn, body.by_inertia_at_begin * rotate(conjugate(turn), angular));
-    };
+    const Vec3 angular = body.angular_momentum(motion.spin);
     const Quaternion half = multiply(turn_by((0.5 * h) * motion.spin), body.turn);
-    body.turn = normalized(multiply(turn_by(h * spin_of(half)), body.turn));
-    motion.spin = spin_of(body.turn);
-    for (int k = 0; k < 3; ++k) set_column(body.turned, k, rotate(body.turn, unit_vector(k)));
-    const Mat3 back = body.turned.transposed();
-    for (int k = 0; k < 3; ++k)
-      set_column(motion.by_inertia, k, body.turned * (body.by_inertia_at_begin * (back * unit_vector(k))));
+    body.turn_to(normalized(multiply(turn_by(h * body.spin_of(angular, half)), body.turn)), angular, motion);
   }
 }
 
@@ -486,8 +477,8 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   rebound(h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
+  report.are_joints_met = ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1));
   store(problem, h, report);
-  report.are_joints_met = ties_.project(problem, fraction);
   return report;
 }
 

@@ -17,6 +17,15 @@ bool are_equations(const ConstraintPool<DistanceConstraint>& pool, std::size_t i
 
 }  // namespace
 
+void HeapBody::turn_to(const Quaternion& to, const Vec3& angular_momentum, HeapMotion& motion) {
+  constexpr Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  turn = to;
+  motion.spin = spin_of(angular_momentum, turn);
+  for (int k = 0; k < 3; ++k) turned.set_column(k, rotate(turn, axes[k]));
+  const Mat3 back = turned.transposed();
+  for (int k = 0; k < 3; ++k) motion.by_inertia.set_column(k, turned * (by_inertia_at_begin * (back * axes[k])));
+}
+
 bool HeapBodies::find(const Problem& problem) {
   all.clear(), copies.clear(), couplings.clear();
   is_target.assign(problem.size(), 0);

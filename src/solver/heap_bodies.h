@@ -11,6 +11,13 @@
 
 namespace iota::solver {
 
+/// All that a sweep needs of a body. Of what is driven, and of the world: zero.
+struct HeapMotion {
+  Vec3 velocity, spin;  ///< m/s, rad/s
+  double by_mass = 0;   ///< 1/kg
+  Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
+};
+
 /// A rigid body of a Heap: points that all have lengths between each other. Bodies may share points.
 struct HeapBody {
   static constexpr std::size_t most_points = 4;
@@ -29,13 +36,12 @@ struct HeapBody {
 
   Vec3 arm_now(std::uint32_t k) const { return turned * arms[k]; }
   Vec3 center_now() const { return center + moved; }
-};
-
-/// All that a sweep needs of a body. Of what is driven, and of the world: zero.
-struct HeapMotion {
-  Vec3 velocity, spin;  ///< m/s, rad/s
-  double by_mass = 0;   ///< 1/kg
-  Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
+  Vec3 angular_momentum(const Vec3& spin) const { return rotate(turn, inertia * rotate(conjugate(turn), spin)); }
+  Vec3 spin_of(const Vec3& angular_momentum, const Quaternion& turned_by) const {
+    return rotate(turned_by, by_inertia_at_begin * rotate(conjugate(turned_by), angular_momentum));
+  }
+  /// Turns it and its inertia; the spin is that of this angular momentum.
+  void turn_to(const Quaternion&, const Vec3& angular_momentum, HeapMotion&);
 };
 
 /// The bodies of a problem. A point that several bodies share belongs to the first of them, the others have a copy of it: its mass

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/heap_ties.h"
 
-#include "solver/newton.h"
-#include "solver/row_rates.h"
-#include "solver/stage.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,14 +37,9 @@ HeapSoftness::HeapSoftness(double frequency, double h) {
   rate = omega / a1, mass = a2 / (1 + a2), impulse = 1 / (1 + a2);
 }
 
-HeapTies::HeapTies() = default;
-HeapTies::~HeapTies() = default;
-HeapTies::HeapTies(HeapTies&&) noexcept = default;
-HeapTies& HeapTies::operator=(HeapTies&&) noexcept = default;
-
 bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
   ties_.clear();
-  bool can_sweep = true, have_joints = !bodies.copies.empty();
+  bool can_sweep = true;
   std::uint8_t number = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (std::is_same_v<C, ContactConstraint>) return void(++number);
@@ -72,7 +63,6 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
         }
       if constexpr (ConeConstraint<C>) can_sweep = false;
       if (tie.a == none) continue;
-      have_joints = have_joints || tie.are_equations;
       ties_.push_back(tie);
     }
     ++number;
@@ -82,30 +72,17 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
     const HeapBodies::Copy& copy = bodies.copies[k];
     ties_.push_back({.a = bodies.owner[copy.node], .b = copy.body, .item = k, .rows = 3});
   }
-  has_frame_ = is_frame_due_ = have_joints;
-  return true;
-}
-
-void HeapTies::build_frame(const Problem& problem) {
-  is_frame_due_ = false;
-  frame_.clear();  // contacts come and go, and joints stay: then the pattern is kept
-  frame_.add_nodes(problem.size());
-  for (std::uint32_t i = 0; i < problem.size(); ++i) frame_.add_mass(i, problem.mass[i]);
-  for (const auto& c : problem.mass_couplings) frame_.couple_masses(c.a, c.b, c.mass);
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (!std::is_same_v<C, ContactConstraint>)
-      for (std::size_t i = 0; i < pool.items.size(); ++i)
-        if (!has_laws(pool, i)) frame_.add(pool.items[i], {0, {}, static_cast<std::uint32_t>(i)});
-  });
-  if (!newton_) newton_ = std::make_unique<Newton>();
-  newton_->compile(frame_);
-  change_.resize(problem.size());
+  equations_.clear();
+  std::vector<DelassusFactor::Ends> ends;
+  for (std::uint32_t k = 0; k < ties_.size(); ++k)
+    if (ties_[k].are_equations) equations_.push_back(k), ends.push_back({ties_[k].a, ties_[k].b});
+  return factor_.analyze(ends, static_cast<std::uint32_t>(bodies.all.size()));
 }
 
 void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h) {
   visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
     const C& c = pool.items[tie.item];
-    tie.moves = c.is_moving();
+    tie.moves = c.is_moving(), tie.size = c.reference_length();
     for (const std::uint32_t node : pool.nodes_of(c)) tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
     tie.drives = tie.moves;
     for (int r = 0; r < C::rows; ++r) {
@@ -116,7 +93,8 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
   });
   for (Tie& tie : ties_) {
     tie.sum = {};
-    if (tie.pool == of_copies) tie.impulse = {};
+    if (tie.pool != of_copies) continue;
+    tie.impulse = {}, tie.size = norm(bodies.all[tie.b].arms[bodies.copies[tie.item].place]);
   }
 }
 
@@ -271,36 +249,89 @@ void HeapTies::store(Problem& problem, double h) {
   });
 }
 
-bool HeapTies::project(Problem& problem, double fraction) {
-  if (!has_frame_) return true;
-  if (is_frame_due_) build_frame(problem);
-  newton_->forget_factors();  // a restored heap has none
-  frame_.position = problem.position, frame_.velocity = problem.velocity, frame_.mass = problem.mass;
-  for (std::size_t i = 0; i < frame_.mass_couplings.size(); ++i)
-    frame_.mass_couplings[i].mass = problem.mass_couplings[i].mass;
-  frame_.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-    const auto& items = problem.pool_of<C>().items;
-    for (std::size_t i = 0; i < pool.items.size(); ++i) pool.items[i] = items[pool.keys[i].slot];
+bool HeapTies::are_met() const {
+  constexpr double finest = 1e-11;
+  return std::all_of(equations_.begin(), equations_.end(), [&](std::uint32_t k) {
+    const Tie& tie = ties_[k];
+    return std::all_of(tie.value.begin(), tie.value.begin() + tie.rows,
+                       [&](double value) { return std::abs(value) <= finest * tie.size; });
   });
-  frame_.clear_multipliers();
-  Stage stage = Stage::projection();
-  stage.fraction = fraction, stage.max_iterations = 20;
-  const auto displacement = newton_->displacement();
-  std::fill(displacement.begin(), displacement.end(), Vec3{});
-  if (!newton_->solve(frame_, stage).converged) return false;
-  std::copy(newton_->solution().begin(), newton_->solution().end(), frame_.position.begin());
-  find_row_rates(frame_, fraction, rates_);
-  auto rate = rates_.begin();  // what follows a target has its rate already
-  frame_.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (const C& c : pool.items) {
-      if (c.is_moving()) std::fill(rate, rate + C::rows, 0.0);
-      rate += C::rows;
+}
+
+void HeapTies::factorize(std::span<const HeapMotion> motions) {
+  factor_.factorize([&](std::uint32_t i, std::uint32_t j) {
+    const Tie &one = ties_[equations_[i]], &two = ties_[equations_[j]];
+    Mat3 block;
+    const auto add = [&](std::uint32_t body, const auto& way_one, const auto& turn_one, std::uint32_t other,
+                         const auto& way_two, const auto& turn_two) {
+      if (body == none || body != other) return;
+      const HeapMotion& m = motions[body];
+      for (int s = 0; s < two.rows; ++s) {
+        const Vec3 way = m.by_mass * way_two[s], turn = m.by_inertia * turn_two[s];
+        for (int r = 0; r < one.rows; ++r) block.m[r][s] += dot(way_one[r], way) + dot(turn_one[r], turn);
+      }
+    };
+    add(one.a, one.way_a, one.turn_a, two.a, two.way_a, two.turn_a);
+    add(one.a, one.way_a, one.turn_a, two.b, two.way_b, two.turn_b);
+    add(one.b, one.way_b, one.turn_b, two.a, two.way_a, two.turn_a);
+    add(one.b, one.way_b, one.turn_b, two.b, two.way_b, two.turn_b);
+    return block;
+  });
+}
+
+template <class Rows>
+void HeapTies::find_changes(std::span<const HeapMotion> motions, Rows rows) {
+  answers_.resize(equations_.size());
+  for (std::size_t i = 0; i < equations_.size(); ++i) {
+    const Tie& tie = ties_[equations_[i]];
+    answers_[i] = {rows(tie, 0), tie.rows > 1 ? rows(tie, 1) : 0, tie.rows > 2 ? rows(tie, 2) : 0};
+  }
+  factor_.solve(answers_);
+  changes_.assign(motions.size(), {});
+  for (std::size_t i = 0; i < equations_.size(); ++i) {
+    const Tie& tie = ties_[equations_[i]];
+    const double impulses[3] = {answers_[i].x, answers_[i].y, answers_[i].z};
+    for (int r = 0; r < tie.rows; ++r) {
+      if (tie.a != none)
+        changes_[tie.a].velocity -= impulses[r] * tie.way_a[r], changes_[tie.a].spin -= impulses[r] * tie.turn_a[r];
+      if (tie.b != none)
+        changes_[tie.b].velocity -= impulses[r] * tie.way_b[r], changes_[tie.b].spin -= impulses[r] * tie.turn_b[r];
     }
-  });
-  newton_->find_velocity_change(frame_, rates_, change_);
-  if (!std::all_of(change_.begin(), change_.end(), [](const Vec3& v) { return is_finite(v); })) return false;
-  std::copy(frame_.position.begin(), frame_.position.end(), problem.position.begin());
-  for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] += change_[i];
+  }
+  for (std::size_t b = 0; b < motions.size(); ++b)
+    changes_[b].velocity = motions[b].by_mass * changes_[b].velocity,
+    changes_[b].spin = motions[b].by_inertia * changes_[b].spin;
+}
+
+bool HeapTies::project(const Problem& problem, HeapBodies& bodies, std::span<HeapMotion> motions, double h, double at,
+                       double later) {
+  constexpr int most_iterations = 20, passes = 2;  // the second removes the errors of a factor at the places before
+  if (equations_.empty()) return true;
+  bodies_before_ = bodies.all;
+  motions_before_.assign(motions.begin(), motions.end());
+  refresh(problem, bodies, motions, h, at, later);
+  for (int i = 0; i == 0 || !are_met(); ++i) {
+    if (i == most_iterations) {
+      bodies.all = bodies_before_;
+      std::copy(motions_before_.begin(), motions_before_.end(), motions.begin());
+      return false;
+    }
+    factorize(motions);
+    find_changes(motions, [](const Tie& tie, int r) { return tie.value[r]; });
+    for (std::size_t b = 0; b < bodies.all.size(); ++b) {
+      HeapBody& body = bodies.all[b];
+      if (motions[b].by_mass == 0) continue;
+      body.moved += changes_[b].velocity;
+      body.turn_to(normalized(multiply(turn_by(changes_[b].spin), body.turn)), body.angular_momentum(motions[b].spin),
+                   motions[b]);
+    }
+    refresh(problem, bodies, motions, h, at, later);
+  }
+  for (int pass = 0; pass < passes; ++pass) {
+    find_changes(motions, [&](const Tie& tie, int r) { return rate_of(tie, r, motions); });
+    for (std::size_t b = 0; b < motions.size(); ++b)
+      motions[b].velocity += changes_[b].velocity, motions[b].spin += changes_[b].spin;
+  }
   return true;
 }
 

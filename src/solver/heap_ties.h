@@ -2,18 +2,16 @@
 #pragma once
 
 #include "math/mat3.h"
+#include "solver/delassus_factor.h"
 #include "solver/heap_bodies.h"
 #include "solver/problem.h"
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 namespace iota::solver {
-
-class Newton;
 
 /// How a row answers to what is open: by an impulse that closes it with a frequency and damping that no sub-step
 /// overshoots, or not at all.
@@ -29,12 +27,8 @@ struct HeapSoftness {
 /// these rows alone, so that joints are exact.
 class HeapTies {
  public:
-  HeapTies();
-  ~HeapTies();
-  HeapTies(HeapTies&&) noexcept;
-  HeapTies& operator=(HeapTies&&) noexcept;
-
-  /// After a change of structure. False if a row acts on more than two bodies that are free, or is a cone but no contact.
+  /// After a change of structure. False if a row acts on more than two bodies that are free, or is a cone but no contact,
+  /// or if many equations act on one body.
   bool find(const Problem&, const HeapBodies&);
   bool are_none() const { return ties_.empty(); }
   /// visit(a, b): each pair of bodies that a tie connects; one of them may be HeapBodies::none.
@@ -53,9 +47,10 @@ class HeapTies {
   double add_up();
   /// Writes the multipliers: mean forces in h seconds.
   void store(Problem&, double h);
-  /// Moves places and velocities by the least changes in the mass norm onto the equations of the ties and of the bodies, at
-  /// this fraction of the way of targets in the step. False if they were not found.
-  bool project(Problem&, double fraction);
+  /// Moves bodies and their velocities by the least changes in the mass norm onto the equations of the ties, at the first of these
+  /// fractions of the way of targets in the step. They reach the second one h seconds later. False, without a
+  /// change, if there are no such places.
+  bool project(const Problem&, HeapBodies&, std::span<HeapMotion>, double h, double at, double later);
 
  private:
   static constexpr std::uint32_t none = HeapBodies::none;
@@ -70,6 +65,7 @@ class HeapTies {
     // In a sub-step, each of the rows.
     std::array<Vec3, 3> way_a, turn_a, way_b, turn_b;  ///< the rate of its value by the velocities and spins
     std::array<double, 3> value{}, drift{};            ///< drift: rate of the value by targets alone
+    double size = 0;                                   ///< length of reference of the value, m
     Mat3 mass;                                         ///< of equations: the inverse of what an impulse changes
     std::array<double, 3> by_mass{};                   ///< of a row alone
     std::array<double, 3> impulse{}, sum{};
@@ -79,18 +75,23 @@ class HeapTies {
   /// visit(tie, pool): each tie with a constraint. Returns how many they are.
   template <class P, class Visit>
   std::size_t visit_rows(P&, Visit);
-  void build_frame(const Problem&);
+  bool are_met() const;
+  void factorize(std::span<const HeapMotion>);
+  /// The changes of all bodies by impulses that take this from each row: rows(tie, r). Changes have no masses.
+  template <class Rows>
+  void find_changes(std::span<const HeapMotion>, Rows);
   void weigh(Tie&, std::span<const HeapMotion>) const;
   static double rate_of(const Tie&, int row, std::span<const HeapMotion>);
   void give(Tie&, int row, double impulse, std::span<HeapMotion>);
 
   std::vector<Tie> ties_;  // by pools, copies last
   std::vector<Vec3> x_, x_next_;
-  bool has_frame_ = false, is_frame_due_ = false;  // it is built where the first step is swept: most machines are exact
-  Problem frame_;                                  // all rows that are equations, but for contacts
-  std::unique_ptr<Newton> newton_;
-  std::vector<double> rates_;
-  std::vector<Vec3> change_;
+  // Of the equations: their ties, and the factor that projects onto them.
+  std::vector<std::uint32_t> equations_;
+  DelassusFactor factor_;
+  std::vector<Vec3> answers_;
+  std::vector<HeapBody> bodies_before_;
+  std::vector<HeapMotion> motions_before_, changes_;
   double work_ = 0;  // of rows that drive, in a sub-step, J
 };
 
