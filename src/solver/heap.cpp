@@ -212,15 +212,15 @@ void Heap::load_points(Problem& problem, double h, double rate) {
       origin = -1.0 * c.constant[0], other = -1.0 * c.constant_start[1];
     const Vec3 tangent = c.arm(3, x, 1), turned = c.arm(2, x, 1), way = center - origin;
     const Vec3 off = c.off(way, turned, tangent);
-    point.normal = unit_or(c.is_round ? off : turned, up);
-    point.first = unit_or(tangent - dot(tangent, point.normal) * point.normal, any_perpendicular(point.normal));
-    point.second = cross(point.normal, point.first);
-    point.gap = begin.gap = c.is_round ? norm(off) - c.radius : dot(point.normal, way) - c.radius;
+    const Vec3 normal = point.normal.way = unit_or(c.is_round ? off : turned, up);
+    point.first.way = unit_or(tangent - dot(tangent, normal) * normal, any_perpendicular(normal));
+    point.second.way = cross(normal, point.first.way);
+    point.gap = begin.gap = c.is_round ? norm(off) - c.radius : dot(normal, way) - c.radius;
     point.friction = c.friction;
     // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
-    const Vec3 at = center + dot(touching - center, point.normal) * point.normal;
+    const Vec3 at = center + dot(touching - center, normal) * normal;
     const Vec3 belt = rate * (c.constant[1] - c.constant_start[1]);
-    point.drift = belt - dot(belt, point.normal) * point.normal;
+    begin.drift = belt - dot(belt, normal) * normal;
     const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
     const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
     const auto load_side = [&](std::uint32_t& b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
@@ -229,18 +229,19 @@ void Heap::load_points(Problem& problem, double h, double rate) {
         arm = at - found_.all[b].center, gap_arm = gap_place - found_.all[b].center;
         return;
       }
-      if (b != none) point.drift += sign * moving;
-      b = static_cast<std::uint32_t>(found_.all.size()), point.is_at_rest = true;
+      if (b != none) begin.drift += sign * moving;
+      b = static_cast<std::uint32_t>(found_.all.size()), begin.is_at_rest = true;
     };
     load_side(point.a, center, drift_a, 1, begin.arm_a, begin.gap_a);
     load_side(point.b, origin, drift_b, -1, begin.arm_b, begin.gap_b);
-    point.arm_a = begin.arm_a, point.arm_b = begin.arm_b;
+    for (Line* const line : {&point.normal, &point.first, &point.second}) line->drift = dot(begin.drift, line->way);
+    turn_lines(point, begin.arm_a, begin.arm_b);
     weigh(point);
     const double* const l = pool.multiplier(i);
     const Vec3 old = -(l[1] * tangent + l[2] * c.arm(4, x, 1));
-    point.impulse = -h * l[0];
-    point.impulse_first = h * dot(old, point.first), point.impulse_second = h * dot(old, point.second);
-    begin.approach = -dot(point.normal, relative_velocity(point));
+    point.normal.impulse = -h * l[0];
+    point.first.impulse = h * dot(old, point.first.way), point.second.impulse = h * dot(old, point.second.way);
+    begin.approach = -rate_of(point, point.normal);
     has_new_points_ = has_new_points_ || l[0] == 0;
     by_height_.push_back({-dot(at, up), static_cast<std::uint32_t>(points_.size())});
     points_.push_back(point), begins_.push_back(begin);
@@ -300,15 +301,15 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
   }
 }
 
-void Heap::apply(const Point& point, const Vec3& impulse) {
+void Heap::give(const Point& point, const Line& line, double impulse) {
   Motion &a = motions_[point.a], &b = motions_[point.b];
-  a.velocity += a.by_mass * impulse, a.spin += a.by_inertia * cross(point.arm_a, impulse);
-  b.velocity -= b.by_mass * impulse, b.spin -= b.by_inertia * cross(point.arm_b, impulse);
+  a.velocity += (a.by_mass * impulse) * line.way, a.spin += impulse * line.spin_a;
+  b.velocity -= (b.by_mass * impulse) * line.way, b.spin -= impulse * line.spin_b;
 }
 
-Vec3 Heap::relative_velocity(const Point& point) const {
+double Heap::rate_of(const Point& point, const Line& line) const {
   const Motion &a = motions_[point.a], &b = motions_[point.b];
-  return point.drift + a.velocity + cross(a.spin, point.arm_a) - b.velocity - cross(b.spin, point.arm_b);
+  return line.drift + dot(line.way, a.velocity - b.velocity) + dot(line.turn_a, a.spin) - dot(line.turn_b, b.spin);
 }
 
 void Heap::sweep(double h, const HeapSoftness& soft, int times) {
@@ -322,32 +323,31 @@ void Heap::sweep(double h, const HeapSoftness& soft, int times) {
 void Heap::solve_point(Point& point, double h, const HeapSoftness& soft) {
   Motion &a = motions_[point.a], &b = motions_[point.b];
   Vec3 velocity_a = a.velocity, spin_a = a.spin, velocity_b = b.velocity, spin_b = b.spin;
-  const auto slip = [&] {
-    return point.drift + velocity_a + cross(spin_a, point.arm_a) - velocity_b - cross(spin_b, point.arm_b);
+  const auto rate_of = [&](const Line& line) {
+    return line.drift + dot(line.way, velocity_a - velocity_b) + dot(line.turn_a, spin_a) - dot(line.turn_b, spin_b);
   };
-  const auto give = [&](const Vec3& impulse) {
-    velocity_a += a.by_mass * impulse, spin_a += a.by_inertia * cross(point.arm_a, impulse);
-    velocity_b -= b.by_mass * impulse, spin_b -= b.by_inertia * cross(point.arm_b, impulse);
+  const auto give = [&](const Line& line, double impulse) {
+    velocity_a += (a.by_mass * impulse) * line.way, spin_a += impulse * line.spin_a;
+    velocity_b -= (b.by_mass * impulse) * line.way, spin_b -= impulse * line.spin_b;
   };
-  const double approach = dot(point.normal, slip()), before = point.impulse;
+  Line &normal = point.normal, &first = point.first, &second = point.second;
+  const double before = normal.impulse;
   double push = point.gap / h, of_mass = 1, of_impulse = 0;
   if (point.gap <= 0)
     push = std::max(soft.rate * point.gap, -fastest_push), of_mass = soft.mass, of_impulse = soft.impulse;
-  point.impulse = std::max(0.0, before - point.mass * of_mass * (approach + push) - of_impulse * before);
-  if (point.impulse == 0 && before == 0) return;
-  give((point.impulse - before) * point.normal);
+  normal.impulse = std::max(0.0, before - normal.mass * of_mass * (rate_of(normal) + push) - of_impulse * before);
+  if (normal.impulse == 0 && before == 0) return;
+  give(normal, normal.impulse - before);
   if (point.friction > 0) {
-    const Vec3 way = slip();
-    const double first = point.impulse_first, second = point.impulse_second;
-    point.impulse_first -= point.mass_first * dot(point.first, way);
-    point.impulse_second -= point.mass_second * dot(point.second, way);
-    const double most = point.friction * point.impulse,
-                 square = point.impulse_first * point.impulse_first + point.impulse_second * point.impulse_second;
+    const double before_first = first.impulse, before_second = second.impulse;
+    first.impulse -= first.mass * rate_of(first), second.impulse -= second.mass * rate_of(second);
+    const double most = point.friction * normal.impulse,
+                 square = first.impulse * first.impulse + second.impulse * second.impulse;
     if (square > most * most) {
       const double part = most / std::sqrt(square);
-      point.impulse_first *= part, point.impulse_second *= part;
+      first.impulse *= part, second.impulse *= part;
     }
-    give((point.impulse_first - first) * point.first + (point.impulse_second - second) * point.second);
+    give(first, first.impulse - before_first), give(second, second.impulse - before_second);
   }
   a.velocity = velocity_a, a.spin = spin_a, b.velocity = velocity_b, b.spin = spin_b;
 }
@@ -358,23 +358,27 @@ void Heap::rebound(double least) {
     const Point& point = points_[i];
     PointBegin& begin = begins_[i];
     if (begin.restitution == 0 || begin.approach <= least || begin.sum == 0) continue;
-    const double missing = begin.restitution * begin.approach - dot(point.normal, relative_velocity(point));
-    const double impulse = std::max(0.0, point.mass * missing);
+    const double missing = begin.restitution * begin.approach - rate_of(point, point.normal);
+    const double impulse = std::max(0.0, point.normal.mass * missing);
     begin.sum += impulse;
-    apply(point, impulse * point.normal);
+    give(point, point.normal, impulse);
   }
 }
 
-// The masses against which its impulses act, of both bodies as they are turned now.
+// The rates of its lines by spins, and what impulses add to these, with bodies that are turned as now.
+void Heap::turn_lines(Point& point, const Vec3& arm_a, const Vec3& arm_b) const {
+  const Motion &a = motions_[point.a], &b = motions_[point.b];
+  for (Line* const line : {&point.normal, &point.first, &point.second}) {
+    if (a.by_mass > 0) line->turn_a = cross(arm_a, line->way), line->spin_a = a.by_inertia * line->turn_a;
+    if (b.by_mass > 0) line->turn_b = cross(arm_b, line->way), line->spin_b = b.by_inertia * line->turn_b;
+  }
+}
+
+// The masses against which its impulses act.
 void Heap::weigh(Point& point) const {
   const Motion &a = motions_[point.a], &b = motions_[point.b];
-  const auto mass_along = [&](const Vec3& direction) {
-    const Vec3 moment_a = cross(point.arm_a, direction), moment_b = cross(point.arm_b, direction);
-    return 1 /
-           (a.by_mass + dot(moment_a, a.by_inertia * moment_a) + b.by_mass + dot(moment_b, b.by_inertia * moment_b));
-  };
-  point.mass = mass_along(point.normal);
-  point.mass_first = mass_along(point.first), point.mass_second = mass_along(point.second);
+  for (Line* const line : {&point.normal, &point.first, &point.second})
+    line->mass = 1 / (a.by_mass + dot(line->turn_a, line->spin_a) + b.by_mass + dot(line->turn_b, line->spin_b));
 }
 
 // A thin rod that turns has another mass at the same place: with that of the begin its impulses grew without bound.
@@ -389,18 +393,16 @@ void Heap::refresh_points(double h) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Point& point = points_[i];
     PointBegin& begin = begins_[i];
-    begin.drifted += h * point.drift;
+    begin.drifted += h * begin.drift;
     Vec3 closing = begin.drifted;
     const auto moved = [&](std::uint32_t b, const Vec3& arm) {
       return found_.all[b].moved + found_.all[b].turned * arm - arm;
     };
     if (point.a < world) closing += moved(point.a, begin.gap_a);
     if (point.b < world) closing -= moved(point.b, begin.gap_b);
-    point.gap = begin.gap + dot(point.normal, closing);
-    if (!point.is_at_rest) {
-      const Vec3 apart = 0.5 * (found_.all[point.a].moved - found_.all[point.b].moved);
-      point.arm_a = begin.arm_a - apart, point.arm_b = begin.arm_b + apart;
-    }
+    point.gap = begin.gap + dot(point.normal.way, closing);
+    const Vec3 apart = begin.is_at_rest ? Vec3{} : 0.5 * (found_.all[point.a].moved - found_.all[point.b].moved);
+    turn_lines(point, begin.arm_a - apart, begin.arm_b + apart);
     if (has_turned(point.a) || has_turned(point.b)) weigh(point);
   }
 }
@@ -437,12 +439,12 @@ void Heap::store(Problem& problem, double h, HeapReport& report) {
     const PointBegin& begin = begins_[i];
     ContactConstraint& c = pool.items[begin.row];
     double* const l = pool.multiplier(begin.row);
-    const Vec3 drag = (1 / h) * (begin.sum_first * point.first + begin.sum_second * point.second);
+    const Vec3 drag = (1 / h) * (begin.sum_first * point.first.way + begin.sum_second * point.second.way);
     l[0] = -begin.sum / h;
     l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
     c.is_of_sweeps = true;
     for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
-    report.external_work -= dot(begin.sum * point.normal + h * drag, point.drift);
+    report.external_work -= dot(begin.sum * point.normal.way + h * drag, begin.drift);
     report.depth = std::max(report.depth, -point.gap);
   }
 }
@@ -460,8 +462,7 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     for (const Point& point : points_)
-      apply(point,
-            point.impulse * point.normal + point.impulse_first * point.first + point.impulse_second * point.second);
+      for (const Line* const line : {&point.normal, &point.first, &point.second}) give(point, *line, line->impulse);
     ties_.warm(motions_);
     sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
     move(part);
@@ -469,8 +470,8 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
     ties_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
     sweep(part, plain, sweeps);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      begins_[i].sum += points_[i].impulse;
-      begins_[i].sum_first += points_[i].impulse_first, begins_[i].sum_second += points_[i].impulse_second;
+      begins_[i].sum += points_[i].normal.impulse;
+      begins_[i].sum_first += points_[i].first.impulse, begins_[i].sum_second += points_[i].second.impulse;
     }
     report.external_work += ties_.add_up();
   }

@@ -43,26 +43,31 @@ class Heap {
   using Body = HeapBody;
   using Motion = HeapMotion;
 
+  /// One of the three directions in which a place resists. All of a sweep is in it, but for the motions of the bodies.
+  struct Line {
+    Vec3 way;
+    Vec3 turn_a, turn_b;  ///< the rate of the way by the spins
+    Vec3 spin_a, spin_b;  ///< what an impulse of 1 N s adds to the spins
+    double drift = 0;     ///< rate by driven sides, m/s
+    double mass = 0;      ///< kg
+    double impulse = 0;   ///< in a sub-step, N s
+  };
   /// A place where two bodies touch. Body `none` in the loading of it: the world, the last of the motions.
   struct Point {
     std::uint32_t a = none, b = none;
-    bool is_at_rest = false;  ///< one side does not move
     double friction = 0;
-    Vec3 normal, first, second;
-    Vec3 arm_a, arm_b;                                          ///< from the centers to where the forces act, now
-    Vec3 drift;                                                 ///< velocity of driven sides, m/s
-    double gap = 0;                                             ///< m
-    double mass = 0, mass_first = 0, mass_second = 0;           ///< kg
-    double impulse = 0, impulse_first = 0, impulse_second = 0;  ///< in a sub-step, N s
+    double gap = 0;  ///< m
+    Line normal, first, second;
   };
   /// The rest of it, which sweeps do not need.
   struct PointBegin {
     std::uint32_t row = 0;
+    bool is_at_rest = false;  ///< one side does not move
     double restitution = 0;
     double approach = 0;                            ///< at the begin, m/s
     Vec3 arm_a, arm_b;                              ///< at the begin
     Vec3 gap_a, gap_b;                              ///< from the centers to the places that have the gap, at the begin
-    Vec3 drifted;                                   ///< way of driven sides since the begin, m
+    Vec3 drift, drifted;                            ///< velocity of driven sides, m/s; their way since the begin, m
     double gap = 0;                                 ///< at the begin, m
     double sum = 0, sum_first = 0, sum_second = 0;  ///< impulses in the step, N s
   };
@@ -80,11 +85,12 @@ class Heap {
   void solve_point(Point&, double h, const HeapSoftness&);
   void rebound(double least);
   void refresh_points(double h);
+  void turn_lines(Point&, const Vec3& arm_a, const Vec3& arm_b) const;
   void weigh(Point&) const;
   bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
   bool has_turned(std::uint32_t body) const;
-  void apply(const Point&, const Vec3& impulse);
-  Vec3 relative_velocity(const Point&) const;
+  void give(const Point&, const Line&, double impulse);
+  double rate_of(const Point&, const Line&) const;
   void store(Problem&, double h, HeapReport&);
 
   HeapBodies found_;
