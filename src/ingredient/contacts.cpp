@@ -123,9 +123,14 @@ void touch(Model& model, const Contact& c, bool by_motion) {
     if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.touch_rows(body, wakes);
 }
 
+/// A contact that motion ends does not keep its strain. An edit between the same two steps has not taken it.
+void dissipate_strain(Model& model, const Contact& c) {
+  model.dissipated += c.energy, model.booked_energy -= c.energy;
+}
+
 void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
   const Contact c = model.contacts[slot];
-  if (by_motion) model.dissipated += c.energy;  // of an edit it is in the account of edits
+  if (by_motion) dissipate_strain(model, c);  // of an edit it is in the account of edits
   model.contacts.destroy(slot);
   touch(model, c, by_motion);
 }
@@ -389,7 +394,7 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> slots) {
     if (c.found_in != 0) continue;
     c.found_in = model.step + 1, c.continues = 0;
     if (std::exchange(c.is_off, 1)) continue;
-    model.dissipated += c.energy;
+    dissipate_strain(model, c);
     c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
     c.roll_rows = c.spin_rows = 0, c.twist = 0;
     touch(model, c, true);

@@ -132,5 +132,25 @@ TEST(Contacts, pass_the_audit_after_random_edits_of_what_lies) {
   }
 }
 
+TEST(Contacts, that_blows_begin_and_end_have_all_their_strain_in_one_account) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> any;
+    System system;
+    system.set_usual_material(Material{0.8});
+    system.bodies().create_obstacle(HalfSpace{{0, 1, 0}});
+    for (int i = 0; i < 4; ++i) {
+      const Quaternion turned = normalized(Quaternion{any(random), any(random), any(random), any(random)});
+      const BodyId box = system.bodies().create(
+          Box{{0.3, 0.2, 0.4}},
+          {.mass = 5, .position = {0.6 * i, 0.6, 0}, .orientation = turned, .velocity = {3, -4, 1}});
+      system.bodies().set_angular_velocity(box, {1, 30, 8});
+    }
+    const double before = system.energy().kinetic;
+    for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 60);
+    EXPECT_NEAR(system.energy().balance(), 0, 1e-9 * before) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace iota
