@@ -124,9 +124,7 @@ void touch(Model& model, const Contact& c, bool by_motion) {
 }
 
 /// A contact that motion ends does not keep its strain. An edit between the same two steps has not taken it.
-void dissipate_strain(Model& model, const Contact& c) {
-  model.dissipated += c.energy, model.booked_energy -= c.energy;
-}
+void dissipate_strain(Model& model, const Contact& c) { model.dissipated += c.energy, model.booked_energy -= c.energy; }
 
 void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
   const Contact c = model.contacts[slot];

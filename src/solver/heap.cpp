@@ -312,6 +312,13 @@ double Heap::rate_of(const Point& point, const Line& line) const {
   return line.drift + dot(line.way, a.velocity - b.velocity) + dot(line.turn_a, a.spin) - dot(line.turn_b, b.spin);
 }
 
+double Heap::power_of(const Vec3& gravity) const {
+  double power = 0;
+  for (std::size_t i = 0; i < found_.all.size(); ++i)
+    if (motions_[i].by_mass > 0) power += dot(gravity, motions_[i].velocity) / motions_[i].by_mass;
+  return power;
+}
+
 void Heap::sweep(double h, const HeapSoftness& soft, int times) {
   for (int k = 0; k < times; ++k) {
     ties_.sweep(motions_, soft, h);
@@ -466,9 +473,11 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
     ties_.warm(motions_);
     sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
     move(part);
+    report.lifted -= part * power_of(problem.gravity);
     refresh_points(part);
     ties_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
     sweep(part, plain, sweeps);
+    report.lifted += part * power_of(problem.gravity);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       begins_[i].sum += points_[i].normal.impulse;
       begins_[i].sum_first += points_[i].first.impulse, begins_[i].sum_second += points_[i].second.impulse;

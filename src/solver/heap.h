@@ -18,6 +18,7 @@ namespace iota::solver {
 struct HeapReport {
   double external_work = 0;  ///< of held forces, torques, grips and driven bodies, J
   double depth = 0;          ///< largest overlap at the end, m
+  double lifted = 0;         ///< potential energy by pushing overlaps apart, which is not motion, J
   bool are_joints_met = true;
 };
 
@@ -91,6 +92,7 @@ class Heap {
   bool has_turned(std::uint32_t body) const;
   void give(const Point&, const Line&, double impulse);
   double rate_of(const Point&, const Line&) const;
+  double power_of(const Vec3& gravity) const;  ///< W
   void store(Problem&, double h, HeapReport&);
 
   HeapBodies found_;

@@ -276,7 +276,8 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   energy_.measure_change(problem, part.to, swept.external_work);
   // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
   const double lifted = energy_.total - energy_.kinetic - (before.total - before.kinetic);
-  const double made = energy_.kinetic - before.kinetic + std::min(0.0, lifted) - std::max(0.0, swept.external_work);
+  const double pushed = std::clamp(swept.lifted, 0.0, std::max(0.0, lifted));
+  const double made = energy_.kinetic - before.kinetic + lifted - pushed - std::max(0.0, swept.external_work);
   if (made > 0)
     (void)change_kinetic_energy(problem, made,
                                 problem.is_isolated() ? std::optional(rigid_motion_of(problem)) : std::nullopt);

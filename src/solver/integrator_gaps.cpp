@@ -33,6 +33,8 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     hold_offsets(problem, report);
     return;
   }
+  const bool are_joints_closed =
+      problem.worst_gap(problem.position.data(), 0, true, Problem::Rows::but_contacts) <= strained_gap;
   energy_.measure(problem, 0);
   const double before = energy_.total;
   if (is_open) {
@@ -49,12 +51,13 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   }
   if (is_open) report.spin_lost = spin().restore(problem);
   energy_.measure(problem, 0);
-  const double added = energy_.total - before;
+  const double added = energy_.total - before, kinetic = energy_.kinetic;
   report.closing_energy += added;
-  if (holds_offsets_ && is_conservative_ && added > 0) {  // repeated attempts must not add energy without end
-    (void)change_kinetic_energy(problem, added);
-    report.closing_energy -= std::exchange(energy_.missing, 0);
-  }
+  // Repeated attempts must not add energy without end. And bodies that have swung into each other would be lifted in each step.
+  const bool is_by_motion = is_open && are_joints_closed;
+  if (!(added > 0 && (is_by_motion || (holds_offsets_ && is_conservative_)))) return;
+  (void)change_kinetic_energy(problem, added);
+  report.closing_energy -= kinetic - energy_.kinetic, energy_.missing = 0;
 }
 
 // Gaps that cannot be closed are constant during the step. If nails move, a gap may be at most the one at the nails'

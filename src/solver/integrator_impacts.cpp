@@ -82,10 +82,11 @@ void Integrator::settle_impacts(Problem& problem, const Stage& stage, const Step
   const bool drives = drives_rows_ && has_driven_rows(problem);
   const bool any_bounces = std::ranges::any_of(problem.items_of<ContactConstraint>(),
                                                [](const ContactConstraint& c) { return c.restitution > 0; });
-  double spare = step.total_before + step.external_work - energy_.total;
-  // A rebound may not have what friction took.
-  if (any_bounces) spare -= std::max(0.0, step.dissipated);
-  const double most = drives ? std::numeric_limits<double>::infinity() : energy_.kinetic + std::max(0.0, spare);
+  const double allowed = step.total_before + step.external_work;
+  // A rebound may not have what friction took, but has to give what friction made: what slips to and fro within a step.
+  double spare = allowed - energy_.total;
+  if (spare > 0) spare = std::max(0.0, spare - (any_bounces ? std::max(0.0, step.dissipated) : 0));
+  const double most = drives ? std::numeric_limits<double>::infinity() : energy_.kinetic + spare;
   const std::optional<double> kinetic = newton_.settle_impacts(
       problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0}, most);
   has_corrected_ = has_corrected_ || kinetic.has_value();
@@ -97,6 +98,11 @@ void Integrator::settle_impacts(Problem& problem, const Stage& stage, const Step
       const double stored = strain_energy(pool.items[k], pool.multiplier(k));
       energy_.total -= stored, taken += stored;
     }
+  if (const double made = energy_.total - allowed, before = energy_.kinetic; made > 0 && any_bounces && !drives) {
+    const double missing = energy_.missing;
+    (void)change_kinetic_energy(problem, made, free_motion(problem));
+    energy_.missing = missing, taken += before - energy_.kinetic;
+  }
   report.dissipated += taken;  // if negative: of what the rows have taken
 }
 

@@ -214,9 +214,10 @@ double Problem::row_energy(const Vec3* x, double fraction) const {
   return energy;
 }
 
-double Problem::worst_gap(const Vec3* x, double fraction, bool relative) const {
+double Problem::worst_gap(const Vec3* x, double fraction, bool relative, Rows rows) const {
   Largest worst;
   for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if (rows == Rows::but_contacts && std::is_same_v<C, ContactConstraint>) return;
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
       const C& c = pool.items[i];
       double g[3] = {};

@@ -393,8 +393,9 @@ struct Problem {
   double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Stored in spring rows, with targets as at `fraction` of the step, and in the compliance of cones.
   double row_energy(const Vec3* x, double fraction) const;
+  enum class Rows { all, but_contacts };
   /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
-  double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;
+  double worst_gap(const Vec3* x, double fraction = 1, bool relative = false, Rows = Rows::all) const;
 
  private:
   bool is_any_open(std::span<const std::uint32_t> nodes) const {

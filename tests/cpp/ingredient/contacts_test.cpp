@@ -132,12 +132,17 @@ TEST(Contacts, pass_the_audit_after_random_edits_of_what_lies) {
   }
 }
 
-TEST(Contacts, that_blows_begin_and_end_have_all_their_strain_in_one_account) {
-  for (unsigned seed = 0; seed < 10; ++seed) {
+/// Boxes that fall on the ground while they spin fast. contacts: of StepBudget.
+struct SpinningBoxes {
+  System system;
+
+  SpinningBoxes(unsigned seed, const Material& material, double contacts = StepBudget{}.contacts) {
     std::mt19937 random(seed);
     std::normal_distribution<double> any;
-    System system;
-    system.set_usual_material(Material{0.8});
+    StepBudget budget = system.budget();
+    budget.contacts = contacts;
+    system.set_budget(budget);
+    system.set_usual_material(material);
     system.bodies().create_obstacle(HalfSpace{{0, 1, 0}});
     for (int i = 0; i < 4; ++i) {
       const Quaternion turned = normalized(Quaternion{any(random), any(random), any(random), any(random)});
@@ -146,10 +151,40 @@ TEST(Contacts, that_blows_begin_and_end_have_all_their_strain_in_one_account) {
           {.mass = 5, .position = {0.6 * i, 0.6, 0}, .orientation = turned, .velocity = {3, -4, 1}});
       system.bodies().set_angular_velocity(box, {1, 30, 8});
     }
-    const double before = system.energy().kinetic;
-    for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 60);
-    EXPECT_NEAR(system.energy().balance(), 0, 1e-9 * before) << seed;
   }
+  double energy() const { return system.energy().kinetic + system.energy().potential; }
+};
+
+TEST(Contacts, that_blows_begin_and_end_have_all_their_strain_in_one_account) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    SpinningBoxes boxes(seed, Material{0.8});
+    const double before = boxes.system.energy().kinetic;
+    for (int i = 0; i < 30; ++i) (void)boxes.system.step(1.0 / 60);
+    EXPECT_NEAR(boxes.system.energy().balance(), 0, 1e-9 * before) << seed;
+  }
+}
+
+TEST(Contacts, of_bodies_that_have_swung_into_each_other_lift_nothing_for_free) {
+  const struct {
+    Material material;
+    double contacts;
+    double of_round_off;
+  } cases[] = {{{0.8}, StepBudget{}.contacts, 1e-9},
+               {{0}, StepBudget{}.contacts, 1e-9},
+               {{.friction = 0, .restitution = 1}, 1, 1e-5},  // by sweeps
+               {{.friction = 0.5}, 1, 1e-5}};
+  for (const auto& [material, contacts, of_round_off] : cases)
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      SpinningBoxes boxes(seed, material, contacts);
+      const double before = boxes.energy();
+      double last = before;
+      for (int i = 0; i < 40; ++i) {
+        (void)boxes.system.step(1.0 / 30);
+        EXPECT_LT(boxes.energy(), last + of_round_off * before)
+            << seed << ", step " << i << ", friction " << material.friction << ", by sweeps " << (contacts == 1);
+        last = boxes.energy();
+      }
+    }
 }
 
 }  // namespace
