@@ -2,6 +2,7 @@
 #include "scenes/promises.h"
 
 #include "base/text.h"
+#include "math/mat3.h"
 #include "scenes/chain.h"
 #include "scenes/dice.h"
 #include "scenes/held_promises.h"
