@@ -23,6 +23,7 @@ import subprocess
 import sys
 import sysconfig
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -52,7 +53,7 @@ class StepError(Exception):
 @dataclass
 class Step:
     """One line of progress: runs `work(log)` unless `needed` finds no change. beside: the following steps do not need it, so
-    that it runs beside them (what waits for the network beside what computes)."""
+    that it runs beside them (what waits for the network beside what computes), but for those that name it in `needs`."""
 
     name: str
     title: str
@@ -60,6 +61,7 @@ class Step:
     needed: Callable[[], bool]
     hint: str
     beside: bool = False
+    needs: tuple[str, ...] = ()
 
 
 # --- digests and stamps ---------------------------------------------------------------------------------------------
@@ -208,14 +210,17 @@ def link_node() -> None:
     link(VENV / "bin" / "node", node_home / "bin" / "node")
     for name in ("npm", "npx"):
         script = VENV / "bin" / name
-        script.unlink(missing_ok=True)
         # npm's own start script searches the path for node and would find an older one of the system.
-        script.write_text(
+        text = (
             "#!/bin/sh\n"
             'here=$(cd "$(dirname "$0")" && pwd)\n'
             'PATH="$here:$PATH"\n'
             f'exec "$here/node" "$here/../{node_home.relative_to(VENV)}/lib/node_modules/npm/bin/{name}-cli.js" "$@"\n'
         )
+        if script.is_file() and not script.is_symlink() and script.read_text() == text:
+            continue  # another step may be running it
+        script.unlink(missing_ok=True)
+        script.write_text(text)
         script.chmod(0o755)
 
 
@@ -302,6 +307,26 @@ def page() -> Step:
         work,
         lambda: is_stale(stamp, now(), [typescript, PAGE / "index.html"]),
         "The log names the file and line. If packages seem to be missing: rm -rf web/node_modules, and run it again.",
+    )
+
+
+def page_beside_the_compiler() -> Step:
+    """The page's packages and the page: what is not here of them is fetched and built while the engine is compiled."""
+    packages, built = page_packages(), page()
+
+    def work(log: Path) -> None:
+        if packages.needed():
+            packages.work(log)
+        if built.needed():
+            built.work(log)
+
+    return Step(
+        built.name,
+        "installing the page's packages and building the page",
+        work,
+        lambda: packages.needed() or built.needed(),
+        f"{packages.hint}\n  {built.hint}",
+        beside=True,
     )
 
 
@@ -416,6 +441,7 @@ def command_line() -> Step:
         work,
         needed,
         "The log has Python's own words. `make clean build` starts afresh.",
+        needs=("page",),
     )
 
 
@@ -598,8 +624,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         else system_packages("build"),
         python_environment("build"),
         sundials(),
-        page_packages(),
-        page(),
+        page_beside_the_compiler(),
         engine,
         command_line(),
     ]
@@ -657,9 +682,18 @@ def report_failure(step: Step, error: Exception, log: Path) -> None:
 
 
 def run_steps(steps: Sequence[Step], beside: ThreadPoolExecutor) -> int:
-    """Runs the steps with a line of progress each; the exit code. A step beside others has a second line at its end."""
-    queue = list(enumerate(steps, 1))
-    for number, step in queue:
+    """Runs the steps with a line of progress each; the exit code. A step beside others has a second line at its end, which
+    comes before the first step that needs it, or last."""
+    queue = deque(enumerate(steps, 1))
+    ends: dict[str, tuple[int, Step]] = {}
+    while queue or ends:
+        if not queue:
+            queue.extend(ends.values())
+            ends.clear()
+        number, step = queue.popleft()
+        if waited := [ends.pop(name) for name in step.needs if name in ends]:
+            queue.extendleft([(number, step), *reversed(waited)])
+            continue
         log = LOGS / f"{step.name}.log"
         try:
             if not step.needed():
@@ -670,7 +704,7 @@ def run_steps(steps: Sequence[Step], beside: ThreadPoolExecutor) -> int:
                 log.unlink(missing_ok=True)
             if step.beside:
                 ended = beside.submit(step.work, log)
-                queue.append((number, replace(step, work=end_of(ended), needed=lambda: True, beside=False)))
+                ends[step.name] = number, replace(step, work=end_of(ended), needed=lambda: True, beside=False)
                 print(" beside the next steps", flush=True)
                 continue
             step.work(log)

@@ -76,6 +76,43 @@ def test_a_step_beside_others_runs_while_they_do_and_its_failure_is_told_at_its_
     assert lines[2] == "[1/2] boiling ... failed" and 'The step "boiling" failed: it is cold.' in shown.err
 
 
+def test_a_step_waits_for_those_beside_it_that_it_needs(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    order = []
+    poured = threading.Event()
+
+    def boil(log: Path) -> None:
+        assert poured.wait(10), "the next step runs meanwhile"
+        order.append("boil")
+
+    def pour(log: Path) -> None:
+        order.append("pour")
+        poured.set()
+
+    steps = [
+        builder.Step("boil", "boiling", boil, lambda: True, "", beside=True),
+        builder.Step("pour", "pouring", pour, lambda: True, ""),
+        builder.Step("drink", "drinking", lambda log: order.append("drink"), lambda: True, "", needs=("boil", "milk")),
+    ]
+    monkeypatch.setattr(builder, "steps_for", lambda goal, preset: steps)
+    assert builder.main() == 0
+    assert order == ["pour", "boil", "drink"]
+    titles = [line.split(" ...")[0] for line in capsys.readouterr().out.splitlines()]
+    assert titles == ["[1/3] boiling", "[2/3] pouring", "[1/3] boiling", "[3/3] drinking"]
+
+
+@pytest.mark.parametrize("goal", ["build", "test", "wheel"])
+def test_the_page_is_built_beside_the_compiler_and_before_what_packs_it(
+    load_tool: Callable[[str], ModuleType], goal: str
+) -> None:
+    steps = load_tool("build").steps_for(goal, "release")
+    names = [step.name for step in steps]
+    assert next(step for step in steps if step.name == "page").beside
+    assert names.index("page") < names.index("engine") < names.index("command-line")
+    assert "page" in next(step for step in steps if step.name == "command-line").needs
+
+
 def test_a_missing_program_is_named(
     builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
