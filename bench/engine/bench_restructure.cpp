@@ -165,6 +165,7 @@ void loose_bodies(benchmark::State& state, bool changes) {
 BENCHMARK_CAPTURE(loose_bodies, change, true)
     ->Name("restructure/loose_bodies")
     ->Arg(500)
+    ->Arg(700)
     ->Arg(1350)
     ->Iterations(50)
     ->Unit(benchmark::kMillisecond);
