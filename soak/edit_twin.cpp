@@ -150,7 +150,7 @@ class Pair {
     counted_.most_bodies = std::max<std::uint64_t>(counted_.most_bodies, model_.bodies.size());
     if (auto wrong = compare()) return last_ + ": " + *wrong;
     if (counted_.edits % 64 == 0) {
-      model_.take_touched(touched_);
+      model_.take_marked(marked_);
       const std::vector<std::string> complaints = ingredient::validate(model_);
       if (!complaints.empty()) return last_ + ": " + complaints.front();
     }
@@ -278,7 +278,7 @@ class Pair {
   EditCount& counted_;
   Model model_;
   Twin twin_;
-  Model::Touched touched_;
+  Model::Marked marked_;
   std::string last_;
 };
 

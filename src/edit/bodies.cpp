@@ -4,7 +4,7 @@
 #include "edit/constraints.h"
 #include "edit/nails.h"
 #include "edit/settle.h"
-#include "ingredient/followers.h"
+#include "ingredient/attachments.h"
 #include "math/checks.h"
 #include "math/mat3.h"
 #include "model/obstacle.h"
@@ -129,7 +129,7 @@ ParticleId apply(Editor& e, const CreateAttachment& c) {
   double nearest = 0;
   model.for_each_solid_of(body, [&](std::uint32_t s) {
     const double distance = norm(solid_pose(model, s).position - c.position);
-    if (is_untouched(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
+    if (may_move_points(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
   });
   if (solid == none)
     throw std::invalid_argument(
@@ -170,7 +170,7 @@ void apply(Editor& e, const SetRod& c) {
   for (const std::uint32_t end : {p, q}) model.particles[end].mass = sum;
   model::InertiaPair pair{body, none, p, q, -(sum - difference) / 2};
   model.bodies[body].first_inertia = model.inertia_pairs.create(pair).slot;
-  model.touch_body(body);
+  model.mark_body(body);
 }
 
 // --- kind -------------------------------------------------------------------------------------------------------------
@@ -226,7 +226,7 @@ void apply(Editor& e, const SetKind& c) {
       if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || model.rings[ring].count == 1))
         model.stop_ring(ring);
     });
-    model.touch_body(slot);
+    model.mark_body(slot);
     model.mark_velocities(body.articulate);
   };
   if (before == BodyKind::inactive) {  // the bodies hinged to it may have moved meanwhile
@@ -282,7 +282,7 @@ void apply(Editor& e, const SetBodyDamping& c) {
   require_not_negative("damping", c.per_second);
   const std::uint32_t body = e.require(c.body);
   model.set_damping(body, c.per_second);
-  model.touch_locally(body);
+  model.mark_locally(body);
 }
 
 namespace {
@@ -396,9 +396,9 @@ void apply(Editor& e, const SetAngularVelocity& c) {
 // Its mass, momentum and energy are removed too.
 void apply(Editor& e, const Destroy<BodyId>& c) {
   const std::uint32_t body = e.require(c.id);
-  const ingredient::Followers followers(e.model, {{body}});
+  const ingredient::Attachments attachments(e.model, {{body}});
   destroy_body(e.model, body);
-  followers.follow(e.model);
+  attachments.reattach(e.model);
   e.structure_changed();
 }
 

@@ -53,7 +53,7 @@ void apply(Editor& e, const SetBodyMass& c) {
   });
   model.for_each_inertia_of(body, [&](std::uint32_t i) { model.inertia_pairs[i].inertia *= factor; });
   if (auto* const spin = model.spins.find(body)) spin->momentum *= factor;
-  model.touch_body(body);
+  model.mark_body(body);
 }
 
 // A force and a moment about the center, which do not change while the body turns in the step.

@@ -84,7 +84,7 @@ void constraint_changed(Editor& e, std::uint32_t constraint) {
   for_each_joint_of(model, constraint, [&](const ingredient::Constraint& c) {
     for (const int place : {ingredient::a_origin, ingredient::b_origin})
       if (c.particles[place] != none)
-        model.touch_locally(model.particles[c.particles[place]].body), e.mark_velocity_dirty(c.particles[place]);
+        model.mark_locally(model.particles[c.particles[place]].body), e.mark_velocity_dirty(c.particles[place]);
   });
   e.structure_changed();
 }

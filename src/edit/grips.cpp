@@ -23,7 +23,7 @@ GripId apply(Editor& e, const CreateGrip& c) {
   grip.target = c.target;
   const Vec3 place = model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point);
   ingredient::Grips::anchor(model, grip, place);
-  ingredient::Grips::touch(model, body);
+  ingredient::Grips::mark(model, body);
   return model.grips.create(grip);
 }
 
@@ -35,7 +35,7 @@ void apply(Editor& e, const MoveGrip& c) {
 void apply(Editor& e, const Destroy<GripId>& c) {
   model::Model& model = e.model;
   const std::uint32_t grip = e.require(c.id);
-  ingredient::Grips::touch(model, model.grips[grip].body);
+  ingredient::Grips::mark(model, model.grips[grip].body);
   model.grips.destroy(grip);
 }
 

@@ -129,7 +129,7 @@ class CoordinateSetter {
       const double aim = start + (value - start) * i / steps;
       for (auto& o : joint().options) o.motor_max = o.friction = o.stiffness = o.damping = 0;
       joint().options[index_].lower = joint().options[index_].upper = aim;
-      if (i == 1) touch();
+      if (i == 1) mark();
       e_.islands.update(model_, e_.parallel);
       auto* const island = e_.islands.of_articulate(model_.bodies[body_of_side(model_, joint(), 0)].articulate);
       good = island && island->project(model_, true) && std::abs(now() - aim) <= 1e3 * met * scale();
@@ -137,7 +137,7 @@ class CoordinateSetter {
     }
     joint().options = options;
     for (const auto& [slot, compliance] : compliances) model_.constraints[slot].compliance = compliance;
-    touch();
+    mark();
     return good && finish(bodies_, value);
   }
 
@@ -154,9 +154,9 @@ class CoordinateSetter {
     return before;
   }
 
-  void touch() {
+  void mark() {
     for (const int origin : {ingredient::a_origin, ingredient::b_origin})
-      if (joint().particles[origin] != none) model_.touch_particle(joint().particles[origin]);
+      if (joint().particles[origin] != none) model_.mark_particle(joint().particles[origin]);
     e_.structure_changed();
   }
 

@@ -99,7 +99,7 @@ std::vector<ParticleId> apply(Editor& e, const CreatePoints& c) {
     const std::uint32_t particle = model.make_particle(body, rows.positions[i], value_of(rows.masses, i, 1.0),
                                                        value_of(rows.velocities, i, Vec3{}));
     model.rebuild_basis(body);
-    model.touch_body(body);
+    model.mark_body(body);
     e.mark_velocity_dirty(particle);
     made.push_back(model.particles.id(particle));
   }
@@ -130,7 +130,7 @@ std::vector<BodyId> apply(Editor& e, const CreateRods& c) {
     for (const Vec3& end : {rows.starts[i], rows.ends[i]})
       e.mark_velocity_dirty(model.make_particle(body, end, mass / 2, {}));
     model.rebuild_basis(body);
-    model.touch_body(body);
+    model.mark_body(body);
     made.push_back(model.bodies.id(body));
     if (radius > 0) apply(e, SetRod{made.back(), mass, radius});
   }

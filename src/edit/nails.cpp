@@ -24,7 +24,7 @@ void hold(Editor& e, std::uint32_t particle, const Vec3& position, std::uint16_t
   });
   if (ring.nailed) {
     model.nails.at(slot).position = position;  // moves there during the next step
-    if (how != model::carried && ring.nailed == model::carried) ring.nailed = how, model.touch_ring(slot);
+    if (how != model::carried && ring.nailed == model::carried) ring.nailed = how, model.mark_ring(slot);
     return;
   }
   const bool moved = ring.position != position;
@@ -35,7 +35,7 @@ void hold(Editor& e, std::uint32_t particle, const Vec3& position, std::uint16_t
                        gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
   ring.nailed = how, ring.position = position, ring.velocity = {};
   model.nails.make(slot) = {position, position, {}};
-  model.touch_ring(slot);
+  model.mark_ring(slot);
   report.changed = true;
   change.finish({moved, true});
 }
@@ -64,7 +64,7 @@ void stop_carrying(Editor& e, std::uint32_t body) {
     if (moves) return;
     ring.nailed = 0;
     model.nails.at(slot).multiplier = {};
-    model.touch_ring(slot);
+    model.mark_ring(slot);
   });
 }
 
@@ -76,7 +76,7 @@ void apply(Editor& e, const Release& c) {
   model.rings[ring].nailed = 0;
   model.scene.note(ViewEvent::Kind::break_, model.rings[ring].position);
   model.nails.at(ring).multiplier = {};
-  model.touch_ring(ring);
+  model.mark_ring(ring);
   e.structure_changed();
 }
 

@@ -4,7 +4,7 @@
 #include "edit/bodies.h"
 #include "edit/constraints.h"
 #include "edit/nails.h"
-#include "ingredient/followers.h"
+#include "ingredient/attachments.h"
 #include "math/checks.h"
 #include "model/restructure.h"
 
@@ -52,7 +52,7 @@ ParticleId apply(Editor& e, const CreateParticle& c) {
     model.keep_inertia_positive(body);
   else
     model.rebuild_basis(body);
-  model.touch_body(body);
+  model.mark_body(body);
   e.mark_velocity_dirty(particle);
   e.structure_changed();
   return model.particles.id(particle);
@@ -80,7 +80,7 @@ void apply(Editor& e, const SetPosition& c) {
     });
     if (!model.particles[moved].is_marker()) end_solids_of(model, body, moved);
     model.rebuild_basis(body);
-    model.touch_body(body);
+    model.mark_body(body);
   });
   model.for_each_in_ring(ring, [&](std::uint32_t p) { refresh_coordinates_of(model, model.particles[p].body); });
   e.mark_velocity_dirty(particle);
@@ -105,7 +105,7 @@ void apply(Editor& e, const SetMass& c) {
   if (was_rod && model.bodies[body].first_inertia == model::none)
     model.notes.push_back(text("body ", body, " is not a rod any more, and has no spin about its axis: particle ",
                                particle, " has too little mass for the inertia of one; set_rod gives it anew"));
-  model.touch_body(body);
+  model.mark_body(body);
 }
 
 void apply(Editor& e, const ApplyForce& c) {
@@ -125,9 +125,9 @@ void apply(Editor& e, const SetParticleActive& c) {
   p.mass *= c.active ? 1 / model::inactive_share : model::inactive_share;
   model.acting_changed(slot);
   model.bonds.for_each_of(slot, [&](std::uint32_t b) {
-    for (const std::uint32_t end : {model.bonds[b].p, model.bonds[b].q}) model.touch_particle(end);
+    for (const std::uint32_t end : {model.bonds[b].p, model.bonds[b].q}) model.mark_particle(end);
   });
-  model.touch_particle(slot);
+  model.mark_particle(slot);
   e.structure_changed();
 }
 
@@ -140,9 +140,9 @@ void apply(Editor& e, const SetParticleBreakForce& c) {
 void apply(Editor& e, const Destroy<ParticleId>& c) {
   model::Model& model = e.model;
   const std::uint32_t particle = e.require(c.id);
-  const ingredient::Followers followers(model, {{model.particles[particle].body}});
+  const ingredient::Attachments attachments(model, {{model.particles[particle].body}});
   destroy_particle(model, particle);
-  followers.follow(model);
+  attachments.reattach(model);
   e.structure_changed();
 }
 

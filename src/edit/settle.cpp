@@ -225,7 +225,7 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
       bodies_{bodies.front(), bodies.back()},
       body_count_(bodies.size()),
       kind_(kind),
-      followers_(editor.model, bodies) {
+      attachments_(editor.model, bodies) {
   report.articulates_before = editor.model.articulate_count();
   if (kind != Kind::moving) return;
   around_ = bodies_around(editor.model, bodies);
@@ -245,10 +245,10 @@ void Restructuring::finish(const model::Edit& owed) {
     const auto end = std::copy_if(bodies_.begin(), bodies_.begin() + static_cast<std::ptrdiff_t>(body_count_),
                                   left.begin(), [&](std::uint32_t body) { return model.bodies.is_alive(body); });
     if (report_.created_bodies.empty())
-      ingredient::settle(model, {left.begin(), end}, report_.notes);
+      ingredient::clean_up(model, {left.begin(), end}, report_.notes);
     else
-      ingredient::settle(model, with_created(edited()), report_.notes);
-    followers_.follow(model);
+      ingredient::clean_up(model, with_created(edited()), report_.notes);
+    attachments_.reattach(model);
     if (kind_ != Kind::transient) editor_.structure_changed();
   }
   report_.articulates_after = model.articulate_count();
@@ -281,9 +281,9 @@ void Restructuring::settle_and_measure(const model::Edit& owed) {
   change.add(before_, -1);
   std::optional<Conserved> before = before_;  // of everything that may have changed; nothing if something is pinned
   if (owed.moved || owed.velocity_dirty) {
-    const std::vector<std::uint32_t> touched = with_created(edited());
-    change.add(settle(editor_, touched, owed.moved, bodies_before_, report_));
-    before = give_back_momenta(editor_, touched, change);
+    const std::vector<std::uint32_t> changed = with_created(edited());
+    change.add(settle(editor_, changed, owed.moved, bodies_before_, report_));
+    before = give_back_momenta(editor_, changed, change);
   }
   report_.energy_change = change.energies.total();
   report_.momentum_change = change.momenta.linear;

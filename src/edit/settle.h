@@ -2,7 +2,7 @@
 #pragma once
 
 #include "edit/editor.h"
-#include "ingredient/followers.h"
+#include "ingredient/attachments.h"
 #include "ingredient/scope.h"
 #include "model/restructure.h"
 
@@ -68,7 +68,7 @@ class Restructuring {
   std::array<std::uint32_t, 2> bodies_{};  // most edits cost less than a vector for them would
   std::size_t body_count_;
   Kind kind_;
-  ingredient::Followers followers_;
+  ingredient::Attachments attachments_;
   // The bodies whose energy and momentum the edit itself may change; changes by projections further away are added.
   std::vector<std::uint32_t> around_;
   Conserved before_;

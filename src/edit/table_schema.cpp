@@ -19,7 +19,7 @@ IOTA_FIELDS(shape::Data, kind, sizes, key)
 IOTA_FIELDS(model::ListHead, first)
 IOTA_FIELDS(model::Particle, body, ring, next_in_body, previous_in_body, next_in_ring, previous_in_ring, uses, groups,
             attributes, basis_index, inactive, part, mass)
-IOTA_FIELDS(model::Tie, weights, multiplier)
+IOTA_FIELDS(model::AffineParticle, weights, multiplier)
 IOTA_FIELDS(model::Ring, first, last, count, nailed, is_instant, position, velocity, acceleration)
 IOTA_FIELDS(model::RigidRow, length, multiplier)
 IOTA_FIELDS(model::Body, kind, rank, row_count, kind_before, first, last, count, articulate, next_in_articulate,

@@ -65,7 +65,7 @@ void take_options(AngleSpring& spring, const Model& model, const C& c) {
 void note_ends(Model& model, const AngleSpring& spring, int uses) {
   for (const std::uint32_t particle : spring.particles) {
     model.particles[particle].uses += static_cast<std::uint32_t>(uses);
-    model.touch_locally(model.particles[particle].body);
+    model.mark_locally(model.particles[particle].body);
   }
 }
 
@@ -166,7 +166,7 @@ void AngleSprings::visit_tied(const Model& model, std::uint32_t particle, Visit 
 void AngleSprings::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
   const auto moved = [&](std::uint32_t) {
     --model.particles[q].uses, ++model.particles[p].uses;
-    model.touch_particle(p);
+    model.mark_particle(p);
   };
   model.angle_springs.redirect(q, p, moved, [&](std::uint32_t slot) { remove_spring(model, slot); });
 }

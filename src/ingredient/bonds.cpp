@@ -234,7 +234,7 @@ std::uint32_t Bonds::add(Model& model, const Bond& bond) {
   ++model.laws[bond.law].uses, ++model.bonds_revision;
   for (const std::uint32_t particle : {bond.p, bond.q}) {
     ++model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
+    model.mark_locally(model.particles[particle].body);
   }
   model.bonds[slot].muted = !model.acts(bond.p) || !model.acts(bond.q);
   parameter_changed(model, slot);
@@ -270,7 +270,7 @@ void Bonds::parameter_changed(Model& model, std::uint32_t slot) {
   const std::uint8_t form = is_stiff(model, bond) ? Bond::as_row : Bond::as_force;
   if (form == bond.implicit) return;
   bond.implicit = form;
-  for (const std::uint32_t end : {bond.p, bond.q}) model.touch_locally(model.particles[end].body);
+  for (const std::uint32_t end : {bond.p, bond.q}) model.mark_locally(model.particles[end].body);
 }
 
 void Bonds::remove(Model& model, std::uint32_t slot) {
@@ -278,7 +278,7 @@ void Bonds::remove(Model& model, std::uint32_t slot) {
   --model.laws[bond.law].uses, ++model.bonds_revision;
   for (const std::uint32_t particle : {bond.p, bond.q}) {
     --model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
+    model.mark_locally(model.particles[particle].body);
   }
   model.bonds.destroy(slot);
   model.changed_bonds.note(slot);
@@ -290,7 +290,7 @@ void Bonds::set_active(Model& model, std::uint32_t slot, bool active) {
   bond.active = active;
   bond.broken = 0;
   ++model.bonds_revision, ++model.structure_version;
-  for (const std::uint32_t end : {bond.p, bond.q}) model.touch_locally(model.particles[end].body);
+  for (const std::uint32_t end : {bond.p, bond.q}) model.mark_locally(model.particles[end].body);
 }
 
 bool Bonds::ties_any(const Model& model) { return model.bonds.size() > 0; }
@@ -306,7 +306,7 @@ void Bonds::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
   ++model.bonds_revision;
   const auto moved = [&](std::uint32_t) {
     --model.particles[q].uses, ++model.particles[p].uses;
-    model.touch_particle(p);
+    model.mark_particle(p);
   };
   model.bonds.redirect(q, p, moved, [&](std::uint32_t slot) { remove(model, slot); });
 }

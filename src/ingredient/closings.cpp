@@ -116,7 +116,7 @@ bool Closings::holds(const Model& model, std::uint32_t particle) { return model.
 std::uint32_t Closings::add(Model& model, const Closing& closing) {
   for (const std::uint32_t particle : {closing.p, closing.q}) {
     ++model.particles[particle].uses;
-    model.touch_rows(model.particles[particle].body);
+    model.mark_rows(model.particles[particle].body);
   }
   return model.closings.create(closing);
 }
@@ -124,7 +124,7 @@ std::uint32_t Closings::add(Model& model, const Closing& closing) {
 void Closings::remove(Model& model, std::uint32_t closing) {
   for (const std::uint32_t particle : {model.closings[closing].p, model.closings[closing].q}) {
     --model.particles[particle].uses;
-    model.touch_rows(model.particles[particle].body);
+    model.mark_rows(model.particles[particle].body);
   }
   model.closings.destroy(closing);
 }
@@ -157,7 +157,7 @@ void Closings::visit_joined(const Model& model, std::uint32_t particle, Visit vi
 void Closings::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
   const auto moved = [&](std::uint32_t) {
     --model.particles[q].uses, ++model.particles[p].uses;
-    model.touch_particle(p);
+    model.mark_particle(p);
   };
   model.closings.redirect(q, p, moved, [&](std::uint32_t slot) { remove(model, slot); });
 }
@@ -173,7 +173,7 @@ bool Closings::call_off(Model& model, std::uint32_t p, std::uint32_t q) {
 }
 
 // If the two particles share a ring or a body now, there is nothing left to close.
-void Closings::settle(Model& model, std::span<const std::uint32_t>, std::vector<std::string>& notes) {
+void Closings::clean_up(Model& model, std::span<const std::uint32_t>, std::vector<std::string>& notes) {
   if (model.closings.size() == 0) return;
   for (std::uint32_t slot = 0; slot < model.closings.slot_count(); ++slot) {
     if (!model.closings.is_alive(slot)) continue;

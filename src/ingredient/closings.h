@@ -31,7 +31,7 @@ class Closings : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static bool call_off(Model&, std::uint32_t p, std::uint32_t q);
-  static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static void clean_up(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static void end_step(Model&, double h);
   static void tell(Model&, Outcome&);

@@ -114,13 +114,13 @@ bool is_on_its_own(const Model& model, std::uint32_t body) {
 
 /// by_motion: in a heap some contact begins or ends in nearly each step, which would keep it awake for ever. How fast it is
 /// tells whether it moves.
-void touch(Model& model, const Contact& c, bool by_motion) {
+void mark(Model& model, const Contact& c, bool by_motion) {
   const auto sleeps = [&](std::uint32_t body) {
     return model.bodies.is_alive(body) && model.bodies[body].kind == BodyKind::resting;
   };
   const bool wakes = !by_motion || sleeps(c.p) || sleeps(c.q);
   for (const std::uint32_t body : {c.p, c.q})
-    if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.touch_rows(body, wakes);
+    if (model.bodies.is_alive(body) && has_points(model.bodies[body])) model.mark_rows(body, wakes);
 }
 
 /// A contact that motion ends does not keep its strain. An edit between the same two steps has not taken it.
@@ -130,7 +130,7 @@ void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
   const Contact c = model.contacts[slot];
   if (by_motion) dissipate_strain(model, c);  // of an edit it is in the account of edits
   model.contacts.destroy(slot);
-  touch(model, c, by_motion);
+  mark(model, c, by_motion);
 }
 
 bool is_same(const Contact& c, std::uint32_t p, const contact::Touch& t) {
@@ -267,7 +267,7 @@ void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Re
     const std::uint32_t rolls_before =
         std::exchange(c.roll_rows, rolls ? 3 - static_cast<std::uint32_t>(slots.size()) : 0);
     const std::uint32_t spins_before = std::exchange(c.spin_rows, spins ? 1 : 0);
-    if (c.roll_rows != rolls_before || c.spin_rows != spins_before) touch(model, c, true);
+    if (c.roll_rows != rolls_before || c.spin_rows != spins_before) mark(model, c, true);
     if (!rolls) c.rolling = 0, c.torque = {};
     if (!spins) c.spinning = c.twist = 0;
     c.carried = rolls || spins ? std::max(0.0, push) : 0;  // it pulls where a step was not solved
@@ -341,7 +341,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     c.approach = c.continues ? std::max(c.approach, approach) : approach;
     if (c.depth < 0)
       c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
-    if (has_changed) touch(model, c, by_motion);
+    if (has_changed) mark(model, c, by_motion);
     taken.push_back(slot);
   }
   resist_turning(model, taken, {std::max(one.rolling, other.rolling), std::max(one.spinning, other.spinning)}, motion,
@@ -367,7 +367,7 @@ void Contacts::tie(Model& model, std::uint32_t first, std::uint32_t second) {
   c.normal = {0, 1, 0}, c.first = {1, 0, 0}, c.second = {0, 0, 1};
   c.is_off = 1, c.found_in = model.step + 1;
   take_basis(c, model.bodies[first], model.bodies[second]);
-  touch(model, model.contacts[model.contacts.create(c)], true);
+  mark(model, model.contacts[model.contacts.create(c)], true);
 }
 
 void Contacts::begin_part(Model& model, std::span<const std::uint32_t> slots, bool is_first) {
@@ -395,7 +395,7 @@ void Contacts::end_part(Model& model, std::span<const std::uint32_t> slots) {
     dissipate_strain(model, c);
     c.push = c.energy = c.depth = 0, c.drag = c.torque = {};
     c.roll_rows = c.spin_rows = 0, c.twist = 0;
-    touch(model, c, true);
+    mark(model, c, true);
   }
 }
 
@@ -557,7 +557,7 @@ void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& 
     set_arm(0, spins ? c.spinner : c.roller, false), set_arm(1, along, true);
     const double force = c.carried > 0 ? c.carried : stopping_force(model, c, row.nodes, nodes, h, problem);
     const double most = (spins ? c.spinning : c.rolling) * force;
-    rows.law(i)[0] = {.lower = -most, .upper = most, .hold = true};
+    rows.law(i)[0] = {.lower = -most, .upper = most, .is_rate = true};
     *rows.multiplier(i) = spins ? c.twist : dot(c.torque, along);
   });
 }

@@ -54,7 +54,7 @@ std::optional<solver::CouplingConstraint> CouplingForm::row_of(const IslandMap& 
   for_each_coupled_row(map, c, [&](double, const auto& row) {
     for (std::uint32_t i = 0; i < row.count; ++i) fits = fits && coupling->list_node(row.nodes[i]);
   });
-  if (!fits) return std::nullopt;  // edits prevent so many points: see `settle`
+  if (!fits) return std::nullopt;  // edits prevent so many points: see `clean_up`
   if (coupling->first_side == coupling->count) coupling->first_side = 0;
   for_each_coupled_row(map, c, [&](double ratio, const auto& row) { coupling->add(ratio, row); });
   return coupling;

@@ -145,9 +145,9 @@ void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
   });
 }
 
-void Grips::touch(Model& model, std::uint32_t body) {
+void Grips::mark(Model& model, std::uint32_t body) {
   const bool may_be_free = model.bodies[body].count == 1 && model.articulates[model.bodies[body].articulate].count == 1;
-  may_be_free ? model.touch_locally(body) : model.touch_pull(body);
+  may_be_free ? model.mark_locally(body) : model.mark_pull(body);
 }
 
 bool Grips::holds(const Model& model, std::uint32_t particle) {
@@ -196,7 +196,7 @@ Grips::Memory Grips::remember(const Model& model, std::span<const std::uint32_t>
   return held;
 }
 
-void Grips::follow(Model& model, const Memory& held) {
+void Grips::reattach(Model& model, const Memory& held) {
   for (const Held& before : held) {
     if (!model.grips.is_alive(before.grip)) continue;
     Grip& grip = model.grips[before.grip];
@@ -209,7 +209,7 @@ void Grips::follow(Model& model, const Memory& held) {
       continue;
     }
     anchor(model, grip, before.point);
-    model.touch_locally(grip.body);
+    model.mark_locally(grip.body);
   }
 }
 

@@ -45,11 +45,11 @@ class Grips : public NoAnswers {
   };
   using Memory = std::vector<Held>;
   static Memory remember(const Model&, std::span<const std::uint32_t> bodies);
-  static void follow(Model&, const Memory&);
+  static void reattach(Model&, const Memory&);
   static void prepare(Model&, std::uint32_t body);
 
   /// A grip at a body was added or will be removed. A single particle then enters an island, or leaves it.
-  static void touch(Model&, std::uint32_t body);
+  static void mark(Model&, std::uint32_t body);
   static Vec3 point(const Model&, const Grip&);  ///< where it holds, world frame
   /// Attaches a grip to the point of its body nearest to `point` (world frame): in the span of the body's basis, for a
   /// rod between its ends.

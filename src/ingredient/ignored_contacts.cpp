@@ -85,13 +85,13 @@ IgnoredContacts::Memory IgnoredContacts::remember(const Model& model, std::span<
   Memory memory;
   if (model.ignored_contacts.empty()) return memory;
   for (const std::uint32_t body : bodies) {
-    Followed& followed = memory.emplace_back(Followed{model.bodies.id(body), {}});
-    model.for_each_particle_of(body, [&](std::uint32_t p) { followed.particles.push_back(model.particles.id(p)); });
+    Kept& kept = memory.emplace_back(Kept{model.bodies.id(body), {}});
+    model.for_each_particle_of(body, [&](std::uint32_t p) { kept.particles.push_back(model.particles.id(p)); });
   }
   return memory;
 }
 
-void IgnoredContacts::follow(Model& model, const Memory& memory) {
+void IgnoredContacts::reattach(Model& model, const Memory& memory) {
   if (memory.empty()) return;
   const std::vector<IgnoredPair> before = std::exchange(model.ignored_contacts, {});
   const auto keep = [&](IgnoredPair pair) {
@@ -100,12 +100,12 @@ void IgnoredContacts::follow(Model& model, const Memory& memory) {
   };
   for (const IgnoredPair& pair : before) {
     keep(pair);
-    for (const Followed& followed : memory)
-      for (const ParticleId particle : followed.particles) {
+    for (const Kept& kept : memory)
+      for (const ParticleId particle : kept.particles) {
         if (!model.particles.contains(particle)) continue;
         const ContactParty piece{model.bodies.id(model.particles[particle.slot].body), {}};
-        if (pair.a.body == followed.body && piece.body != pair.a.body) keep({piece, pair.b});
-        if (pair.b.body == followed.body && piece.body != pair.b.body) keep({pair.a, piece});
+        if (pair.a.body == kept.body && piece.body != pair.a.body) keep({piece, pair.b});
+        if (pair.b.body == kept.body && piece.body != pair.b.body) keep({pair.a, piece});
       }
   }
 }

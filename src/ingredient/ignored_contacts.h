@@ -35,13 +35,13 @@ class IgnoredContacts : public NoAnswers {
   static void validate(const Model&, model::Audit&);
 
   /// Before an edit: the particles of bodies that have exceptions. Pieces get those of the whole.
-  struct Followed {
+  struct Kept {
     BodyId body;
     std::vector<ParticleId> particles;
   };
-  using Memory = std::vector<Followed>;
+  using Memory = std::vector<Kept>;
   static Memory remember(const Model&, std::span<const std::uint32_t> bodies);
-  static void follow(Model&, const Memory&);
+  static void reattach(Model&, const Memory&);
   static void forget_group(Model&, GroupId);
 
   using Commands = std::tuple<IgnoreContacts>;

@@ -121,12 +121,12 @@ struct NoAnswers {
   /// Ends the closing of two particles. False if there is none.
   static bool call_off(Model&, std::uint32_t /*p*/, std::uint32_t /*q*/) { return false; }
   /// Destroys items that an edit of some bodies (all alive) has made meaningless, with notes.
-  static void settle(Model&, std::span<const std::uint32_t> /*bodies*/, std::vector<std::string>& /*notes*/) {}
-  /// Saves the state before an edit of some bodies that `follow` needs.
+  static void clean_up(Model&, std::span<const std::uint32_t> /*bodies*/, std::vector<std::string>& /*notes*/) {}
+  /// Saves the state before an edit of some bodies that `reattach` needs.
   struct Memory {};
   static Memory remember(const Model&, std::span<const std::uint32_t> /*bodies*/) { return {}; }
   /// Since then particles may have been absorbed, bodies joined, split or destroyed.
-  static void follow(Model&, const Memory&) {}
+  static void reattach(Model&, const Memory&) {}
   /// Before an island with the body is built or follows a change: the body may have another basis, in the same place. Adds
   /// rows to tables that islands will write from several threads.
   static void prepare(Model&, std::uint32_t /*body*/) {}
@@ -243,9 +243,9 @@ concept ModelIngredient = requires(
   I::inertia_changed(model, slot);
   I::acting_changed(model, slot);
   { I::call_off(model, slot, slot) } -> std::same_as<bool>;
-  I::settle(model, bodies, notes);
+  I::clean_up(model, bodies, notes);
   { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
-  I::follow(model, I::remember(seen, bodies));
+  I::reattach(model, I::remember(seen, bodies));
   I::prepare(model, slot);
   { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
   I::describe(view, changes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/affine_rows.h"
 #include "ingredient/angle_springs.h"
 #include "ingredient/bonds.h"
 #include "ingredient/closings.h"
@@ -21,7 +22,6 @@
 #include "ingredient/rigid_rows.h"
 #include "ingredient/rod_spins.h"
 #include "ingredient/strides.h"
-#include "ingredient/ties.h"
 
 #include <tuple>
 #include <type_traits>
@@ -33,7 +33,7 @@ using Ingredients = std::tuple<  //
     Masses,                      //
     Pushes,                      //
     RigidRows,                   //
-    Ties,                        //
+    AffineRows,                  //
     OrientedParticles,           //
     RodSpins,                    //
     Closings,                    //

@@ -84,7 +84,7 @@ WeightedNodes rings_that_carry(const Model& model, std::uint32_t particle) {
     return list;
   }
   const model::Body& body = model.bodies[p.body];
-  const auto& weights = model.ties[particle].weights;
+  const auto& weights = model.affine[particle].weights;
   int used = 0;
   for (int i = 0; i < body.rank; ++i)
     if (weights[i] != 0) list[used++] = {model.particles[body.basis[i]].ring, weights[i]};

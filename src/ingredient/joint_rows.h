@@ -212,7 +212,7 @@ solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row) {
 template <class Row>
 solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row, int r) {
   if constexpr (solver::ConeConstraint<Row>)
-    if (Row::is_tangent(r)) return {.hold = true};
+    if (Row::is_tangent(r)) return {.is_rate = true};
   return law_of_hold(c, use, row);
 }
 

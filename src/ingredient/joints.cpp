@@ -146,9 +146,9 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
       switch (use.role) {
         case Role::limit: load_limit(row, o, now, law); break;
         case Role::motor:
-          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = motor_rate(o, now, h), .hold = true};
+          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = motor_rate(o, now, h), .is_rate = true};
           break;
-        case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .hold = true}; break;
+        case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .is_rate = true}; break;
         default:
           law.compliance = 1 / o.stiffness;  // infinite for a pure dashpot
           law.damping = o.damping;

@@ -60,7 +60,7 @@ class Joints : public NoAnswers {
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
-  static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static void clean_up(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
   static void tell(Model&, Outcome&);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);

@@ -20,7 +20,7 @@ void link_place(Model& model, std::uint32_t slot, std::uint32_t place) {
   c.next[place] = first, c.previous[place] = none;
   if (first != none) model.constraints[first / place_count].previous[first % place_count] = place_count * slot + place;
   first = place_count * slot + place;
-  model.touch_locally(model.particles[c.particles[place]].body);
+  model.mark_locally(model.particles[c.particles[place]].body);
 }
 
 void unlink_place(Model& model, std::uint32_t slot, std::uint32_t place) {
@@ -33,7 +33,7 @@ void unlink_place(Model& model, std::uint32_t slot, std::uint32_t place) {
     model.places.at(c.particles[place]).first = after;
   else
     model.places.erase(c.particles[place]);
-  model.touch_locally(model.particles[c.particles[place]].body);
+  model.mark_locally(model.particles[c.particles[place]].body);
 }
 
 /// Removes it from the tables; its markers stay.
@@ -87,7 +87,7 @@ void Joints::destroy(Model& model, std::uint32_t slot) {
     if (model.constraints[term.joint].is_part) parts.push_back(term.joint);
     for (const int origin : {a_origin, b_origin})
       if (const std::uint32_t p = model.constraints[term.joint].particles[origin]; p != none)
-        model.touch_locally(model.particles[p].body);
+        model.mark_locally(model.particles[p].body);
   });
   CouplingForm::remove_terms(model, slot);
   remove(model, slot);
@@ -208,7 +208,7 @@ void Joints::drop(Model& model, std::uint32_t particle) {
   }
 }
 
-void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
+void Joints::clean_up(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
   if (model.constraints.size() == 0) return;
   std::vector<std::uint32_t> candidates, too_large;
   for (const std::uint32_t body : bodies)

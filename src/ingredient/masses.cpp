@@ -70,7 +70,7 @@ void for_each_mass(const Model& model, std::uint32_t body, NodesOf nodes_of, Vis
       off.add(used(own), 1);
       const model::Body& record = model.bodies[body];
       for (int i = 0; i < record.rank; ++i)
-        if (const double weight = model.ties[p].weights[i]; weight != 0)
+        if (const double weight = model.affine[p].weights[i]; weight != 0)
           off.add(used(nodes_of(record.basis[i])), -weight);
       visit(off.terms(), virtual_mass(model, p));
     }

@@ -93,7 +93,7 @@ void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
 }
 
 void RodSpins::set(Model& model, std::uint32_t body, double angular_velocity) {
-  if (model.spins.has(body) != (angular_velocity != 0)) model.touch_body(body);
+  if (model.spins.has(body) != (angular_velocity != 0)) model.mark_body(body);
   if (angular_velocity == 0)
     model.spins.erase(body);
   else

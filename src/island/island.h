@@ -73,7 +73,7 @@ class Island {
   double order_work() const;  ///< see KnownOrder
   /// Appends the rings of its nodes in order of elimination.
   void append_order(std::vector<std::uint32_t>& rings) const;
-  /// Updates pulls that were added or removed: see Structure::touch_pull. False if it must be assembled.
+  /// Updates pulls that were added or removed: see Structure::mark_pull. False if it must be assembled.
   bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "island/islands.h"
 
-#include "ingredient/followers.h"
+#include "ingredient/attachments.h"
 
 #include <iota/reports.h>
 
@@ -106,14 +106,14 @@ void Islands::make_ready(Model& model, std::uint32_t body) {
 }
 
 bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) {
-  model.take_touched(touched_);
+  model.take_marked(marked_);
   const bool renews = std::exchange(renew_, false);
   kept_orders_.read(model);
   if (!model.eliminations.ends.empty()) model.eliminations = {};
   if (!knows_all_) {
-    touched_.articulates.clear();
-    model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.articulates.push_back(a); });
-    touched_.only_locally.assign(touched_.articulates.size(), 0);
+    marked_.articulates.clear();
+    model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { marked_.articulates.push_back(a); });
+    marked_.only_locally.assign(marked_.articulates.size(), 0);
     knows_all_ = true;
   }
   waiting_.clear(), changed_.clear(), fresh_.clear(), fresh_loose_.clear();
@@ -122,22 +122,22 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
       if (home && home->has_followed) drop(*home);
   const bool any_is_due =
       std::any_of(suspected_.begin(), suspected_.end(), [&](const Home* home) { return is_due(*home, model); });
-  if (touched_.articulates.empty() && touched_.local.pulled.empty() && waiting_.empty() && !any_is_due)
+  if (marked_.articulates.empty() && marked_.local.pulled.empty() && waiting_.empty() && !any_is_due)
     return kept_orders_.clear(), false;
   ++epoch_;
   order_is_old_ = awake_is_old_ = true;
   places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
   node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
 
-  drop_touched(model, renews);
+  drop_marked(model, renews);
   find_changed(model);
   take_parts_out(model);
   find_groups(model);
   const bool any = group_count_ > 0;
-  settle_groups(model, moved);
+  form_groups(model, moved);
   renew_pulls(model);
-  touched_.local.bodies.clear(), changed_.clear(), joins_.clear();
-  if (!waiting_.empty()) find_groups(model), settle_groups(model, moved);  // of homes that could not follow
+  marked_.local.bodies.clear(), changed_.clear(), joins_.clear();
+  if (!waiting_.empty()) find_groups(model), form_groups(model, moved);  // of homes that could not follow
   build_fresh(model, parallel, moved);
   note_suspects(model);
   kept_orders_.clear();
@@ -146,16 +146,16 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
 
 // 1. Homes with other than local changes are dropped. After a snapshot all changed ones are, as a restored system has
 // none of them.
-void Islands::drop_touched(const Model& model, bool all) {
-  for (std::size_t i = 0; i < touched_.articulates.size(); ++i) {
-    if (touched_.only_locally[i] && !all) continue;
-    const std::uint32_t a = touched_.articulates[i];
+void Islands::drop_marked(const Model& model, bool all) {
+  for (std::size_t i = 0; i < marked_.articulates.size(); ++i) {
+    if (marked_.only_locally[i] && !all) continue;
+    const std::uint32_t a = marked_.articulates[i];
     if (Home* const home = places_[a].home)
       drop(*home);
     else
       wait(a);
   }
-  for (const std::uint32_t body : touched_.local.pulled) {  // a grip may be all that holds a body
+  for (const std::uint32_t body : marked_.local.pulled) {  // a grip may be all that holds a body
     if (!model.bodies.is_alive(body)) continue;
     const std::uint32_t a = model.bodies[body].articulate;
     Home* const home = places_[a].home;
@@ -165,11 +165,11 @@ void Islands::drop_touched(const Model& model, bool all) {
 
 // 2. Homes that must follow local changes, with their present articulates. Small ones are dropped.
 void Islands::find_changed(const Model& model) {
-  for (const std::uint32_t a : touched_.articulates)
+  for (const std::uint32_t a : marked_.articulates)
     if (Home* const home = places_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
   homes_.assign(changed_.begin(), changed_.end());
   for (Home* const home : homes_) find_members(model, *home);
-  for (const std::uint32_t a : touched_.articulates)  // made by a cut, of a home that was dropped
+  for (const std::uint32_t a : marked_.articulates)  // made by a cut, of a home that was dropped
     if (!places_[a].home) wait(a);
 }
 
@@ -214,11 +214,11 @@ bool Islands::is_due(const Home& home, const Model& model) {
 // itself, but what happens in one part may halve the step of both.
 void Islands::take_parts_out(const Model& model) {
   constexpr std::size_t small = 16;  // bodies
-  for (const std::uint32_t a : touched_.articulates)
-    if (Home* const home = places_[a].home) home->touched.push_back(a);
+  for (const std::uint32_t a : marked_.articulates)
+    if (Home* const home = places_[a].home) home->marked.push_back(a);
   for (Home* const home : changed_) {
-    take_parts_out(model, *home, home->touched, small);
-    home->touched.clear();
+    take_parts_out(model, *home, home->marked, small);
+    home->marked.clear();
   }
   homes_.assign(suspected_.begin(), suspected_.end());
   for (Home* const home : homes_) {
@@ -288,8 +288,8 @@ void Islands::find_groups(const Model& model) {
       const std::uint32_t with = unit_of(articulate);
       units_[root_of(unit_of(*home))].parent = root_of(with);
     }
-  ingredient::sort_unique(touched_.local.bodies);
-  for (const std::uint32_t body : touched_.local.bodies)
+  ingredient::sort_unique(marked_.local.bodies);
+  for (const std::uint32_t body : marked_.local.bodies)
     if (model.bodies.is_alive(body))
       if (Home* const home = places_[model.bodies[body].articulate].home) search(unit_of(*home), body);
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
@@ -328,7 +328,7 @@ void Islands::collect_groups(const Model& model) {
       group_of(unit).homes.push_back(home);
     else
       group_of(unit).waiting.push_back(units_[unit].articulate);
-  for (const std::uint32_t body : touched_.local.bodies) {
+  for (const std::uint32_t body : marked_.local.bodies) {
     if (!model.bodies.is_alive(body)) continue;
     const Place& place = places_[model.bodies[body].articulate];  // a home's body may be in an articulate that waits
     const std::uint32_t unit = place.home ? place.home->unit : place.unit;
@@ -350,7 +350,7 @@ void Islands::collect_groups(const Model& model) {
 }
 
 // 5. In each group the largest home follows, or all become a new one.
-void Islands::settle_groups(Model& model, MovedRings& moved) {
+void Islands::form_groups(Model& model, MovedRings& moved) {
   for (const std::uint32_t g : by_lowest_) {
     const Group& group = groups_[g];
     if (group.homes.empty()) {
@@ -412,7 +412,7 @@ bool Islands::follow(Model& model, const Group& group, MovedRings& moved) {
   change.local.bodies = group.bodies;
   change.local.bodies.insert(change.local.bodies.end(), change.joined.begin(), change.joined.end());
   ingredient::sort_unique(change.local.bodies);
-  change.local.rings = touched_.local.rings, change.local.pulled = touched_.local.pulled;
+  change.local.rings = marked_.local.rings, change.local.pulled = marked_.local.pulled;
   for (const std::uint32_t body : change.local.bodies) make_ready(model, body);
   if (!host.island.follow(model, members, change, node_of_ring_, moved)) return false;
 
@@ -442,7 +442,7 @@ void Islands::forget_suspects(Home& home) {
 
 // A cut touches articulates on both of its sides.
 void Islands::note_suspects(const Model& model) {
-  for (const std::uint32_t a : touched_.articulates) {
+  for (const std::uint32_t a : marked_.articulates) {
     Home* const home = places_[a].home;
     if (!home || !home->has_followed || home->articulates.size() == 1) continue;
     if (!std::exchange(places_[a].is_suspect, true)) add_suspect(*home, a, model.step);
@@ -450,7 +450,7 @@ void Islands::note_suspects(const Model& model) {
 }
 
 void Islands::renew_pulls(const Model& model) {
-  for (const std::uint32_t body : touched_.local.pulled) {
+  for (const std::uint32_t body : marked_.local.pulled) {
     if (!model.bodies.is_alive(body)) continue;
     Home* const home = places_[model.bodies[body].articulate].home;
     if (!home || !home->is_built) continue;  // it will be built, with its pulls
@@ -484,7 +484,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
   std::sort(built.begin(), built.end());
   audit.require(std::adjacent_find(built.begin(), built.end()) == built.end(),
                 "the latest update has built an island twice");
-  if (!knows_all_ || model.is_touched()) return;
+  if (!knows_all_ || model.is_marked()) return;
   model.articulates.for_each([&](std::uint32_t a, const model::Articulate& articulate) {
     const Home* const home = places_[a].home;
     audit.require((home != nullptr) != free_bodies_.contains(a), "articulate ", a, " is not in one island");

@@ -118,7 +118,7 @@ class Islands {
         borrow(model, a, visit);
   }
   FreeBodies& free_bodies() { return free_bodies_; }
-  /// Checks, if the model was not touched since the last update, that each active body is in one island or free, that
+  /// Checks, if the model was not changed since the last update, that each active body is in one island or free, that
   /// islands and their articulates agree, and that what is tied together is in one island.
   void validate(const model::Model&, model::Audit&) const;
 
@@ -130,7 +130,7 @@ class Islands {
     Island island;
     std::uint32_t leader = none;             ///< the lowest of its articulates, after the latest update
     std::vector<std::uint32_t> articulates;  ///< in order
-    std::vector<std::uint32_t> touched;      ///< in an update: those with changes
+    std::vector<std::uint32_t> marked;       ///< in an update: those with changes
     std::vector<std::uint32_t> leaving;      ///< in an update: those that it is about to lose
     std::vector<std::uint32_t> suspects;     ///< those at which something may have been cut, each once
     std::uint64_t suspected_at = 0;          ///< step of the first of these
@@ -140,7 +140,7 @@ class Islands {
     bool is_built = false;  ///< until then its island is still that of its earlier owner
 
     void clear() {
-      articulates.clear(), touched.clear(), leaving.clear(), suspects.clear();
+      articulates.clear(), marked.clear(), leaving.clear(), suspects.clear();
       leader = unit = none, suspected_at = 0, is_changed = has_followed = is_built = false;
     }
     /// Whether it is assembled anew as quickly as it could follow.
@@ -193,7 +193,7 @@ class Islands {
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 
-  void drop_touched(const model::Model&, bool all);
+  void drop_marked(const model::Model&, bool all);
   void find_changed(const model::Model&);
   void find_members(const model::Model&, Home&);
   void take_parts_out(const model::Model&);
@@ -204,7 +204,7 @@ class Islands {
   std::uint32_t unit_of(Home&);
   std::uint32_t unit_of(std::uint32_t articulate);
   std::uint32_t root_of(std::uint32_t unit);
-  void settle_groups(model::Model&, MovedRings&);
+  void form_groups(model::Model&, MovedRings&);
   bool follow(model::Model&, const Group&, MovedRings&);
   void renew_pulls(const model::Model&);
   void build_fresh(model::Model&, const Parallel&, MovedRings&);
@@ -219,7 +219,7 @@ class Islands {
   bool renew_ = false;
 
   // State of the present update.
-  model::Model::Touched touched_;
+  model::Model::Marked marked_;
   std::vector<std::uint32_t> waiting_, members_;
   std::vector<Home*> changed_, fresh_, homes_;
   std::vector<std::uint32_t> fresh_loose_;              // articulates

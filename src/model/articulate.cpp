@@ -24,36 +24,36 @@ void Structure::list_flagged() {
   });
 }
 
-void Structure::touch(std::uint32_t articulate, Touch what, bool wakes) {
+void Structure::mark(std::uint32_t articulate, Mark what, bool wakes) {
   if (wakes) wake(articulate);
   Articulate& a = articulates[articulate];
   ++a.version;
   a.try_again();
-  if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
-  Touch& touched = touch_of_[articulate];
-  if (touched == untouched) touched_.push_back(articulate);
-  touched = std::max(touched, what);
+  if (mark_of_.size() <= articulate) mark_of_.resize(articulates.slot_count(), unmarked);
+  Mark& marked = mark_of_[articulate];
+  if (marked == unmarked) marked_.push_back(articulate);
+  marked = std::max(marked, what);
 }
 
-void Structure::touch_locally(std::uint32_t body) {
+void Structure::mark_locally(std::uint32_t body) {
   note_body(body);
-  touch_rows(body);
+  mark_rows(body);
 }
 
-void Structure::touch_rows(std::uint32_t body, bool wakes) {
+void Structure::mark_rows(std::uint32_t body, bool wakes) {
   const bool is_listed = lists_local_changes();
   if (is_listed && (local_change_.bodies.empty() || local_change_.bodies.back() != body))
     local_change_.bodies.push_back(body);
-  touch(bodies[body].articulate, is_listed ? locally : anything, wakes);
+  mark(bodies[body].articulate, is_listed ? locally : anything, wakes);
 }
 
-void Structure::touch_pull(std::uint32_t body) {
+void Structure::mark_pull(std::uint32_t body) {
   wake(bodies[body].articulate);
   articulates[bodies[body].articulate].try_again();
   local_change_.pulled.push_back(body);
 }
 
-void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
+void Structure::mark_ring(std::uint32_t ring, std::uint32_t split_from) {
   const bool is_listed = lists_local_changes();
   // If it is not, the bodies of the ring are in islands that are assembled anew.
   if (is_listed || rings[ring].count == 0) local_change_.rings.push_back({ring, split_from});
@@ -64,11 +64,11 @@ void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
     note_body(body);
     if (bodies[body].articulate == articulate) return;
     articulate = bodies[body].articulate;
-    touch(articulate, is_listed ? locally : anything);
+    mark(articulate, is_listed ? locally : anything);
   });
 }
 
-void Structure::take_touched(Touched& taken) {
+void Structure::take_marked(Marked& taken) {
   // The room of the lists is used again, unless it is that of a scene that was built at once.
   const auto clear = [](auto& list) {
     constexpr std::size_t most_kept = 4096;
@@ -77,11 +77,11 @@ void Structure::take_touched(Touched& taken) {
   };
   clear(taken.articulates), clear(taken.only_locally);
   clear(taken.local.bodies), clear(taken.local.rings), clear(taken.local.pulled);
-  taken.articulates.swap(touched_);
+  taken.articulates.swap(marked_);
   std::swap(taken.local, local_change_);
   for (const std::uint32_t slot : taken.articulates) {
-    taken.only_locally.push_back(touch_of_[slot] == locally);
-    touch_of_[slot] = untouched;
+    taken.only_locally.push_back(mark_of_[slot] == locally);
+    mark_of_[slot] = unmarked;
   }
 }
 
@@ -89,8 +89,8 @@ void Structure::take_touched(Touched& taken) {
 void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
-  touch(a, locally), touch(b, locally);
-  touch_of_[a] = std::max(touch_of_[a], touch_of_[b]);
+  mark(a, locally), mark(b, locally);
+  mark_of_[a] = std::max(mark_of_[a], mark_of_[b]);
   Articulate &into = articulates[a], &from = articulates[b];
   for_each_body_of(b, [&](std::uint32_t body) {
     bodies[body].articulate = a;
@@ -184,8 +184,8 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   const std::uint32_t own = articulates.create({}).slot;
   const std::uint32_t whole = bodies[body_a].articulate;
   if (articulates[whole].velocity_dirty) mark_velocities(own);
-  touch(whole, locally), touch(own, locally);
-  touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
+  mark(whole, locally), mark(own, locally);
+  mark_of_[own] = std::max(mark_of_[own], mark_of_[whole]);
   move_bodies(*this, {flood[which], end[which]}, whole, own);
   return true;
 }

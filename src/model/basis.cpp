@@ -47,7 +47,7 @@ double distance_from_span(Vec3 r, const std::array<Vec3, 3>& axes, int count) {
 // mass and cannot be in a basis.
 void Structure::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
-  constexpr double tie = 1 + 1e-6, far_enough = 0.2;
+  constexpr double equal = 1 + 1e-6, far_enough = 0.2;
   Body& body = bodies[body_slot];
   note_body(body_slot);
   const std::array<std::uint32_t, 4> old_basis = body.basis;
@@ -73,8 +73,8 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
     for_each_particle_of(body_slot, [&](std::uint32_t p) {
       if (particles[p].is_marker()) return;
       const double d = distance_from_span(position(p) - origin, axes, dimension);
-      if (d > tie * distance) distance = d, farthest = p;
-      if (d > tie * preferred_distance && is_preferred(p)) preferred_distance = d, preferred = p;
+      if (d > equal * distance) distance = d, farthest = p;
+      if (d > equal * preferred_distance && is_preferred(p)) preferred_distance = d, preferred = p;
     });
     if (dimension == 0) extent = distance;
     if (farthest == none || !(distance > (dimension == 0 ? size_of_point(*this, body_slot) : flat * extent))) break;
@@ -103,9 +103,9 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
     particle.basis_index = -1;
     for (std::int8_t i = 0; i < body.rank; ++i)
       if (body.basis[static_cast<std::size_t>(i)] == p) particle.basis_index = i;
-    if (particle.basis_index >= 0) return ties.erase(p);
+    if (particle.basis_index >= 0) return affine.erase(p);
     if (!weights) weights.emplace(*this, body_slot);
-    ties.make(p) = {weights->of(position(p)), {}};
+    affine.make(p) = {weights->of(position(p)), {}};
   });
   keep_inertia_positive(body_slot);
 }
@@ -117,20 +117,20 @@ bool carry_by_basis(Structure& model, std::uint32_t body_slot, std::uint32_t bef
   if (before < large || body.rank < 2) return false;
   const BasisWeights weights(model, body_slot);
   const double flat = 1e-9 * model.extent(body_slot);
-  std::vector<Tie> ties;
+  std::vector<AffineParticle> found;
   for (const std::uint32_t p : particles) {
-    Tie tie{weights.of(model.position(p)), {}};
+    AffineParticle affine{weights.of(model.position(p)), {}};
     Vec3 carried;
     for (int i = 0; i < body.rank; ++i) {
-      if (!(std::abs(tie.weights[i]) < far)) return false;
-      carried += tie.weights[i] * model.position(body.basis[i]);
+      if (!(std::abs(affine.weights[i]) < far)) return false;
+      carried += affine.weights[i] * model.position(body.basis[i]);
     }
     if (norm(carried - model.position(p)) > flat) return false;
-    ties.push_back(tie);
+    found.push_back(affine);
   }
   for (std::size_t i = 0; i < particles.size(); ++i) {
     model.particles[particles[i]].basis_index = -1;
-    model.ties.make(particles[i]) = ties[i];
+    model.affine.make(particles[i]) = found[i];
   }
   model.note_body(body_slot);
   return true;
@@ -149,7 +149,7 @@ bool keeps_basis(const Structure& model, std::uint32_t body_slot) {
 
 // Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had
 // (assigned, or shared with a copy), some motions would have negative kinetic energy. If each mass is above twice the
-// sum of its pairs, as in a rod, the matrix is diagonally dominant with any hinges or ties.
+// sum of its pairs, as in a rod, the matrix is diagonally dominant with any hinges or affine particles.
 void Structure::keep_inertia_positive(std::uint32_t body_slot) {
   std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from both of its ends
   for_each_inertia_of(body_slot, [&](std::uint32_t i) {
@@ -197,10 +197,10 @@ void Structure::prefer_unknowns(std::uint32_t body_slot) {
 
 std::uint32_t Structure::make_marker(std::uint32_t body, const Vec3& position) {
   const std::uint32_t marker = make_particle(body, position, 0, {});
-  ties.make(marker).weights = BasisWeights(*this, body).of(position);
+  affine.make(marker).weights = BasisWeights(*this, body).of(position);
   Ring& ring = rings[particles[marker].ring];
   std::tie(ring.position, ring.velocity) = carried(marker);
-  touch_body(body);
+  mark_body(body);
   return marker;
 }
 
@@ -212,7 +212,7 @@ double Structure::extent(std::uint32_t body) const {
 
 std::array<double, 4> Structure::weights(std::uint32_t particle) const {
   const int own = particles[particle].basis_index;
-  if (own < 0) return ties[particle].weights;
+  if (own < 0) return affine[particle].weights;
   std::array<double, 4> weights{};
   weights[static_cast<std::size_t>(own)] = 1;
   return weights;

@@ -191,7 +191,7 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
   model.bodies[a].kind_before = kind_before;
   unite_kinds(model, a, kind_a, kind_b, report);
   if (!carry_by_basis(model, a, count_before, moved)) model.rebuild_basis(a);
-  model.touch_body(a);
+  model.mark_body(a);
   return {false, true};
 }
 
@@ -288,7 +288,7 @@ Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, Restr
     model.rebuild_basis(body_p);
     const std::vector<ParticleId> strays = stray_markers(model, body_p);  // by its shape before any move
     if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
-    model.touch_body(body_p);
+    model.mark_body(body_p);
     destroy_strays(model, body_p, strays, report.notes);
     return edit;
   }
@@ -299,10 +299,10 @@ Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, Restr
 
   require_no_shared_body(model, ring_p, ring_q, none);
   require_can_meet(model, p, q);
-  model.touch_ring(ring_q);
+  model.mark_ring(ring_q);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
-  model.touch_ring(ring_p);
+  model.mark_ring(ring_p);
   return edit;
 }
 
@@ -319,7 +319,7 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     const std::uint32_t twin = model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
     model.particles[twin].inactive = model.particles[p].inactive;
     model.rebuild_basis(body);
-    model.touch_body(body);
+    model.mark_body(body);
     report.changed = true;
     report.created_particles.push_back(model.particles.id(twin));
     return {};
@@ -346,7 +346,7 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     model.rebuild_basis(own);
     const Edit edit = merge_rings(model, model.particles[p].ring, model.particles[q].ring);
     model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
-    model.touch_body(body);
+    model.mark_body(body);
     split_where_apart(model, neighbors);
     destroy_strays(model, body, strays, report.notes);
     report.created_bodies.push_back(model.bodies.id(own));
@@ -358,10 +358,10 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     report.changed = true;
     Ring own;
     own.position = model.rings[ring].position, own.velocity = model.rings[ring].velocity;
-    model.touch_ring(ring);
+    model.mark_ring(ring);
     model.take_from_ring(q);
     model.add_to_ring(q, model.rings.create(own).slot);
-    model.touch_ring(model.particles[q].ring, ring);
+    model.mark_ring(model.particles[q].ring, ring);
     split_where_apart(model, std::array{body, model.particles[q].body});
     return {};
   }
@@ -384,7 +384,7 @@ void destroy_particle(Structure& model, std::uint32_t particle) {
   model.drop_uses(particle);
   std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
   model.remove_particle(particle);
-  model.touch_body(body);
+  model.mark_body(body);
   apart.push_back(body);
   split_where_apart(model, apart);
   if (!massive) return;

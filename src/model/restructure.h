@@ -27,7 +27,7 @@ Edit separate_part(Structure&, std::uint32_t body, BodyId part, RestructureRepor
 /// solid, which is one piece. The body keeps the piece with p. Particles connected to neither go with the nearer one.
 Edit fall_apart(Structure&, std::uint32_t p, std::uint32_t q, RestructureReport&);
 
-/// Ties new particles of a body to its present basis, if that spans their places well: a large body that grows in small
+/// Gives new particles of a body weights in its present basis, if that spans their places well: a large body that grows in small
 /// parts rarely needs another basis. False, without a change, if the basis must be rebuilt. `before`: its former number
 /// of particles.
 bool carry_by_basis(Structure&, std::uint32_t body, std::uint32_t before, std::span<const std::uint32_t> particles);

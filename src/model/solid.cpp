@@ -62,7 +62,7 @@ std::uint32_t add_solid(Structure& model, std::uint32_t body, Solid solid, doubl
   place_points(model, solid, world_center, principal, pose);
   const std::uint32_t slot = append_solid(model, solid);
   model.rebuild_basis(body);
-  model.touch_body(body);
+  model.mark_body(body);
   return slot;
 }
 
@@ -77,7 +77,7 @@ bool lacks_volume(const Structure& model, std::uint32_t body) {
   return lacks;
 }
 
-bool is_untouched(const Structure& model, std::uint32_t slot) {
+bool may_move_points(const Structure& model, std::uint32_t slot) {
   const auto& points = model.solids[slot].points;
   const double mass = model.particles[points[0]].mass;
   return std::none_of(points.begin(), points.end(), [&](std::uint32_t p) {
@@ -118,7 +118,7 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
   const std::uint32_t body = solid.body;
   const std::uint32_t particle = model.make_particle(body, position, share * mass, motion(position));
   model.rebuild_basis(body);
-  model.touch_body(body);
+  model.mark_body(body);
   return particle;
 }
 

@@ -28,7 +28,7 @@ bool lacks_volume(const Structure&, std::uint32_t body);
 bool lacks_volume(const Structure&, const shape::Data&);
 
 /// Whether the four points of a solid may still be moved: they have no hinge, nail or bond, and equal masses.
-bool is_untouched(const Structure&, std::uint32_t solid);
+bool may_move_points(const Structure&, std::uint32_t solid);
 
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
 /// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.

@@ -74,7 +74,7 @@ void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::
     for (const ParticleId p : back)
       if (model.particles[p.slot].body == b) newcomers.push_back(p.slot);
     if (!keeps_basis(model, b) || !carry_by_basis(model, b, model.bodies[b].count, newcomers)) model.rebuild_basis(b);
-    model.touch_body(b);
+    model.mark_body(b);
   }
   split_where_apart(model, std::vector{body, own});  // before markers are destroyed, which splits, too
   for (const std::uint32_t b : {body, own}) destroy_stray_markers(model, b, notes);

@@ -59,7 +59,7 @@ void Structure::remove_particle(std::uint32_t particle) {
   if (const std::uint32_t slot = particles[particle].attributes; slot != none) attributes.destroy(slot);
   take_from_body(particle);
   take_from_ring(particle);
-  ties.erase(particle);
+  affine.erase(particle);
   particles.destroy(particle);
 }
 
@@ -133,11 +133,11 @@ void Structure::leave_articulate(std::uint32_t body) {
 
 void Structure::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
   enter_articulate(body, articulate);
-  touch(articulate);
+  mark(articulate);
 }
 
 void Structure::take_from_articulate(std::uint32_t body) {
-  touch_body(body);
+  mark_body(body);
   leave_articulate(body);
 }
 

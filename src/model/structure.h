@@ -51,7 +51,7 @@ struct Particle {
   std::uint32_t groups = 0;         ///< a bit for each of its groups
   std::uint32_t attributes = none;  ///< see `Attributes`
   /// Its index in the body's basis of at most four points; -1 for an affine combination of these, see
-  /// `Tie`.
+  /// `AffineParticle`.
   std::int8_t basis_index = -1;
   std::uint8_t inactive = 0;  ///< its mass is then inactive_share of the assigned one
   std::array<std::uint8_t, 2> padding{};
@@ -63,10 +63,10 @@ struct Particle {
 };
 
 /// The affine combination of a particle outside of the basis.
-struct Tie {
+struct AffineParticle {
   std::array<double, 4> weights{};  ///< of the basis points
   std::array<double, 3>
-      multiplier{};  ///< of the rows that tie it to the basis, if it is an unknown of its own, N; warm start
+      multiplier{};  ///< of the rows that keep it at its place, if it is an unknown of its own, N; warm start
 };
 
 /// The shared state of the particles of a ring: one position, one unknown of the solver. (The thesis: a particle is a
@@ -151,7 +151,7 @@ struct Articulate {
   // Both are set by Structure::wake and mark_velocities, which list it for the next step.
   std::uint32_t velocity_dirty =
       0;                      ///< velocities were assigned and may violate constraints: project before the next step
-  std::uint32_t to_wake = 0;  ///< it was touched since the last step
+  std::uint32_t to_wake = 0;  ///< it was changed since the last step
   double slow_time = 0;       ///< s; of an island, at the articulate of its body with the lowest slot
   std::uint64_t standing_steps = 0;  ///< since the last attempt to close a conflict
   double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
@@ -171,8 +171,8 @@ struct Group {
 class Structure {
  public:
   SlotTable<Particle, ParticleId> particles;
-  SideTable<Tie> ties;      ///< of particles outside of a basis
-  SideTable<double> fuses;  ///< breaking load of the hinge or nail of a particle, N
+  SideTable<AffineParticle> affine;  ///< of particles outside of a basis
+  SideTable<double> fuses;           ///< breaking load of the hinge or nail of a particle, N
   SlotTable<Ring, Id<"ring">> rings;
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;        ///< of bodies
@@ -259,24 +259,24 @@ class Structure {
   std::span<const std::uint32_t> flagged() const { return flagged_; }
   /// Lists them anew by their flags, which are saved; the list is not.
   void list_flagged();
-  void touch(std::uint32_t articulate) { touch(articulate, anything); }
+  void mark(std::uint32_t articulate) { mark(articulate, anything); }
   /// A body was created or changed: viewers and outlines are told.
   void note_body(std::uint32_t body, bool is_new = false) {
     scene.bodies.note(body, is_new), changed_outlines.note(body, is_new);
   }
-  void touch_body(std::uint32_t body) { note_body(body), touch(bodies[body].articulate); }
-  void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
+  void mark_body(std::uint32_t body) { note_body(body), mark(bodies[body].articulate); }
+  void mark_particle(std::uint32_t particle) { mark_body(particles[particle].body); }
   /// Marks a change of only one body and the bodies at its rings: their problem can follow.
-  void touch_locally(std::uint32_t body);
+  void mark_locally(std::uint32_t body);
   /// The same for transient rows that viewers do not see. wakes: false if they tell nothing of how fast it is.
-  void touch_rows(std::uint32_t body, bool wakes = true);
+  void mark_rows(std::uint32_t body, bool wakes = true);
   /// Marks that a pull on a body was added or removed that couples only points that are coupled anyway: the body's
   /// problem keeps its structure.
-  void touch_pull(std::uint32_t body);
+  void mark_pull(std::uint32_t body);
   /// The same for the bodies at a ring, before or after a change of their hinges. `split_from`: the former ring of a
   /// new ring's particles.
-  void touch_ring(std::uint32_t ring, std::uint32_t split_from = none);
-  bool is_touched() const { return !touched_.empty(); }
+  void mark_ring(std::uint32_t ring, std::uint32_t split_from = none);
+  bool is_marked() const { return !marked_.empty(); }
   /// Changed bodies and rings; some are listed more than once, some were destroyed.
   struct LocalChange {
     struct ChangedRing {
@@ -284,15 +284,15 @@ class Structure {
     };
     std::vector<std::uint32_t> bodies;
     std::vector<ChangedRing> rings;
-    std::vector<std::uint32_t> pulled;  ///< bodies: see touch_pull
+    std::vector<std::uint32_t> pulled;  ///< bodies: see mark_pull
   };
   /// The changes since the last call.
-  struct Touched {
+  struct Marked {
     std::vector<std::uint32_t> articulates;  ///< slots, destroyed ones too, each once
     std::vector<std::uint8_t> only_locally;  ///< of each of those: only membership and `local` changed
     LocalChange local;
   };
-  void take_touched(Touched&);
+  void take_marked(Marked&);
   ///@}
 
   void set_fuse(std::uint32_t particle, double force);      ///< infinite: none
@@ -317,7 +317,7 @@ class Structure {
   void rebuild_basis(std::uint32_t body);
   /// Before it is solved: a body that is tiny beside what is hinged to it becomes a point. For a body made of solids, which has
   /// more points than a basis needs, chooses those that are unknowns anyway (hinged, nailed, bonded), if there are new ones
-  /// and they span it well. Saves unknowns and ties.
+  /// and they span it well. Saves unknowns and rows.
   void prefer_unknowns(std::uint32_t body);
   /// A new massless particle; the body's basis does not change.
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
@@ -459,18 +459,18 @@ class Structure {
   };
   Marks body_marks_;
   std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
-  enum Touch : std::uint8_t { untouched, locally, anything };
+  enum Mark : std::uint8_t { unmarked, locally, anything };
   /// A longer list would take as long as to assemble all islands anew: while a scene is built, everything changes.
   bool lists_local_changes() const {
     return local_change_.bodies.size() < std::max<std::size_t>(1024, bodies.size() / 4);
   }
-  void touch(std::uint32_t articulate, Touch, bool wakes = true);
+  void mark(std::uint32_t articulate, Mark, bool wakes = true);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
   std::vector<std::uint32_t> flagged_;  // articulates, since take_flagged
-  std::vector<std::uint32_t> touched_;
+  std::vector<std::uint32_t> marked_;
   LocalChange local_change_;
-  std::vector<Touch> touch_of_;  ///< of each articulate
+  std::vector<Mark> mark_of_;  ///< of each articulate
 
   /// The last 65 536 retirements; the oldest is dropped first.
   template <class IdType>
@@ -529,7 +529,7 @@ void Structure::archive(Archive& ar) {
   table("particles", particles), table("rings", rings), table("bodies", bodies), table("solids", solids);
   table("twins", twins), table("articulates", articulates), table("groups", groups);
   table("inertia_pairs", inertia_pairs), table("attributes", attributes);
-  table("ties", ties, particles.slot_count()), table("fuses", fuses, particles.slot_count());
+  table("ties", affine, particles.slot_count()), table("fuses", fuses, particles.slot_count());
   table("first_twin", first_twin, particles.slot_count());
   table("more_rows", more_rows, bodies.slot_count()), table("body_damping", body_damping, bodies.slot_count());
   table("obstacles", obstacles, bodies.slot_count());

@@ -21,7 +21,7 @@ Bounds bounds_of(const RowLaw& law, const Stage& stage) {
   return {law.lower, law.upper};
 }
 
-/// Whether velocities differ from the rate of a hold row by more than the curvature of its coordinate explains within a
+/// Whether velocities differ from the rate of a rate row by more than the curvature of its coordinate explains within a
 /// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
 template <class C>
 bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
@@ -119,7 +119,8 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
       }
       double g[C::rows] = {};
       const RowLaw* const law = pool.law(k);
-      if (std::any_of(law, law + C::rows, [](const RowLaw& l) { return !l.is_off() && (l.hold || l.is_compliant()); }))
+      if (std::any_of(law, law + C::rows,
+                      [](const RowLaw& l) { return !l.is_off() && (l.is_rate || l.is_compliant()); }))
         pool.value(k, problem.position.data(), stage.fraction_start, g);
       for (int r = 0; r < C::rows; ++r) {
         const Bounds bounds = bounds_of(law[r], stage);
@@ -129,7 +130,7 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
         state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
         if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
         state.side_before = state.side;
-        state.off_speed = law[r].hold && is_off_speed(problem, pool.items[k], r, law[r].rate, stage);
+        state.off_speed = law[r].is_rate && is_off_speed(problem, pool.items[k], r, law[r].rate, stage);
       }
     }
   });
@@ -222,7 +223,7 @@ void ActiveSet::soften(Problem& problem, const Stage& stage, const Vec3* x) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const auto natural = natural_compliances(problem, pool.items[k], stage, x);
       for (std::size_t r = 0; r < natural.size(); ++r)
-        if (pool.laws[k * C::rows + r].hold) pool.states.rows_[k * C::rows + r].yield = softening_ * natural[r];
+        if (pool.laws[k * C::rows + r].is_rate) pool.states.rows_[k * C::rows + r].yield = softening_ * natural[r];
     }
   });
 }

@@ -66,7 +66,7 @@ class ActiveSet {
   void soften(Problem&, const Stage&, const Vec3* x);
 
   int fewest_wrong_ = 0, stalled_ = 0;
-  double softening_ = 0;  // of hold rows, in their natural compliances
+  double softening_ = 0;  // of rate rows, in their natural compliances
   bool has_softened_ = false;
 };
 

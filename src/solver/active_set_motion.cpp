@@ -44,7 +44,7 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           state.side = 1;
         } else if (state.next_side != RowStates::as_it_moves) {
           state.side = state.next_side;
-        } else if (law.hold) {
+        } else if (law.is_rate) {
           const bool is_at_rest = std::abs(speed) <= rest;
           state.side = static_cast<std::int8_t>(is_at_rest ? 0 : speed > 0 ? 1 : -1);
           can_follow = can_follow && (is_at_rest || std::isfinite(speed > 0 ? law.upper : law.lower));
@@ -55,7 +55,7 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           state.side = static_cast<std::int8_t>(touches && open * speed <= rest ? 0 : open);
         }
         if (state.side != 0 && !law.is_compliant())
-          pool.multiplier(k)[r] = law.hold ? (state.side > 0 ? law.upper : law.lower) : 0;
+          pool.multiplier(k)[r] = law.is_rate ? (state.side > 0 ? law.upper : law.lower) : 0;
         state.before = std::abs(speed), state.next_side = RowStates::as_it_moves;
         sides.are_new = sides.are_new || state.side != side_before;
         sides.stop_any = sides.stop_any || (state.side == 0 && side_before != 0);
@@ -101,7 +101,7 @@ double ActiveSet::find_change(Problem& problem, double h, double least) {
           const double lambda = pool.multiplier(k)[r], bound = std::clamp(lambda, law.lower, law.upper);
           if (std::abs(lambda - bound) > beyond * std::max(std::abs(bound), std::abs(state.before)))
             note(state, lambda > bound ? 1 : -1, (bound - state.before) / (lambda - state.before));
-        } else if (law.hold) {
+        } else if (law.is_rate) {
           const double speed = state.side * (motion.speed[r] - law.rate);
           if (!(speed < -little(pool.items[k], motion.size[r], law.rate, h))) continue;
           note(state, 0, state.before / (state.before - speed));

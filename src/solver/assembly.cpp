@@ -164,7 +164,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         else
           value = equation.value - (equation.softness + compliances[r] * give) * lambda[r];
         if (equation.softness > 0) gap = 0;
-        if (pool.law(k)[r].hold && is_equation) gap = equation.value;
+        if (pool.law(k)[r].is_rate && is_equation) gap = equation.value;
       } else {
         value = g[r] - compliance * lambda[r];
       }
@@ -217,7 +217,7 @@ Strain Assembly::strain_released(const Problem& problem, const Stage& stage, con
       }
       for (int r = 0; r < C::rows; ++r, ++lambda) {
         const bool is_soft =
-            pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold || !pool.is_equation(k, r));
+            pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].is_rate || !pool.is_equation(k, r));
         if (is_soft) continue;
         const double compliance = give * mobility[r] + 1e-300;
         const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;

@@ -96,16 +96,16 @@ void fill(CouplingGraph& graph, const Problem& problem) {
   add_to(graph, problem, [](auto&&) { return true; });
 }
 
-/// The nodes that a change concerns: touched ones, and those of their constraints.
+/// The nodes that a change concerns: changed ones, and those of their constraints.
 class Near {
  public:
   explicit Near(const Problem& problem) {
     mark_.assign(problem.size(), far);
-    for (const std::uint32_t node : problem.changes().touched) mark_[node] = touched;
+    for (const std::uint32_t node : problem.changes().changed) mark_[node] = changed;
     problem.for_each_constraint_pool([&](const auto& pool) {
       for (const auto& item : pool.items) {
         const auto nodes = pool.nodes_of(item);
-        if (std::none_of(nodes.begin(), nodes.end(), [&](std::uint32_t n) { return mark_[n] == touched; })) continue;
+        if (std::none_of(nodes.begin(), nodes.end(), [&](std::uint32_t n) { return mark_[n] == changed; })) continue;
         for (const std::uint32_t node : nodes)
           if (mark_[node] == far) mark_[node] = near;
       }
@@ -119,7 +119,7 @@ class Near {
   }
 
  private:
-  enum Mark : std::uint8_t { far, near, touched };
+  enum Mark : std::uint8_t { far, near, changed };
   static thread_local std::vector<Mark> mark_;
 };
 thread_local std::vector<Near::Mark> Near::mark_;

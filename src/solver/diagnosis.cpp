@@ -15,7 +15,7 @@ bool holds(const ConstraintPool<C>& pool, std::size_t item, int row, const Vec3*
   constexpr double touching = 1e-6;
   if (!pool.has_laws()) return true;
   const RowLaw& law = pool.law(item)[row];
-  if (law.is_off() || law.hold || law.is_compliant()) return false;
+  if (law.is_off() || law.is_rate || law.is_compliant()) return false;
   if (law.lower == -RowLaw::unbounded && law.upper == RowLaw::unbounded) return true;
   double g[C::rows];
   pool.items[item].value(x, 0, g);

@@ -107,7 +107,7 @@ double Solved::work_of_drives() const {
         }
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r)
-          if (pool.law(k)[r].hold) work -= pool.multiplier(k)[r] * pool.law(k)[r].rate * stage.h;
+          if (pool.law(k)[r].is_rate) work -= pool.multiplier(k)[r] * pool.law(k)[r].rate * stage.h;
     }
   });
   return work;
@@ -116,7 +116,7 @@ double Solved::work_of_drives() const {
 void Solved::add_dissipation(StepEnergy& energy, std::span<const double> multipliers_before) const {
   const double* before = multipliers_before.data();
   problem.for_each_constraint_pool([&](const auto& pool) {
-    if (pool.has_laws() && pool.held.empty()) add_dissipation_of_rows(pool, before, energy);
+    if (pool.has_laws() && pool.temporary.empty()) add_dissipation_of_rows(pool, before, energy);
     before += pool.multipliers.size();
   });
   problem.for_each_force_pool([&](const auto& pool) {
@@ -141,7 +141,7 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, const double
       const double stretched = law.stretch(after[r]) - law.stretch(before[r]);
       const bool is_free = pool.is_equation(k, r);
       if (law == RowLaw{} || law.is_off()) continue;
-      if (law.hold)
+      if (law.is_rate)
         energy.dissipated += lambda * (moved - law.rate * stage.h);
       else if (law.is_compliant())
         energy.dissipated += is_free ? law.damping / stage.h * stretched * stretched

@@ -88,7 +88,7 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
     for (int r = 0; r < C::rows; ++r) {
       tie.law[r] = pool.has_laws() ? pool.law(tie.item)[r] : RowLaw{};
       tie.impulse[r] = std::clamp(-h * pool.multiplier(tie.item)[r], -h * tie.law[r].upper, -h * tie.law[r].lower);
-      tie.drives = tie.drives || (tie.law[r].hold && tie.law[r].rate != 0);
+      tie.drives = tie.drives || (tie.law[r].is_rate && tie.law[r].rate != 0);
     }
   });
   for (Tie& tie : ties_) {
@@ -224,7 +224,7 @@ void HeapTies::sweep(std::span<HeapMotion> motions, const HeapSoftness& soft, do
         const bool is_slack = tie.value[r] != 0 && law.stretch(tie.value[r]) == 0;
         const double stiff = std::isinf(law.compliance) ? 0 : h / law.compliance, s = h * stiff + h * law.damping;
         after = is_slack ? 0 : (-stiff * tie.value[r] - s * rate + s * before / mass) / (1 + s / mass);
-      } else if (law.hold) {
+      } else if (law.is_rate) {
         after = before - mass * (rate - law.rate);
       } else {
         const bool is_open = law.violation(tie.value[r]) == 0 && tie.value[r] != 0;

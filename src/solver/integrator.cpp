@@ -123,10 +123,10 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   energy_.measure(problem, 0);
   // If moving nails have left a conflict, the mid-point rule would double the speed at which bodies catch up.
   const bool by_end_point = (settings.scheme == Scheme::end_point && !find_bounces(problem, {.h = h})) ||
-                            (holds_offsets_ && !is_conservative_);
+                            (keeps_offsets_ && !is_conservative_);
   const double taken = settings.max_error > 0 && !by_end_point ? advance_explicitly(problem, h, report) : 0;
   if (taken < 1) advance_part(problem, {.from = taken, .h = (1 - taken) * h}, by_end_point ? 1 : 0, report);
-  if (holds_offsets_) restore_bounds(problem);
+  if (keeps_offsets_) restore_bounds(problem);
   const bool is_unsolved = taken == 0 && !solves_part_;
   const bool is_new = is_unsolved && (is_brief || !is_cut_short_);
   problem.unsolved_steps = is_new || report.is_approximate ? problem.unsolved_steps + 1 : 0;
@@ -293,7 +293,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
 
 // Heaps that the end-point rule cannot solve: of 20 bodies that fall, 3 to 37 of 300 steps.
 bool Integrator::may_need_mid_point(Problem& problem) const {
-  return !holds_offsets_ && !problem.items_of<ContactConstraint>().empty();
+  return !keeps_offsets_ && !problem.items_of<ContactConstraint>().empty();
 }
 
 bool Integrator::may_halve(const Part& part, const AdvanceReport& report) const {
@@ -326,9 +326,9 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   // free gears 1e-5.
   const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
   // In a conflict also what targets take that give way to rows: what these store in their gaps is in no book.
-  if (drives_rows_) energy.external_work -= holds_offsets_ ? energy.idle_work() : std::max(0.0, energy.idle_work());
-  if (holds_offsets_) energy.overdrawn = 0;
-  if (holds_offsets_) note_momenta(problem, stage);
+  if (drives_rows_) energy.external_work -= keeps_offsets_ ? energy.idle_work() : std::max(0.0, energy.idle_work());
+  if (keeps_offsets_) energy.overdrawn = 0;
+  if (keeps_offsets_) note_momenta(problem, stage);
   const AdvanceReport before = report;
   commit(problem, stage, energy, report);
   if (free) {
@@ -337,12 +337,12 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   }
   if (!is_mid_point) give_spin_back(problem, stage, energy.dissipated, report);
   if (has_impacts(problem, stage))
-    settle_impacts(problem, stage, energy, report);
+    solve_impacts(problem, stage, energy, report);
   else if (is_mid_point)
     project_velocities_after_step(problem, stage, report);
-  const bool keeps_momenta = !holds_offsets_ || restore_momenta(problem);
-  if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy.total_before);
-  if (!keeps_momenta || (holds_offsets_ && has_taken_off(energy))) {
+  const bool keeps_momenta = !keeps_offsets_ || restore_momenta(problem);
+  if (!is_mid_point || keeps_offsets_) remove_made_energy(problem, energy.total_before);
+  if (!keeps_momenta || (keeps_offsets_ && has_taken_off(energy))) {
     report.external_work = before.external_work, report.dissipated = before.dissipated;
     move_rigidly_instead(problem, part, report);
   }
@@ -465,7 +465,7 @@ bool Integrator::coast_a_piece(Problem& problem, double h, AdvanceReport& report
     problem.position[i] += h * problem.velocity[i];
   }
   spin().note(problem, holds_);
-  bool is_taken = holds_offsets_ ? !opens_gaps(problem) : project_positions(problem);
+  bool is_taken = keeps_offsets_ ? !opens_gaps(problem) : project_positions(problem);
   if (is_taken) {
     project_velocities(problem);
     const bool keeps_momenta = spin().restore(problem) == 0;

@@ -143,7 +143,7 @@ class Integrator {
   static void forget_bounces(Problem&);
   bool has_impacts(const Problem&, const Stage&) const;
   static bool has_driven_rows(const Problem&);
-  void settle_impacts(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
+  void solve_impacts(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
   void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);
   double note_projection(Problem&, double kinetic, bool drives, AdvanceReport&);
   Spin& spin() {
@@ -171,7 +171,7 @@ class Integrator {
   void keep_energy(Problem&, const RungeKutta&, AdvanceReport&);
 
   void close_gaps(Problem&, AdvanceReport&);
-  void hold_offsets(Problem&, AdvanceReport&);
+  void keep_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
   bool share_gaps(Problem&, double fraction, AdvanceReport&);
   bool try_projection(Problem&, int iterations);
@@ -206,7 +206,7 @@ class Integrator {
   bool is_conservative_ = true;       ///< no external work
   bool is_free_body_ = false;         ///< one rigid thing that nothing holds
   std::uint64_t acting_version_ = 0;  ///< of the problem, when these were found
-  bool holds_offsets_ = false;
+  bool keeps_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();
   int resort_left_ = 0;  ///< iterations of the last resort beyond a budget
   bool is_cut_short_ = false;

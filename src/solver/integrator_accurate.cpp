@@ -33,7 +33,7 @@ bool has_stiff_forces(const Problem& problem, double h) {
 // Explicit steps need rows at rest in time.
 bool Integrator::is_smooth(Problem& problem, double h) const {
   constexpr double most_parts = 100;  // of a step by the springs of rows; shorter ones are stiff
-  if (holds_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
+  if (keeps_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
   if (!problem.items_of<GripForce>().empty()) return false;
   if (drives_rows_) {
     bool moves = false;

@@ -17,8 +17,8 @@ constexpr double relaxation = 1.1;
 }  // namespace
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
-  if (holds_offsets_) problem.clear_offsets();
-  holds_offsets_ = false;
+  if (keeps_offsets_) problem.clear_offsets();
+  keeps_offsets_ = false;
   const double gap = problem.worst_gap(problem.position.data(), 0, true);
   const bool has_new_rows = std::exchange(problem.has_new_rows, false);
   const bool is_open = gap > strained_gap;
@@ -30,7 +30,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   const bool stands = is_open && is_conservative_ && gap <= 1.001 * problem.standing_gap;
   problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
   if (stands && !is_due(problem.standing_steps)) {
-    hold_offsets(problem, report);
+    keep_offsets(problem, report);
     return;
   }
   const bool are_joints_closed =
@@ -44,7 +44,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   problem.standing_gap = 0;
   if (!project_locally(problem, is_open)) {
     if (is_open && !(stands ? project_in_one_solve(problem) : project_positions(problem))) {
-      hold_offsets(problem, report);
+      keep_offsets(problem, report);
       problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
     }
     project_velocities(problem);
@@ -55,7 +55,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   report.closing_energy += added;
   // Repeated attempts must not add energy without end. And bodies that have swung into each other would be lifted in each step.
   const bool is_by_motion = is_open && are_joints_closed;
-  if (!(added > 0 && (is_by_motion || (holds_offsets_ && is_conservative_)))) return;
+  if (!(added > 0 && (is_by_motion || (keeps_offsets_ && is_conservative_)))) return;
   (void)change_kinetic_energy(problem, added);
   report.closing_energy -= kinetic - energy_.kinetic, energy_.missing = 0;
 }
@@ -63,9 +63,9 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
 // Gaps that cannot be closed are constant during the step. If nails move, a gap may be at most the one at the nails'
 // final places: its row gets a bound instead of an equation. With an equation, an arm that was pulled beyond its reach
 // would have to snap sideways when the pull ends (measured: 400 J to 3 kJ, against 20 J).
-void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
+void Integrator::keep_offsets(Problem& problem, AdvanceReport& report) {
   report.converged = false;
-  holds_offsets_ = true;
+  keeps_offsets_ = true;
   bool moving = false;
   problem.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) moving = moving || c.is_moving();
@@ -92,19 +92,19 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
         if (ConeConstraint<C> || law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // already bounded
         (offset[r] > 0 ? law.lower : law.upper) = 0;
         offset[r] *= relaxation;
-        pool.held.push_back(row);
+        pool.temporary.push_back(row);
       }
     }
     if (pool.has_laws()) pool.states.resize(pool.laws.size());
   });
 }
 
-// Rows that hold_offsets has given a bound are equations again.
+// Rows that keep_offsets has given a bound are equations again.
 void Integrator::restore_bounds(Problem& problem) {
   problem.for_each_constraint_pool([&](auto& pool) {
-    if (pool.held.empty()) return;
-    for (const std::uint32_t row : pool.held) pool.laws[row] = {};
-    pool.held.clear();
+    if (pool.temporary.empty()) return;
+    for (const std::uint32_t row : pool.temporary) pool.laws[row] = {};
+    pool.temporary.clear();
     const bool none =
         std::all_of(pool.laws.begin(), pool.laws.end(), [](const RowLaw& law) { return law == RowLaw{}; });
     if (none) pool.laws.clear(), pool.states.clear();

@@ -78,7 +78,7 @@ bool Integrator::has_impacts(const Problem& problem, const Stage& stage) const {
 }
 
 // `step`: the balance of what was solved.
-void Integrator::settle_impacts(Problem& problem, const Stage& stage, const StepEnergy& step, AdvanceReport& report) {
+void Integrator::solve_impacts(Problem& problem, const Stage& stage, const StepEnergy& step, AdvanceReport& report) {
   const bool drives = drives_rows_ && has_driven_rows(problem);
   const bool any_bounces = std::ranges::any_of(problem.items_of<ContactConstraint>(),
                                                [](const ContactConstraint& c) { return c.restitution > 0; });
@@ -87,7 +87,7 @@ void Integrator::settle_impacts(Problem& problem, const Stage& stage, const Step
   double spare = allowed - energy_.total;
   if (spare > 0) spare = std::max(0.0, spare - (any_bounces ? std::max(0.0, step.dissipated) : 0));
   const double most = drives ? std::numeric_limits<double>::infinity() : energy_.kinetic + spare;
-  const std::optional<double> kinetic = newton_.settle_impacts(
+  const std::optional<double> kinetic = newton_.solve_impacts(
       problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives, .is_isolated = holds_.count == 0}, most);
   has_corrected_ = has_corrected_ || kinetic.has_value();
   if (!kinetic) return;

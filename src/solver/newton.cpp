@@ -87,7 +87,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
   measure(problem, stage);
   Hessian hessian = Hessian::exact;
-  bool stuck = false, settled = true;
+  bool stuck = false, are_final = true;
   // The factors of the last step may do, too. Of bounded rows they may be those of other sides.
   const bool may_carry = stage.is_held && !has_laws_ && assembly_.is_dear();
   const bool carries = may_carry && assembly_.has_factors_of(stage);
@@ -96,13 +96,13 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   const double blur = blur_of_places(problem);
   while (true) {
     if (has_laws_ && report.iterations > 0) {
-      settled = !active_set_.choose(problem, stage, x_.data());
-      if (!settled) {
+      are_final = !active_set_.choose(problem, stage, x_.data());
+      if (!are_final) {
         factor_will_do = false;
         measure(problem, stage);
-        for (int more = ActiveSet::most_softenings; more > 0 && !settled && !(residual_.worst > stage.tolerance);
+        for (int more = ActiveSet::most_softenings; more > 0 && !are_final && !(residual_.worst > stage.tolerance);
              --more) {
-          settled = !active_set_.choose(problem, stage, x_.data());  // what yields less may need no other motion
+          are_final = !active_set_.choose(problem, stage, x_.data());  // what yields less may need no other motion
           measure(problem, stage);
         }
         most_iterations =
@@ -160,7 +160,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   if (has_laws_) report.met = ActiveSet::count_met(problem);
   const bool exact = stage.compliance <= exact_rows;
   report.converged =
-      settled && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
+      are_final && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
       (!exact || report.violation <= (stage.is_mid_point() || stage.is_projection() ? closed_gap : strained_gap));
   return report;
 }
@@ -318,8 +318,8 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
   NewtonReport report;
   problem.copy_multipliers_to(multipliers_saved_);
   if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
-  bool settled = false;
-  for (int round = 0; round < most_rounds && !settled; ++round) {
+  bool are_final = false;
+  for (int round = 0; round < most_rounds && !are_final; ++round) {
     StepEquations equations(*this, problem, stage);
     std::vector<double> unknowns = equations.unknowns();
     try {
@@ -330,11 +330,11 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
       break;
     }
     report.residual = equations.assign(unknowns);
-    settled = !has_laws_ || !active_set_.choose(problem, stage, x_.data());
+    are_final = !has_laws_ || !active_set_.choose(problem, stage, x_.data());
   }
   report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
-  report.converged = settled && report.residual <= Set::round_off_floor && report.violation <= closed_gap;
+  report.converged = are_final && report.residual <= Set::round_off_floor && report.violation <= closed_gap;
   if (!report.converged) problem.set_multipliers(multipliers_saved_);
   return report;
 }

@@ -39,7 +39,7 @@ class Newton {
   void add_times_to(StepTimes* times) { assembly_.add_times_to(times); }  ///< see Assembly
 
   /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and
-  /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
+  /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state stays.
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
   /// See Assembly.
@@ -80,7 +80,7 @@ class Newton {
   std::optional<double> project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known);
   /// The same after a (sub-)step with impacts that have a restitution, by at most some kinetic energy: each contact that met
   /// gets the normal speed e times that of its approach, with friction; none pulls. See integrator_impacts.cpp.
-  std::optional<double> settle_impacts(Problem& problem, const Stage& stage, const AfterStep& known, double most);
+  std::optional<double> solve_impacts(Problem& problem, const Stage& stage, const AfterStep& known, double most);
   /// Before the latest projection.
   std::span<Vec3> velocities_before() { return u_saved_; }
   std::span<const Vec3> velocities_before() const { return u_saved_; }

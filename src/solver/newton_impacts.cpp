@@ -7,8 +7,7 @@
 
 namespace iota::solver {
 
-std::optional<double> Newton::settle_impacts(Problem& problem, const Stage& stage, const AfterStep& known,
-                                             double most) {
+std::optional<double> Newton::solve_impacts(Problem& problem, const Stage& stage, const AfterStep& known, double most) {
   constexpr double round_off = 1e-14;
   Wanted wanted = begin_after_step(problem, stage, known);
   wanted.has_impacts = true;

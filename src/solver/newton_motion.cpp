@@ -34,7 +34,7 @@ double Newton::find_gaps(const Problem& problem, double time) {
       for (int r = 0; r < C::rows; ++r) {
         if (!pool.is_equation(k, r))
           row[r] = 0;
-        else if (pool.has_laws() && pool.law(k)[r].hold)
+        else if (pool.has_laws() && pool.law(k)[r].is_rate)
           row[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r)) + pool.law(k)[r].rate * time;
         worst.add(std::abs(row[r]) * per_length);
       }

@@ -184,7 +184,7 @@ bool keeps_mean_rate(const ConstraintPool<C>& pool, std::size_t item) {
   if (std::is_same_v<C, CouplingConstraint>) return true;
   if (!pool.has_laws()) return false;
   const RowLaw* const law = pool.law(item);
-  return std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.hold && l.rate != 0; });
+  return std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.is_rate && l.rate != 0; });
 }
 
 }  // namespace
@@ -229,7 +229,7 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
         if (wanted.has_impacts && c.rebound > 0) row[0] = rate_in_the_middle(c, problem.velocity) - c.rebound;
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) {
-          if (pool.law(k)[r].hold && !keeps_rate) row[r] -= pool.law(k)[r].rate;
+          if (pool.law(k)[r].is_rate && !keeps_rate) row[r] -= pool.law(k)[r].rate;
           if (!pool.is_equation(k, r)) row[r] = 0;
         }
       // To m/s, as rows of angles and directions have no lengths.

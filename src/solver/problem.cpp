@@ -31,7 +31,7 @@ void Problem::clear() {
   clear(position, velocity, force, torques, mass, damping, mass_couplings, counted_angles);
   for_each_constraint_pool([&](auto& p) {
     acting_version_ += !p.acting.empty();  // the next ones may have no laws, and all act
-    clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.held);
+    clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.temporary);
   });
   for_each_force_pool([&](auto& p) { clear(p.items, p.keys); });
   changes_.clear(), is_open_.clear();
@@ -71,7 +71,7 @@ std::uint32_t Problem::add_node_beside(std::uint32_t neighbor) {
 void Problem::couple_masses(std::uint32_t a, std::uint32_t b, double m) {
   if (is_changing()) {
     if (!is_any_open(std::array{a, b})) return;
-    touch(std::array{a, b});
+    note_change(std::array{a, b});
     reserve_with_slack(mass_couplings, mass_couplings.size() + 1);
   }
   note_structure(std::uint64_t{a} << 32 | b);
@@ -92,13 +92,13 @@ void Problem::open(std::span<const std::uint32_t> nodes) {
     mass[node] = 0;
     if (!damping.empty()) damping[node] = 0;
   }
-  touch(nodes);
+  note_change(nodes);
   thread_local std::vector<std::size_t> leaving;
   const auto find_leaving = [&](const auto& items, auto nodes_of) {
     leaving.clear();
     for (std::size_t i = 0; i < items.size(); ++i)
       if (const auto nodes_of_item = nodes_of(items[i]); is_any_open(nodes_of_item))
-        touch(nodes_of_item), leaving.push_back(i);
+        note_change(nodes_of_item), leaving.push_back(i);
   };
   find_leaving(mass_couplings, [](const MassCoupling& c) { return std::array{c.a, c.b}; });
   take_out(mass_couplings, 1, leaving);
@@ -124,7 +124,7 @@ void Problem::fit_pools() {
     if constexpr (ConeConstraint<C>)
       for (std::size_t i = 0; i < pool.items.size(); ++i)
         for (int r = 0; r < C::rows; ++r) {
-          pool.law(i)[r].hold = C::is_tangent(r);
+          pool.law(i)[r].is_rate = C::is_tangent(r);
           if (C::is_one_sided(r)) pool.law(i)[r].upper = 0;
         }
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());

@@ -25,7 +25,7 @@ namespace iota::solver {
 
 /// The bounds of a row's multiplier. Default: none, an equation, g = 0. With bounds
 ///   lambda = upper => g >= 0,   lambda = lower => g <= 0,   in between g = 0
-/// so that a rope, g = length - L <= 0, has lower = 0; a stop g >= 0 has upper = 0; both 0: switched off. A `hold` row
+/// so that a rope, g = length - L <= 0, has lower = 0; a stop g >= 0 has upper = 0; both 0: switched off. A *rate row*
 /// (dry friction, speed motors) measures g from its value at the start of each (sub-)step, plus `rate` times the time:
 /// bounds are then the friction or the motor's strength. A compliant row is a spring, within its bounds:
 ///   lambda = g / compliance + damping dg/dt
@@ -34,8 +34,8 @@ struct RowLaw {
   double lower = -unbounded, upper = unbounded;  ///< N (N m where g is an angle)
   double compliance = 0;                         ///< m/N; infinite for a pure dashpot
   double damping = 0;                            ///< N s/m, of compliant rows
-  double rate = 0;                               ///< of a hold row, m/s
-  bool hold = false;
+  double rate = 0;                               ///< of a rate row, m/s
+  bool is_rate = false;
 
   friend bool operator==(const RowLaw&, const RowLaw&) = default;
   bool is_off() const { return lower == upper; }  ///< both 0
@@ -43,8 +43,8 @@ struct RowLaw {
   bool acts(double multiplier) const { return !is_off() && (multiplier != 0 || (lower < 0 && upper > 0)); }
   bool is_compliant() const { return compliance > 0; }
   /// The bounds for positions or impulses, on which finite forces have no effect.
-  double lower_impulse() const { return lower == -unbounded && !is_compliant() && !hold ? -unbounded : 0; }
-  double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
+  double lower_impulse() const { return lower == -unbounded && !is_compliant() && !is_rate ? -unbounded : 0; }
+  double upper_impulse() const { return upper == unbounded && !is_compliant() && !is_rate ? unbounded : 0; }
   /// Distance of g into the forbidden side.
   double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
   /// Whether only values of one sign have a force: a rope that yields, a soft stop.
@@ -58,7 +58,7 @@ struct RowLaw {
   }
   /// Energy that a spring row stores, J; a pure dashpot stores none.
   double energy(double g) const {
-    if (!is_compliant() || hold || std::isinf(compliance)) return 0;
+    if (!is_compliant() || is_rate || std::isinf(compliance)) return 0;
     const double force = std::clamp(g / compliance, lower, upper);
     return force * (g - 0.5 * compliance * force);
   }
@@ -88,11 +88,11 @@ struct ConstraintPool {
   std::vector<double> multipliers;   ///< C::rows each, N
   std::vector<double> offsets;       ///< C::rows each: held gaps that cannot be closed; or empty: none
   std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing. Of a cone the
-                                     ///< tangents are hold rows, whose bounds it knows itself
+                                     ///< tangents are rate rows, whose bounds it knows itself
   RowStates states;                  ///< beside laws
   std::vector<std::uint8_t> acting;  ///< of each item, if there were laws at the last Problem::note_acting
   std::vector<std::uint32_t>
-      held;                  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
+      temporary;             ///< rows with a temporary bound that the integrator has set: Integrator::keep_offsets
   std::vector<Slots> slots;  ///< `clear` keeps them: a problem with the same structure has the same ones
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
@@ -402,8 +402,8 @@ struct Problem {
     return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return is_open(node); });
   }
   bool is_changing() const { return !is_open_.empty(); }
-  void touch(std::span<const std::uint32_t> nodes) {
-    changes_.touched.insert(changes_.touched.end(), nodes.begin(), nodes.end());
+  void note_change(std::span<const std::uint32_t> nodes) {
+    changes_.changed.insert(changes_.changed.end(), nodes.begin(), nodes.end());
   }
 
   void note_structure(std::uint64_t word) {
@@ -465,7 +465,7 @@ void Problem::add(const Item& item, ItemKey key) {
   note_structure(item, nodes);
   if (is_changing()) {
     if (!is_any_open(nodes)) return;
-    touch(nodes);
+    note_change(nodes);
     reserve_with_slack(pool.items, pool.items.size() + 1);
     reserve_with_slack(pool.keys, pool.items.size() + 1);
   }

@@ -38,13 +38,13 @@ template <class C>
 RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, double g, const Stage& stage) {
   const RowLaw& law = pool.law(i)[r];
   const double start = pool.states.start(i * C::rows + static_cast<std::size_t>(r));
-  if (law.hold) g -= start + law.rate * stage.h;
+  if (law.is_rate) g -= start + law.rate * stage.h;
   if (!law.is_compliant()) return {g, pool.states.yield(i * C::rows + static_cast<std::size_t>(r))};
   const double part = stage.is_mid_point() ? 0.5 : 1;
   const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
   const double total = part * stiffness + damping;
-  const double before = law.hold ? 0 : law.stretch(start);
-  if (stage.is_mid_point() && !law.hold && law.is_one_sided()) {
+  const double before = law.is_rate ? 0 : law.stretch(start);
+  if (stage.is_mid_point() && !law.is_rate && law.is_one_sided()) {
     const bool becomes_taut = before == 0 && start != 0;
     const bool becomes_slack = before != 0 && law.stretch(g) == 0 && g != 0 && part * stiffness > damping;
     if (becomes_taut || becomes_slack) return equation_at_slack(start, before, g, part * stiffness, damping);
@@ -108,7 +108,7 @@ struct RowMotion {
 
 /// The multiplier of a row that is no equation while it moves: a bound, or the force of a spring by its value and speed.
 inline double multiplier_in_motion(const RowLaw& law, double at_bound, double value, double speed) {
-  return law.is_compliant() ? law.spring_force(value, speed) : law.hold ? at_bound : 0;
+  return law.is_compliant() ? law.spring_force(value, speed) : law.is_rate ? at_bound : 0;
 }
 
 /// Whether all rows of an item are at a bound of zero, so that it has no effect. A contact that a projection has opened keeps the

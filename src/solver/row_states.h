@@ -27,9 +27,9 @@ class RowStates {
     if (normal.side != 0) return {ConeState::Mode::open};
     return tangent.side == 0 ? ConeState{} : ConeState{ConeState::Mode::slips, tangent.side};
   }
-  /// The value of a hold or compliant row at the start of the (sub-)step.
+  /// The value of a rate or compliant row at the start of the (sub-)step.
   double start(std::size_t row) const { return rows_[row].start; }
-  /// By how much a hold row yields to a multiplier of 1 while the sides are sought; 0 in every solution.
+  /// By how much a rate row yields to a multiplier of 1 while the sides are sought; 0 in every solution.
   double yield(std::size_t row) const { return rows_[row].yield; }
 
  private:
@@ -38,7 +38,7 @@ class RowStates {
   struct Row {
     std::int8_t side = 0;         // -1, 1: its multiplier is at the lower, upper bound; 0: an equation
     std::int8_t side_before = 0;  // at the start of the (sub-)step
-    bool off_speed = false;       // a hold row whose velocity there was not the target
+    bool off_speed = false;       // a rate row whose velocity there was not the target
     double start = 0, yield = 0;
     double before =
         0;  // at the start of an explicit sub-step: the speed of a row that slides, the multiplier of an equation

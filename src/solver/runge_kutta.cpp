@@ -74,7 +74,7 @@ Power calc_power(const Problem& problem) {
       for (int r = 0; r < C::rows; ++r) {
         const RowLaw& law = pool.law(k)[r];
         const double lambda = pool.multiplier(k)[r], speed = motion.speed[r];
-        if (law.hold)
+        if (law.is_rate)
           power.external -= lambda * law.rate, power.dissipated += lambda * (speed - law.rate);
         else if (law.is_compliant())  // what it does not store
           power.dissipated += (lambda - std::clamp(motion.value[r] / law.compliance, law.lower, law.upper)) * speed;

@@ -65,7 +65,7 @@ concept ConeConstraint = GeneralConstraint<C> && C::rows == 3 && C::is_tangent(2
                            { c.equations(state, multipliers, g, g) } -> std::same_as<ConeEquations>;
                          };
 
-/// A cone that knows impacts: its reaction leaves it with a speed, see Newton::settle_impacts.
+/// A cone that knows impacts: its reaction leaves it with a speed, see Newton::solve_impacts.
 template <class C>
 concept BouncingConstraint = ConeConstraint<C> && requires(C& c) { c.restitution, c.meets, c.rebound, c.drags; };
 

@@ -39,7 +39,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double reference = 1;
   double pivots[2] = {};  ///< rates of the tangential rows at the end of a step in which they stick, see rate_of, m/s
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
-  double rebound = 0;               ///< the normal speed at which an impact ends, while velocities are settled, m/s
+  double rebound = 0;               ///< the normal speed at which an impact ends, while impacts are solved, m/s
   double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
   bool stays_slipping = false;  ///< meanwhile: to stick needs more than its cone has
   bool is_of_sweeps = false;    ///< its overlap was left by sweeps: see Heap

@@ -81,11 +81,11 @@ class BlockPattern {
   void analyze(CouplingGraph&);
 
   /// Updates the pattern for a graph that has changed in a few places: the order stays, new nodes are placed beside
-  /// others, and only fronts with changed couplings are rebuilt. The rows of touched nodes may get other unknowns. The
+  /// others, and only fronts with changed couplings are rebuilt. The rows of changed nodes may get other unknowns. The
   /// last nodes then take the numbers of removed ones, the highest first. A cut in a chain of 10 000 links takes a
   /// tenth of what an analysis takes. Returns false if the order no longer suits the graph: analyze it.
   [[nodiscard]] bool follow(CouplingGraph&, const GraphChange&);
-  /// Whether `follow` has moved the vertex of an unknown, or touched its node: then references to it have new slots.
+  /// Whether `follow` has moved the vertex of an unknown, or changed its node: then references to it have new slots.
   bool has_moved(std::uint32_t unknown) const { return moved_[unknown]; }
   /// Frees the memory behind `has_moved`, if it is much.
   void forget_moves() {

@@ -75,11 +75,11 @@ struct GraphChange {
   };
   std::vector<NewNode> added;
   std::vector<std::uint32_t> removed;       ///< nodes that nothing refers to any more
-  std::vector<std::uint32_t> touched;       ///< nodes that gained or lost a coupling or constraint, new ones included
+  std::vector<std::uint32_t> changed;       ///< nodes that gained or lost a coupling or constraint, new ones included
   std::vector<std::uint32_t> removed_rows;  ///< first unknowns of constraints that are gone or have other nodes
 
-  bool is_empty() const { return added.empty() && removed.empty() && touched.empty(); }
-  void clear() { added.clear(), removed.clear(), touched.clear(), removed_rows.clear(); }
+  bool is_empty() const { return added.empty() && removed.empty() && changed.empty(); }
+  void clear() { added.clear(), removed.clear(), changed.clear(), removed_rows.clear(); }
 };
 
 }  // namespace iota::solver

@@ -19,12 +19,12 @@ void PatternBuilder::begin(BlockPattern& pattern, CouplingGraph& graph) {
   pattern_ = &pattern, graph_ = &graph;
   old_nodes_ = 0, all_are_listed_ = false, next_own_rows_ = 0;
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
-  clear(node_order_, is_touched_, rows_at_, is_listed_, listed_, rank_of_added_, insertions_);
+  clear(node_order_, is_changed_, rows_at_, is_listed_, listed_, rank_of_added_, insertions_);
   clear(homeless_, homes_, own_rows_, is_gone_, now_at_, is_due_, is_known_, is_moved_, own_at_);
 }
 
 void PatternBuilder::analyze() {
-  is_touched_.assign(graph_->node_count, 1);
+  is_changed_.assign(graph_->node_count, 1);
   is_listed_.assign(graph_->node_count, 1), all_are_listed_ = true;
   rows_at_.assign(graph_->node_count, 0);
   homeless_.resize(graph_->constraints.size());
@@ -46,7 +46,7 @@ void PatternBuilder::follow(const GraphChange& change, FunctionRef<void()> compl
   reserve_with_slack(pattern_->entries_, pattern_->entries_.size() + usual_growth);
   reserve_with_slack(pattern_->pair_targets_, pattern_->pair_targets_.size() + usual_growth);
   old_nodes_ = pattern_->node_count();
-  take_rows_off_touched_nodes(change);
+  take_rows_off_changed_nodes(change);
   find_insertions(change);
   find_homes();
   renew_vertices(change);
@@ -100,11 +100,11 @@ std::uint64_t PatternBuilder::rank_of(std::uint32_t node) const {
 
 // --- 2. homes ----------------------------------------------------------------------------------------------------------
 
-// The rows of touched nodes get a home again, unless their home is an untouched node.
-void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
-  is_touched_.assign(graph_->node_count, 0), is_listed_.assign(graph_->node_count, 0);
+// The rows of changed nodes get a home again, unless their home is an unchanged node.
+void PatternBuilder::take_rows_off_changed_nodes(const GraphChange& change) {
+  is_changed_.assign(graph_->node_count, 0), is_listed_.assign(graph_->node_count, 0);
   rows_at_.assign(graph_->node_count, 0);
-  for (const std::uint32_t node : change.touched) is_touched_[node] = 1, list(node);
+  for (const std::uint32_t node : change.changed) is_changed_[node] = 1, list(node);
 
   is_gone_.assign(pattern_->vertices_.size(), 0);
   for (const std::uint32_t node : change.removed) is_gone_[pattern_->node_vertex_[node]] = 1;
@@ -116,14 +116,14 @@ void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
     const auto& c = graph_->constraints[i];
     const auto nodes = graph_->nodes_of(c);
     const auto begin = nodes.begin(), end = nodes.end();
-    if (std::none_of(begin, end, [&](std::uint32_t node) { return is_touched_[node]; })) continue;
+    if (std::none_of(begin, end, [&](std::uint32_t node) { return is_changed_[node]; })) continue;
     if (c.unknown != CouplingGraph::no_unknown) {
       const auto home = std::find_if(begin, end, [&](std::uint32_t node) {
         return node < old_nodes_ && pattern_->vertices_[pattern_->node_vertex_[node]].holds(c.unknown);
       });
       if (home == end)
         is_gone_[rows_by_themselves_at(c.unknown)] = 1;
-      else if (!is_touched_[*home])
+      else if (!is_changed_[*home])
         continue;
     }
     homeless_.push_back(i);
@@ -135,7 +135,7 @@ void PatternBuilder::list(std::uint32_t node) {
   if (is_listed_[node]) return;
   is_listed_[node] = 1;
   listed_.push_back(node);
-  if (!is_touched_[node]) rows_at_[node] = static_cast<std::uint8_t>(pattern_->node_stride(node) - 3);
+  if (!is_changed_[node]) rows_at_[node] = static_cast<std::uint8_t>(pattern_->node_stride(node) - 3);
 }
 
 // The home of a constraint is the first-eliminated of its nodes with room; the widest constraints come first.
@@ -152,7 +152,7 @@ void PatternBuilder::find_homes() {
       const auto begin = nodes.begin(), end = nodes.end();
       std::sort(begin, end, by_rank);
       const auto home = std::find_if(begin, end, [&](std::uint32_t node) {
-        return is_touched_[node] && rows_at_[node] + rows <= max_rows_a_node;
+        return is_changed_[node] && rows_at_[node] + rows <= max_rows_a_node;
       });
       if (home == end) {
         give_own_rows(homeless_[i], end[-1]);
@@ -240,7 +240,7 @@ void PatternBuilder::renew_vertices(const GraphChange& change) {
     const auto at = std::lower_bound(changing.begin(), changing.end(), pattern_->node_vertex_[node]);
     node_at[static_cast<std::size_t>(at - changing.begin())] = node;
   };
-  for (const std::uint32_t node : change.touched) note_node(node);
+  for (const std::uint32_t node : change.changed) note_node(node);
   for (const OwnRows& rows : own_rows_) note_node(rows.node);
 
   for (const std::uint32_t v : changing)
@@ -279,7 +279,7 @@ void PatternBuilder::renew_vertices(const GraphChange& change) {
     if (node != none) add_own_rows_of(node, false);
     if (is_gone_[v]) {
       ++next;
-    } else if (node != none && is_touched_[node] && old[v].pivot != 3 + rows_at_[node]) {
+    } else if (node != none && is_changed_[node] && old[v].pivot != 3 + rows_at_[node]) {
       Vertex resized = old[v];
       release_values(resized);
       pattern_->unknown_storage_.give_back(resized.unknown, resized.pivot);
@@ -315,7 +315,7 @@ void PatternBuilder::list_changing_vertices(const GraphChange& change) {
   const auto add_node = [&](std::uint32_t node) {
     if (node < old_nodes_) changing.push_back(pattern_->node_vertex_[node]);
   };
-  for (const std::uint32_t node : change.touched) add_node(node);
+  for (const std::uint32_t node : change.changed) add_node(node);
   for (const std::uint32_t node : change.removed) add_node(node);
   for (const OwnRows& rows : own_rows_) add_node(rows.node);
   for (const Insertion& insertion : insertions_)
@@ -435,7 +435,7 @@ std::uint32_t PatternBuilder::home_of(const CouplingGraph::Constraint& c) const 
 }
 
 void PatternBuilder::make_front(std::uint32_t v, FunctionRef<void()> complete) {
-  if (!is_known_[v]) {  // the change has spread beyond the touched nodes
+  if (!is_known_[v]) {  // the change has spread beyond the changed nodes
     complete();
     is_listed_.assign(graph_->node_count, 1), all_are_listed_ = true;
     list_couplings();
@@ -538,7 +538,7 @@ void PatternBuilder::note_moves(const GraphChange& change) {
   const auto note = [&](const Vertex& v) { std::fill_n(pattern_->moved_.begin() + v.unknown, v.pivot, 1); };
   for (std::size_t v = 0; v < pattern_->vertices_.size(); ++v)
     if (is_moved_[v]) note(pattern_->vertices_[v]);
-  for (const std::uint32_t node : change.touched)
+  for (const std::uint32_t node : change.changed)
     if (const std::uint32_t v = pattern_->node_vertex_[node]; v != none) note(pattern_->vertices_[v]);
 }
 

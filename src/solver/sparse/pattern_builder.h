@@ -19,13 +19,13 @@ namespace iota::solver {
 ///   3. vertices: nodes with their rows, and separate rows, in order of elimination
 ///   4. fronts: for each vertex the later ones that its elimination couples, and storage for their blocks
 ///   5. targets: where the elimination of each vertex subtracts its products
-/// An analysis uses all nodes, following a change only the touched ones.
+/// An analysis uses all nodes, following a change only the changed ones.
 class PatternBuilder {
  public:
   /// The builder of this thread, which keeps the room of small patterns: these are made too often to allocate it each time.
   static PatternBuilder& of_thread(BlockPattern&, CouplingGraph&);
   void analyze();
-  /// BlockPattern::follow of a graph that has no more than what couples with the touched nodes and with the nodes of their
+  /// BlockPattern::follow of a graph that has no more than what couples with the changed nodes and with the nodes of their
   /// constraints; `complete` adds the rest behind it, and few changes spread so far that it is called.
   [[nodiscard]] static bool follow_part(BlockPattern&, CouplingGraph&, const GraphChange&,
                                         FunctionRef<void()> complete);
@@ -54,7 +54,7 @@ class PatternBuilder {
   void find_insertions(const GraphChange&);
   std::uint64_t rank_of(std::uint32_t node) const;
 
-  void take_rows_off_touched_nodes(const GraphChange&);
+  void take_rows_off_changed_nodes(const GraphChange&);
   void list(std::uint32_t node);
   void find_homes();
   std::uint32_t find_node_for_rows_apart(const CouplingGraph::Constraint&) const;
@@ -90,8 +90,8 @@ class PatternBuilder {
   // By node.
   std::uint32_t old_nodes_ = 0;               // how many are in the order that there is
   std::vector<std::uint32_t> node_order_;     // of an analysis
-  std::vector<std::uint8_t> is_touched_;      // may get rows
-  std::vector<std::uint8_t> rows_at_;         // at home in it; of those that are touched or listed
+  std::vector<std::uint8_t> is_changed_;      // may get rows
+  std::vector<std::uint8_t> rows_at_;         // at home in it; of those that are changed or listed
   std::vector<std::uint8_t> is_listed_;       // `couplings_` has all of its couplings
   std::vector<std::uint32_t> listed_;         // these
   bool all_are_listed_ = false;               // or all

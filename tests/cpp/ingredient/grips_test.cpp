@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/grips.h"
-#include "ingredient/followers.h"
+#include "ingredient/attachments.h"
 #include "ingredient/tables.h"
 #include "tests/cpp/ingredient/collected_loads.h"
 #include "tests/cpp/model/small_model.h"
@@ -55,18 +55,18 @@ TEST(Grips, follow_the_particle_that_they_are_nearest_to) {
   const auto rods = m.chain(2);
   const std::uint32_t left = hold(m.model, rods[0], {0.25, 0, 0}), right = hold(m.model, rods[1], {1.75, 0, 0});
 
-  Followers joined(m.model, rods);  // two bodies become one
+  Attachments joined(m.model, rods);  // two bodies become one
   RestructureReport report;
   (void)model::combine_bodies(m.model, rods[0], rods[1], report);
-  joined.follow(m.model);
+  joined.reattach(m.model);
   EXPECT_EQ(m.model.grips[right].body, rods[0]);
   EXPECT_LT(norm(Grips::point(m.model, m.model.grips[right]) - Vec3{1.75, 0, 0}), 1e-12);
   EXPECT_EQ(ingredient::validate(m.model), std::vector<std::string>{});
 
-  Followers apart(m.model, std::array{rods[0]});  // and one leaves it again, as another body
+  Attachments apart(m.model, std::array{rods[0]});  // and one leaves it again, as another body
   report = {};
   (void)model::separate_part(m.model, rods[0], m.model.particles[m.particle(rods[0], 2)].part, report);
-  apart.follow(m.model);
+  apart.reattach(m.model);
   ASSERT_EQ(report.created_bodies.size(), 1u);
   EXPECT_EQ(m.model.grips[left].body, rods[0]);
   EXPECT_EQ(m.model.grips[right].body, report.created_bodies[0].slot);
@@ -78,9 +78,9 @@ TEST(Grips, go_with_their_body) {
   const auto rods = m.chain(2);
   (void)hold(m.model, rods[0], {0.25, 0, 0});
   const std::uint32_t other = hold(m.model, rods[1], {1.75, 0, 0});
-  Followers followers(m.model, std::array{rods[0]});
+  Attachments attachments(m.model, std::array{rods[0]});
   model::destroy_body(m.model, rods[0]);
-  followers.follow(m.model);
+  attachments.reattach(m.model);
   EXPECT_EQ(m.model.grips.size(), 1u);
   EXPECT_TRUE(m.model.grips.is_alive(other));
   EXPECT_EQ(ingredient::validate(m.model), std::vector<std::string>{});

@@ -117,7 +117,7 @@ void hold(Room& room, std::uint32_t body) {
   ingredient::Grip grip;
   grip.body = body, grip.frequency = 1, grip.max_acceleration = 1;
   ingredient::Grips::anchor(room.m.model, grip, room.m.model.center_of_mass(body));
-  ingredient::Grips::touch(room.m.model, body);
+  ingredient::Grips::mark(room.m.model, body);
   room.m.model.grips.create(grip);
 }
 
@@ -153,11 +153,11 @@ TEST(Islands, are_not_for_loose_bodies_unless_something_holds_or_ties_them) {
   EXPECT_EQ(room.islands.free_bodies().size(room.m.model), 5u);
   const std::uint32_t bond = room.bond(rods[0], rods[1]);
   hold(room, plate);
-  room.m.model.bodies[rods[3]].kind = BodyKind::static_, room.m.model.touch_body(rods[3]);
+  room.m.model.bodies[rods[3]].kind = BodyKind::static_, room.m.model.mark_body(rods[3]);
   EXPECT_EQ(owners(), (Bodies{rods[0], rods[1], rods[3], plate}));
   ingredient::Bonds::remove(room.m.model, bond);
-  room.m.model.grips.destroy(0), ingredient::Grips::touch(room.m.model, plate);
-  room.m.model.bodies[rods[3]].kind = BodyKind::dynamic, room.m.model.touch_body(rods[3]);
+  room.m.model.grips.destroy(0), ingredient::Grips::mark(room.m.model, plate);
+  room.m.model.bodies[rods[3]].kind = BodyKind::dynamic, room.m.model.mark_body(rods[3]);
   EXPECT_EQ(owners(), Bodies{});
   EXPECT_EQ(room.islands.all().size(), 0u);
 }

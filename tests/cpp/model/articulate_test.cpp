@@ -80,29 +80,29 @@ TEST(Articulates, agree_with_a_search_through_the_graph_after_random_hinges_and_
   }
 }
 
-TEST(Touched, names_each_articulate_once_and_tells_local_changes_from_others) {
+TEST(Marked, names_each_articulate_once_and_tells_local_changes_from_others) {
   SmallModel m;
   const auto chain = m.chain(3);
   const std::uint32_t lone = m.body({{0, 9, 0}});
-  Model::Touched touched;
-  m.model.take_touched(touched);
-  EXPECT_FALSE(m.model.is_touched());
+  Model::Marked marked;
+  m.model.take_marked(marked);
+  EXPECT_FALSE(m.model.is_marked());
   const std::uint32_t of_chain = m.model.bodies[chain[0]].articulate, of_lone = m.model.bodies[lone].articulate;
 
-  m.model.touch_ring(m.model.particles[m.particle(chain[1], 0)].ring);
-  m.model.touch_body(lone), m.model.touch_body(lone);
-  EXPECT_TRUE(m.model.is_touched());
-  m.model.take_touched(touched);
-  ASSERT_EQ(touched.articulates, (std::vector{of_chain, of_lone}));
-  EXPECT_EQ(touched.only_locally, (std::vector<std::uint8_t>{1, 0}));
-  EXPECT_EQ(touched.local.bodies, (std::vector{chain[0], chain[1]}));
-  ASSERT_EQ(touched.local.rings.size(), 1u);
-  EXPECT_EQ(touched.local.rings[0].ring, m.model.particles[m.particle(chain[1], 0)].ring);
+  m.model.mark_ring(m.model.particles[m.particle(chain[1], 0)].ring);
+  m.model.mark_body(lone), m.model.mark_body(lone);
+  EXPECT_TRUE(m.model.is_marked());
+  m.model.take_marked(marked);
+  ASSERT_EQ(marked.articulates, (std::vector{of_chain, of_lone}));
+  EXPECT_EQ(marked.only_locally, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(marked.local.bodies, (std::vector{chain[0], chain[1]}));
+  ASSERT_EQ(marked.local.rings.size(), 1u);
+  EXPECT_EQ(marked.local.rings[0].ring, m.model.particles[m.particle(chain[1], 0)].ring);
 
-  m.model.touch_ring(m.model.particles[m.particle(chain[1], 0)].ring);
-  m.model.touch_body(chain[2]);
-  m.model.take_touched(touched);
-  EXPECT_EQ(touched.only_locally, std::vector<std::uint8_t>{0}) << "something else has changed, too";
+  m.model.mark_ring(m.model.particles[m.particle(chain[1], 0)].ring);
+  m.model.mark_body(chain[2]);
+  m.model.take_marked(marked);
+  EXPECT_EQ(marked.only_locally, std::vector<std::uint8_t>{0}) << "something else has changed, too";
 }
 
 TEST(TiedBodies, are_those_that_hinges_and_implicit_bonds_connect) {

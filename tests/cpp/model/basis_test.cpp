@@ -79,8 +79,8 @@ TEST(Basis, has_no_markers_as_they_have_no_mass) {
   m.model.rebuild_basis(body);
   EXPECT_EQ(m.model.bodies[body].rank, 2);
   EXPECT_LT(m.model.particles[marker].basis_index, 0);
-  EXPECT_EQ(m.model.ties[marker].weights[0], -4);
-  EXPECT_EQ(m.model.ties[marker].weights[1], 5);
+  EXPECT_EQ(m.model.affine[marker].weights[0], -4);
+  EXPECT_EQ(m.model.affine[marker].weights[1], 5);
 }
 
 TEST(Basis, puts_a_marker_on_the_nearest_place_that_it_spans) {

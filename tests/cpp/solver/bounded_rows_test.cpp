@@ -67,7 +67,7 @@ TEST_P(Rows, hold_a_block_on_a_slope_up_to_the_friction_that_they_have) {
     add(problem, along(block, {0, 0, 1}, 0));
     const auto hold = add(problem, along(block, slope.down, 0));
     start();
-    *pool<BilinearConstraint>(problem).law(hold) = {.lower = -friction, .upper = friction, .hold = true};
+    *pool<BilinearConstraint>(problem).law(hold) = {.lower = -friction, .upper = friction, .is_rate = true};
     start();
     const double h = 0.01;
     const int steps = 100;
@@ -88,7 +88,7 @@ TEST_P(Rows, make_a_sliding_block_stop_and_stay) {
   const auto block = add_point(problem, {}, 2, {3, 0, 0});
   add(problem, along(block, {0, 1, 0}, 0)), add(problem, along(block, {0, 0, 1}, 0));
   const auto hold = add(problem, along(block, {1, 0, 0}, 0));
-  *pool<BilinearConstraint>(problem).law(hold) = {.lower = -5, .upper = 5, .hold = true};
+  *pool<BilinearConstraint>(problem).law(hold) = {.lower = -5, .upper = 5, .is_rate = true};
   start();
   const double before = energy();
   run(3, 0.005);
@@ -159,7 +159,7 @@ TEST_P(Rows, drive_a_wheel_with_capped_torque_up_to_a_motors_speed) {
   problem.gravity = {};
   const Wheel wheel(problem, 2);
   auto& angles = pool<AngleConstraint>(problem);
-  *angles.law(wheel.angle) = {.lower = -3, .upper = 3, .rate = 4, .hold = true};
+  *angles.law(wheel.angle) = {.lower = -3, .upper = 3, .rate = 4, .is_rate = true};
   start();
   const double h = 0.005;
   run(1, h);
@@ -175,7 +175,7 @@ TEST_P(Rows, drive_a_wheel_with_capped_torque_up_to_a_motors_speed) {
 TEST_P(Rows, stall_a_motor_that_is_too_weak) {
   const Wheel wheel(problem, 2);
   auto& angles = pool<AngleConstraint>(problem);
-  *angles.law(wheel.angle) = {.lower = -10, .upper = 10, .rate = 1, .hold = true};
+  *angles.law(wheel.angle) = {.lower = -10, .upper = 10, .rate = 1, .is_rate = true};
   start();
   std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
   for (int i = 0; i < 4000; ++i) {
@@ -346,7 +346,7 @@ TEST_P(Rows, that_are_switched_off_do_nothing) {
 TEST_P(Rows, cost_no_allocation_in_a_warm_step) {
   const Wheel wheel(problem, 2);
   auto& angles = pool<AngleConstraint>(problem);
-  *angles.law(wheel.angle) = {.lower = -3, .upper = 3, .rate = 4, .hold = true};
+  *angles.law(wheel.angle) = {.lower = -3, .upper = 3, .rate = 4, .is_rate = true};
   const auto end = add_point(problem, {1.4, 0, 0});
   const auto rope = add(problem, distance(wheel.rim, end, 0.5));
   pool<BilinearConstraint>(problem).law(rope)->lower = 0;

@@ -25,9 +25,9 @@ struct ChangingGraph {
     pattern.analyze(graph);
   }
 
-  void touch(std::uint32_t node) { change.touched.push_back(node); }
-  void touch(const CouplingGraph::Constraint& c) {
-    for (const std::uint32_t node : graph.nodes_of(c)) touch(node);
+  void note(std::uint32_t node) { change.changed.push_back(node); }
+  void note(const CouplingGraph::Constraint& c) {
+    for (const std::uint32_t node : graph.nodes_of(c)) note(node);
   }
   std::uint32_t any_node(std::mt19937& random) const { return static_cast<std::uint32_t>(random() % graph.node_count); }
 
@@ -43,10 +43,10 @@ struct ChangingGraph {
     CouplingGraph::Constraint& c = graph.add(rows, nodes);
     c.apart = random() % 3 == 0;
     c.first_side = c.apart ? static_cast<std::uint8_t>(random() % c.node_count) : std::uint8_t{0};
-    touch(c);
+    note(c);
   }
   void remove_constraint(std::size_t k) {
-    touch(graph.constraints[k]);
+    note(graph.constraints[k]);
     change.removed_rows.push_back(graph.constraints[k].unknown);
     graph.constraints[k] = graph.constraints.back();
     graph.constraints.pop_back();
@@ -61,14 +61,14 @@ struct ChangingGraph {
   void split(std::uint32_t node, std::mt19937& random) {
     const std::uint32_t fresh = graph.node_count++;
     change.added.push_back({fresh, random() % 3 ? node : GraphChange::front});
-    touch(node), touch(fresh);
+    note(node), note(fresh);
     for (auto& c : graph.couplings)
-      if ((c[0] == node || c[1] == node) && random() % 2) touch(c[0]), touch(c[1]), c[c[1] == node] = fresh;
+      if ((c[0] == node || c[1] == node) && random() % 2) note(c[0]), note(c[1]), c[c[1] == node] = fresh;
     for (auto& c : graph.constraints) {
       const auto nodes = graph.nodes_of(c);
       const auto end = nodes.end(), at = std::find(nodes.begin(), end, node);
       if (at == end || random() % 2) continue;
-      touch(c);
+      note(c);
       *at = fresh;
       change.removed_rows.push_back(std::exchange(c.unknown, CouplingGraph::no_unknown));
     }
@@ -84,13 +84,13 @@ struct ChangingGraph {
       const auto nodes = graph.nodes_of(c);
       if (has(nodes.begin(), nodes.end(), gone) && has(nodes.begin(), nodes.end(), into)) return;
     }
-    touch(into);
+    note(into);
     for (auto& c : graph.couplings)
-      if (has(c.begin(), c.end(), gone)) touch(c[0]), touch(c[1]);
+      if (has(c.begin(), c.end(), gone)) note(c[0]), note(c[1]);
     for (auto& c : graph.constraints) {
       const auto nodes = graph.nodes_of(c);
       if (!has(nodes.begin(), nodes.end(), gone)) continue;
-      touch(c);
+      note(c);
       change.removed_rows.push_back(std::exchange(c.unknown, CouplingGraph::no_unknown));
     }
     rename(gone, into);
@@ -109,7 +109,7 @@ struct ChangingGraph {
       case 3:
         if (const auto a = any_node(random), b = any_node(random); a != b) {
           graph.couplings.push_back({a, b});
-          touch(a), touch(b);
+          note(a), note(b);
         }
         return;
       default:
@@ -141,20 +141,20 @@ TEST(BlockPattern, following_random_changes_factors_like_a_dense_matrix) {
   EXPECT_GT(followed, 10 * analyzed);
 }
 
-/// What couples with touched nodes and with the nodes of their constraints, and then all the rest.
+/// What couples with changed nodes and with the nodes of their constraints, and then all the rest.
 struct Parts {
   CouplingGraph graph;
   std::vector<std::size_t> source;  ///< of each constraint: its place in the whole graph
   std::function<void()> complete;
 
   Parts(const CouplingGraph& whole, const GraphChange& change) {
-    std::vector<bool> touched(whole.node_count), near(whole.node_count);
-    for (const std::uint32_t node : change.touched) touched[node] = near[node] = true;
+    std::vector<bool> changed(whole.node_count), near(whole.node_count);
+    for (const std::uint32_t node : change.changed) changed[node] = near[node] = true;
     const auto any = [](const auto& nodes, const std::vector<bool>& marks) {
       return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return marks[node]; });
     };
     for (const auto& c : whole.constraints)
-      if (any(whole.nodes_of(c), touched))
+      if (any(whole.nodes_of(c), changed))
         for (const std::uint32_t node : whole.nodes_of(c)) near[node] = true;
     graph.node_count = whole.node_count;
     const auto add = [this, &whole, near, any](bool which) {
@@ -238,7 +238,7 @@ TEST(BlockPattern, follows_a_chain_closed_to_a_ring_and_opened_again) {
   pattern.analyze(graph);
   const std::uint32_t fill = pattern.fill();
   graph.add(1, std::array{0u, 59u});
-  (void)pattern.follow(graph, {.touched = {0, 59}});
+  (void)pattern.follow(graph, {.changed = {0, 59}});
   Twin(pattern, graph, true, random).expect_equal_solutions();
   CouplingGraph anew = graph;
   BlockPattern analyzed;
@@ -246,7 +246,7 @@ TEST(BlockPattern, follows_a_chain_closed_to_a_ring_and_opened_again) {
   EXPECT_LE(pattern.fill(), analyzed.fill() + analyzed.fill() / 4);
   const std::uint32_t unknown = graph.constraints.back().unknown;
   graph.constraints.pop_back();
-  (void)pattern.follow(graph, {.touched = {0, 59}, .removed_rows = {unknown}});
+  (void)pattern.follow(graph, {.changed = {0, 59}, .removed_rows = {unknown}});
   Twin(pattern, graph, true, random).expect_equal_solutions();
   EXPECT_EQ(pattern.fill(), fill);
 }

@@ -9,15 +9,15 @@
 namespace iota::ingredient {
 
 /// Keeps ingredients attached to their places during an edit that may merge, split or destroy the bodies that they are
-/// attached to. It is made before the edit and follows after it.
-class Followers {
+/// attached to. It is made before the edit, and reattaches them after it.
+class Attachments {
  public:
-  Followers(const Model& model, std::span<const std::uint32_t> bodies) {
+  Attachments(const Model& model, std::span<const std::uint32_t> bodies) {
     for_each_type<Ingredients>(
         [&]<class I>() { std::get<Remembered<I>>(memories_).memory = I::remember(model, bodies); });
   }
-  void follow(Model& model) const {
-    for_each_type<Ingredients>([&]<class I>() { I::follow(model, std::get<Remembered<I>>(memories_).memory); });
+  void reattach(Model& model) const {
+    for_each_type<Ingredients>([&]<class I>() { I::reattach(model, std::get<Remembered<I>>(memories_).memory); });
   }
 
  private:
@@ -35,8 +35,8 @@ class Followers {
 };
 
 /// Destroys items that an edit of some bodies (all alive) has made meaningless, with notes.
-inline void settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
-  for_each_type<Ingredients>([&]<class I>() { I::settle(model, bodies, notes); });
+inline void clean_up(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
+  for_each_type<Ingredients>([&]<class I>() { I::clean_up(model, bodies, notes); });
 }
 
 /// Before an island with the body is built or follows a change.

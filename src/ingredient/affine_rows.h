@@ -6,7 +6,7 @@
 namespace iota::ingredient {
 
 /// Rows that keep particles that are unknowns of their own, but not in a basis, at their places in their bodies.
-class Ties : public NoAnswers {
+class AffineRows : public NoAnswers {
  public:
   static void validate(const Model&, model::Audit&);
   static double worst_gap(const Scope&);
