@@ -243,6 +243,7 @@ std::uint32_t Bonds::add(Model& model, const Bond& bond) {
 
 // Implicit ones whose law depends on the time, when it changes their force; forces that are held are pushes.
 void Bonds::visit_stirred(const Model& model, double h, Visit visit) {
+  if (model.bonds.size() == 0) return;
   const auto depends_on_time = [&](std::uint32_t law) {
     return model.laws[law].has_derivative() && model.compiled(law).depends_on_time();
   };
