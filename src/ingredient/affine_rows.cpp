@@ -93,10 +93,10 @@ std::string AffineRows::name_of_row(const Model& model, solver::ItemKey key) con
 }
 
 void AffineRows::validate(const Model& model, model::Audit& audit) {
-  audit.require_owners("an affine particle", model.affine, model.particles);
+  audit.require_owners("the weights", model.affine, model.particles);
   model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
     audit.require((p.basis_index < 0) == model.affine.has(slot), "particle ", slot,
-                  " is in a basis and tied to it, or neither");
+                  " is in a basis and has weights in it, or neither");
     double sum = 0, size = 0;  // weights of a place far outside of the basis cancel
     for (const double w : model.weights(slot)) sum += w, size += std::abs(w);
     audit.require(std::abs(sum - 1) < 1e-9 * size, "particle ", slot, " has basis weights that sum to ", sum);

@@ -40,7 +40,7 @@ const std::vector<Damage> damages{
     {"is in no living body or ring", [](Everything& e) { e.model.particles[e.loner].body = nowhere; }},
     {"has mass -1", [](Everything& e) { e.model.particles[e.loner].mass = -1; }},
     {"is in its body's basis, or alone in it", [](Everything& e) { e.model.particles[e.corner].mass = 0; }},
-    {"is in a basis and tied to it, or neither", [](Everything& e) { e.model.affine.make(e.corner); }},
+    {"is in a basis and has weights in it, or neither", [](Everything& e) { e.model.affine.make(e.corner); }},
     {"has basis weights that sum to 1.5", [](Everything& e) { e.model.affine.at(e.inner).weights[0] += 0.5; }},
     {"uses, has", [](Everything& e) { ++e.model.particles[e.loner].uses; }},
     {"is in a group that is gone", [](Everything& e) { e.model.particles[e.loner].groups |= 1u << 30; }},
@@ -58,7 +58,7 @@ const std::vector<Damage> damages{
     {"has radius -1", [](Everything& e) { e.model.radii.make(e.corners_body) = -1; }},
     {"the usual radius is -1", [](Everything& e) { e.model.usual_radius = -1; }},
     // side tables
-    {"a tie of 1000, which does not live", [](Everything& e) { e.model.affine.make(nowhere); }},
+    {"the weights of 1000, which does not live", [](Everything& e) { e.model.affine.make(nowhere); }},
     {"lists of 1000, which does not live", [](Everything& e) { e.model.bonds.heads.make(nowhere); }},
     {"a fuse of 1000, which does not live", [](Everything& e) { e.model.fuses.make(nowhere); }},
     {"rows of 1000, which does not live", [](Everything& e) { e.model.more_rows.make(nowhere); }},
