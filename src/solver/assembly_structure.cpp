@@ -137,12 +137,19 @@ double calc_extent(const ForceArm& arm, const Vec3* x) {
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
-  for (const auto& c : problem.items_of<DistanceConstraint>()) sum += c.reference_length(), ++count;
+  const auto& lengths = problem.pool_of<DistanceConstraint>();
+  const auto add_lengths = [&](bool may_be_slack) {
+    for (std::size_t k = 0; k < lengths.items.size(); ++k)
+      if ((lengths.has_laws() && lengths.law(k)->is_one_sided()) == may_be_slack)
+        sum += lengths.items[k].reference_length(), ++count;
+  };
+  add_lengths(false);
   if (count == 0)
     problem.for_each_force_pool([&](const auto& pool) {
       for (const auto& f : pool.items)
         if (f.arm.is_internal()) sum += calc_extent(f.arm, problem.position.data()), ++count;
     });
+  if (count == 0) add_lengths(true);  // a slack rope changes nothing, and so no tolerance
   return sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 

@@ -271,7 +271,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
   track(problem, part.to);
   // A joint that is open within the step has its forces at two places, and is closed at its end.
-  if (free) keep_momenta(problem, *free, part.h);
+  if (free) keep_momenta(problem, {*free}, part.h);
   report.converged = report.converged && swept.are_joints_met;
   energy_.measure_change(problem, part.to, swept.external_work);
   // A light body between heavy ones may be shot away. Overlaps that are pushed apart lift bodies: that is not motion.
@@ -324,17 +324,16 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   if (problem.has_laws()) find_holds(problem);
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.
-  const std::optional<RigidMotion> free = is_mid_point && has_curved_rows_ ? free_motion(problem) : std::nullopt;
+  free_motions_.clear();
+  if (is_mid_point && has_curved_rows_) find_free_motions(problem);
   // In a conflict also what targets take that give way to rows: what these store in their gaps is in no book.
   if (drives_rows_) energy.external_work -= keeps_offsets_ ? energy.idle_work() : std::max(0.0, energy.idle_work());
   if (keeps_offsets_) energy.overdrawn = 0;
   if (keeps_offsets_) note_momenta(problem, stage);
   const AdvanceReport before = report;
   commit(problem, stage, energy, report);
-  if (free) {
-    keep_momenta(problem, *free, part.h);
-    energy_.measure_kinetic(problem);
-  }
+  for (const FreeMotion& free : free_motions_) keep_momenta(problem, free, part.h);
+  if (!free_motions_.empty()) energy_.measure_kinetic(problem);
   if (!is_mid_point) give_spin_back(problem, stage, energy.dissipated, report);
   if (has_impacts(problem, stage))
     solve_impacts(problem, stage, energy, report);

@@ -160,14 +160,23 @@ class Integrator {
   bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
   bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
   void give_energy_back_by_piece(Problem&);
+  void find_pieces_if_due(const Problem&);
+  void find_holds_of_pieces(const Problem&);
+  RigidMotion rigid_motion_of_piece(const Problem&, std::uint32_t piece) const;
+  void scale_motions_of_pieces(Problem&, double missing);
   void keep_correction(const Problem&);
 
   double advance_explicitly(Problem&, double h, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   bool is_smooth(Problem&, double h) const;
   bool begin_motion(Problem&, bool has_accelerations, AdvanceReport&);
-  std::optional<RigidMotion> free_motion(const Problem&) const;
-  void keep_momenta(Problem&, const RigidMotion& start, double time) const;
+  struct FreeMotion {
+    static constexpr std::uint32_t all = UINT32_MAX;
+    RigidMotion motion;
+    std::uint32_t piece = all;
+  };
+  void find_free_motions(Problem&);
+  void keep_momenta(Problem&, const FreeMotion&, double time) const;
   void keep_energy(Problem&, const RungeKutta&, AdvanceReport&);
 
   void close_gaps(Problem&, AdvanceReport&);
@@ -225,6 +234,7 @@ class Integrator {
   std::vector<Piece> pieces_;            // of a disconnected problem; else none
   std::vector<std::uint32_t> piece_of_;  // of each node
   DisjointSets room_for_pieces_;
+  std::vector<FreeMotion> free_motions_;  // of the explicit sub-step at hand
 
   // The state with which the latest `advance` began; see take_back.
   bool has_advanced_ = false, is_taken_back_ = false;  // since the last change of structure

@@ -28,12 +28,23 @@ bool has_stiff_forces(const Problem& problem, double h) {
   return stiff;
 }
 
+/// Whether there is a rope that yields or a soft stop. Where it begins or ends to pull its force has a bend, and the error of
+/// an explicit step across that is no energy of one piece.
+bool has_one_sided_springs(const Problem& problem) {
+  bool any = false;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const RowLaw& law : pool.laws) any = any || (law.is_compliant() && law.is_one_sided());
+  });
+  return any;
+}
+
 }  // namespace
 
 // Explicit steps need rows at rest in time.
 bool Integrator::is_smooth(Problem& problem, double h) const {
   constexpr double most_parts = 100;  // of a step by the springs of rows; shorter ones are stiff
-  if (keeps_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
+  if (keeps_offsets_ || newton_.has_external()) return false;
+  if ((may_be_in_pieces_ || !pieces_.empty()) && has_one_sided_springs(problem)) return false;
   if (!problem.items_of<GripForce>().empty()) return false;
   if (drives_rows_) {
     bool moves = false;
@@ -116,27 +127,31 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
   RungeKutta& steps = *runge_kutta_;
   if (!begin_motion(problem, false, report)) return 0;
   const bool has_laws = problem.has_laws();
-  const std::optional<RigidMotion> free = free_motion(problem);
   const double longest = ActiveSet::longest_step(problem);
   double time = 0, part = std::min(longest, first * time_scale(problem, steps.accelerations()));
   double until_change = 0;  // s, if a row changes its side in the present sub-step
   int changes = 0;
+  double since = 0;  // s, when the free motions were found
   while (time < h) {
     part = std::min(part, longest);
     part = (h - time) / std::ceil((h - time) / part * (1 - 1e-9));
     if (!(part >= shortest * h) || is_out_of_budget() || iterations_left_ < RungeKutta::solves) break;
     const double length = until_change > 0 ? until_change : part;
+    if (time == 0 || has_laws) find_free_motions(problem), since = time;
+    if (!pieces_.empty() && has_one_sided_springs(problem)) break;
     const AdvanceReport before = report;
     const EnergyBalance energy = energy_;
     const bool is_last = length == h - time;
     report.iterations += RungeKutta::solves, ++report.solves, iterations_left_ -= RungeKutta::solves;
     bool good = steps.step(newton_, problem, length);
-    if (free) keep_momenta(problem, *free, time + length);
+    for (const FreeMotion& free : free_motions_) keep_momenta(problem, free, time + length - since);
     keep_energy(problem, steps, report);
     steps.end(newton_, problem);
     const double error = steps.estimate_error(length).position / newton_.reference_length();
     const double ratio = error / (settings_.max_error * length);
-    good = good && ratio <= 1 && !has_closed_row(problem);
+    const bool closes = good && ratio <= 1 && has_closed_row(problem);
+    const bool is_too_long = !good && ratio <= 1;  // the constraints cannot be met
+    good = good && ratio <= 1 && !closes;
     const double change = good && has_laws ? ActiveSet::find_change(problem, step_length_, shortest * h / length) : 1;
     if (good && change == 1) {
       time = is_last ? h : time + length;
@@ -147,33 +162,52 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
       const int iterations = report.iterations, solves = report.solves;
       steps.reject(problem);
       report = before, report.iterations = iterations, report.solves = solves, energy_ = energy;
-      if (ratio <= 1 && !good) break;  // a row closes, or the constraints cannot be met
+      if (closes) break;
       if (change < 1 && ++changes > most_changes) break;
     }
     until_change = change < 1 && change * length >= shortest * h ? change * length : 0;
     if (has_laws && time < h && !begin_motion(problem, good && change == 1, report)) break;
-    if (change == 1) part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
+    if (is_too_long)
+      part = least * length;
+    else if (change == 1)
+      part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
   }
   if (time > 0) energy_.close(problem, reference_length(), time, report), is_instant_ = true;
   return time < h ? time / h : 1;
 }
 
-// If nothing outside acts on the problem but gravity.
-std::optional<RigidMotion> Integrator::free_motion(const Problem& problem) const {
-  bool is_free = holds_.are_none() && problem.items_of<GyroscopicForce>().empty() && !problem.has_pushes();
+// Pieces on which nothing outside acts but gravity.
+void Integrator::find_free_motions(Problem& problem) {
+  free_motions_.clear();
+  if (problem.has_laws()) find_holds(problem);
+  find_pieces_if_due(problem);
+  if (!problem.items_of<GyroscopicForce>().empty() || problem.has_pushes()) return;
+  bool is_free = holds_.are_none();
+  if (!pieces_.empty()) find_holds_of_pieces(problem);
   problem.for_each_force_pool([&](const auto& pool) {
-    for (const auto& f : pool.items) is_free = is_free && f.arm.is_internal();
+    for (const auto& f : pool.items) {
+      if (f.arm.is_internal()) continue;
+      is_free = false;
+      for (std::uint32_t i = 0; i < f.arm.count && !pieces_.empty(); ++i)
+        ++pieces_[piece_of_[f.arm.nodes[i]]].holds.count;
+    }
   });
-  return is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
+  if (pieces_.empty() && is_free) free_motions_.push_back({rigid_motion_of(problem)});
+  for (std::uint32_t k = 0; k < pieces_.size(); ++k)
+    if (pieces_[k].holds.are_none()) free_motions_.push_back({rigid_motion_of(problem, piece_of_, k), k});
 }
 
-// `start` is the free motion `time` seconds before.
-void Integrator::keep_momenta(Problem& problem, const RigidMotion& start, double time) const {
-  const RigidMotion now = rigid_motion_of(problem);
+// It began `time` seconds before.
+void Integrator::keep_momenta(Problem& problem, const FreeMotion& free, double time) const {
+  const RigidMotion& start = free.motion;
+  const std::span<const std::uint32_t> piece_of =
+      free.piece == FreeMotion::all ? std::span<const std::uint32_t>{} : std::span(piece_of_);
+  const RigidMotion now = rigid_motion_of(problem, piece_of, free.piece);
   const Vec3 drift = start.velocity + time * problem.gravity - now.velocity;
   const Vec3 turning = solve_semidefinite(now.inertia, start.angular_momentum - now.angular_momentum, 1e-12);
   for (std::size_t i = 0; i < problem.size(); ++i)
-    problem.velocity[i] += drift + cross(turning, problem.position[i] - now.center);
+    if (piece_of.empty() || piece_of[i] == free.piece)
+      problem.velocity[i] += drift + cross(turning, problem.position[i] - now.center);
 }
 
 // The work of a step is integrated with its weights, so its energy is known: the rest is its error, and is returned.
@@ -183,8 +217,11 @@ void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceR
   const double start = energy_.total, work = steps.external_work() - steps.dissipated();
   energy_.measure_change(problem, 1, work);
   energy_.slack += EnergyBalance::tolerance(energy_.kinetic, std::abs(start + work) + std::abs(energy_.total));
-  if (std::abs(energy_.missing) <= most * energy_.kinetic)
+  if (!(std::abs(energy_.missing) <= most * energy_.kinetic)) return;
+  if (pieces_.empty())
     (void)give_energy_back(problem, Stage::projection(), energy_.missing, report);
+  else
+    scale_motions_of_pieces(problem, energy_.missing);
 }
 
 // Compares the solved step with one of half its length from the same start. With their accelerations a and a', the

@@ -169,10 +169,7 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
   const double limit = most * energy_.kinetic;
   const double missing = taken + (is_made ? std::clamp(energy_.missing - taken, -limit, limit) : 0);
   if (missing == 0) return false;
-  if (std::exchange(may_be_in_pieces_, false)) {
-    const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_, room_for_pieces_);
-    pieces_.resize(count > 1 ? count : 0);
-  }
+  find_pieces_if_due(problem);
   if (!pieces_.empty()) {
     give_energy_back_by_piece(problem);
     return true;
@@ -195,14 +192,46 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
   return true;
 }
 
-// After a cut both halves stay in one problem for a while, but their energies are balanced separately.
-void Integrator::give_energy_back_by_piece(Problem& problem) {
-  const auto earlier = newton_.velocities_before();
+void Integrator::find_pieces_if_due(const Problem& problem) {
+  if (!std::exchange(may_be_in_pieces_, false)) return;
+  const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_, room_for_pieces_);
+  pieces_.resize(count > 1 ? count : 0);
+}
+
+void Integrator::find_holds_of_pieces(const Problem& problem) {
   for (Piece& piece : pieces_) piece = {};
   problem.for_each_acting([&](const auto& pool, std::size_t i) {
     const auto& c = pool.items[i];
     pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
   });
+}
+
+// As that of a whole problem; none if it is held otherwise.
+RigidMotion Integrator::rigid_motion_of_piece(const Problem& problem, std::uint32_t piece) const {
+  const Holds& holds = pieces_[piece].holds;
+  if (const auto pivot = holds.pivot()) return rigid_motion_about(problem, *pivot, piece_of_, piece);
+  return holds.are_none() ? rigid_motion_of(problem, piece_of_, piece) : RigidMotion{};
+}
+
+// After an explicit sub-step. Its error is that of all pieces together, so all motions beside the rigid ones share it.
+void Integrator::scale_motions_of_pieces(Problem& problem, double missing) {
+  find_holds_of_pieces(problem);
+  double rest = energy_.kinetic;
+  for (std::uint32_t k = 0; k < pieces_.size(); ++k) rest -= rigid_motion_of_piece(problem, k).kinetic_energy();
+  if (!(std::abs(missing) < rest)) return;
+  const double factor = std::sqrt(1 + missing / rest);
+  for (std::uint32_t k = 0; k < pieces_.size(); ++k) {
+    const RigidMotion rigid = rigid_motion_of_piece(problem, k);
+    for (std::size_t i = 0; i < problem.size(); ++i)
+      if (piece_of_[i] == k) scale_beside(rigid, factor, problem, i);
+  }
+  energy_.kinetic += missing, energy_.total += missing, energy_.missing -= missing;
+}
+
+// After a cut both halves stay in one problem for a while, but their energies are balanced separately.
+void Integrator::give_energy_back_by_piece(Problem& problem) {
+  const auto earlier = newton_.velocities_before();
+  find_holds_of_pieces(problem);
   const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
     Piece& piece = pieces_[piece_of_[a]];
     const double kinetic = 0.5 * mass * dot(problem.velocity[a], problem.velocity[b]);
@@ -213,11 +242,7 @@ void Integrator::give_energy_back_by_piece(Problem& problem) {
   for (std::uint32_t k = 0; k < pieces_.size(); ++k) {
     const Piece& piece = pieces_[k];
     if (!(piece.taken > 0)) continue;
-    RigidMotion rigid;
-    if (const auto pivot = piece.holds.pivot())
-      rigid = rigid_motion_about(problem, *pivot, piece_of_, k);
-    else if (piece.holds.are_none())
-      rigid = rigid_motion_of(problem, piece_of_, k);
+    const RigidMotion rigid = rigid_motion_of_piece(problem, k);
     const double rest = piece.kinetic - rigid.kinetic_energy();
     if (!(piece.taken <= rest)) continue;
     const double factor = std::sqrt(1 + piece.taken / rest);

@@ -103,3 +103,75 @@ def test_a_drawer_at_rest_in_mode_accurate_warns_of_nothing() -> None:
     for _ in range(360):
         drawer.act()
         assert system.step(1 / 120).warnings == []
+
+
+def two_tumbling_pairs(mode: Mode, rope: float | None, apart: float = 0.0) -> tuple[iota.System, list[iota.Body]]:
+    """Two pairs of hinged boxes in space, tied by a rope of that length."""
+    system = iota.System(gravity=(0, 0, 0), mode=mode)
+    boxes, ends = [], []
+    for side in (-1, 1):
+        pair = [
+            system.body(
+                shape=iota.Box((0.3, 0.2, 0.1)),
+                mass=1 + k,
+                position=(side + 0.3 * k, 0, 0),
+                attachments=[(side + 0.3 * k, 0.1, 0)],
+                velocity=(side * apart, 0.2, 0),
+                spin=(3 * side, 2, 5 + k),
+            )
+            for k in range(2)
+        ]
+        system.ball(*pair, at=(side + 0.15, 0.1, 0.05))
+        boxes += pair
+        ends.append(pair[0].attachments[0])
+    if rope is not None:
+        system.rope(*ends, rope)
+    return system, boxes
+
+
+def momenta(boxes: list[iota.Body]) -> np.ndarray:
+    linear = np.sum([b.mass * np.array(b.velocity) for b in boxes], axis=0)
+    turning = np.sum([np.cross(b.position, b.mass * np.array(b.velocity)) + b.angular_momentum for b in boxes], axis=0)
+    return np.concatenate([linear, turning])
+
+
+@pytest.mark.parametrize(("mode", "close"), [("robust", 1e-6), ("energy_keeping", 1e-9), ("accurate", 1e-6)])
+def test_a_rope_that_is_never_taut_changes_no_motion_and_costs_little(mode: Mode, close: float) -> None:
+    places, work = [], []
+    for rope in (None, 9.0):
+        system, boxes = two_tumbling_pairs(mode, rope)
+        iterations = 0
+        for _ in range(60):
+            system.step(1 / 60)
+            iterations += sum(island.iterations for island in system.islands())
+        places.append(np.array([b.position for b in boxes] + [b.angular_velocity for b in boxes]))
+        work.append(iterations)
+    assert np.abs(places[1] - places[0]).max() < close
+    assert work[1] < 1.5 * work[0]
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "accurate"])
+def test_what_a_slack_rope_ties_keeps_momenta_and_energy_each_for_itself(mode: Mode) -> None:
+    system, boxes = two_tumbling_pairs(mode, 9.0)
+    system.step(1 / 60)
+    before, energy = [momenta(boxes[:2]), momenta(boxes[2:])], system.energy.kinetic
+    for _ in range(60):
+        system.step(1 / 60)
+    assert momenta(boxes[:2]) == pytest.approx(before[0], abs=1e-10)
+    assert momenta(boxes[2:]) == pytest.approx(before[1], abs=1e-10)
+    assert system.energy.kinetic == pytest.approx(energy, rel=1e-10)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_rope_that_becomes_taut_between_two_free_things_keeps_what_both_have_together(mode: Mode) -> None:
+    system, boxes = two_tumbling_pairs(mode, 2.6, apart=1)
+    before = momenta(boxes)
+    tight = 0
+    highest = kinetic = system.energy.kinetic
+    for _ in range(120):
+        system.step(1 / 60)
+        tight += any(abs(c.force) > 0 for c in system.constraints if c.kind == "rope")
+        highest = max(highest, system.energy.kinetic)
+    assert tight > 0
+    assert momenta(boxes) == pytest.approx(before, abs=1e-9 if mode in ("energy_keeping", "accurate") else 1e-6)
+    assert highest <= kinetic * (1 + 1e-9)
