@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 #include "ingredient/model.h"
+#include "ingredient/noise.h"
 #include "math/mat3.h"
 #include "math/text.h"
 
@@ -142,14 +143,19 @@ Vec3 Pushes::force_by_velocity(const Model& model, std::uint32_t ring, double h,
 
 void Pushes::visit_stirred(const Model& model, double, Visit visit) {
   model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
-    if (push.force != Vec3{}) visit(ring);
+    if (!is_noise(model, push.force, model.ring_mass(ring))) visit(ring);
   });
   model.torques.for_each([&](std::uint32_t body, const Torque& torque) {
     if (torque.torque != Vec3{}) visit(model.particles[model.bodies[body].first].ring);
   });
 }
 
-bool Pushes::keeps_awake(const Model&, const Problem& problem) const { return problem.has_pushes(); }
+bool Pushes::keeps_awake(const Model& model, const Problem& problem) const {
+  if (!problem.torques.empty() || !problem.items_of<solver::VelocityForce>().empty()) return true;
+  for (std::size_t i = 0; i < problem.force.size(); ++i)
+    if (!is_noise(model, problem.force[i], problem.mass[i])) return true;
+  return false;
+}
 
 void Pushes::validate(const Model& model, model::Audit& audit) {
   audit.require_owners("a push", model.pushes, model.rings);

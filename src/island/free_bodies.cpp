@@ -3,6 +3,7 @@
 
 #include "base/slack.h"
 #include "ingredient/ingredient_list.h"
+#include "ingredient/noise.h"
 #include "laws/velocity_part.h"
 
 #include <algorithm>
@@ -145,7 +146,7 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
       ring.position += moved;
       if (push) share.work += dot(push->before - turning, moved);
       if (robust) share.lost += 0.5 * mass * dot(gained, gained) - dot(turning, moved);
-      const bool pushed = force != Vec3{};
+      const bool pushed = !ingredient::is_noise(model, force, mass);
       if (damping > 0) {
         const double left = std::exp(-damping * h);
         share.dissipated += 0.5 * mass * dot(ring.velocity, ring.velocity) * (1 - left * left);

@@ -332,3 +332,43 @@ def test_wakes_what_it_moves(name: str) -> None:
     moved = np.abs(twin_after[:count] - twin_before[:count]).max()
     assert moved > 1e-4
     assert np.abs(after - twin_after).max() < 0.02 * moved + 1e-6
+
+
+def pushed_pair(system: iota.System) -> list[iota.Body]:
+    """A box on a hinge, a free box, and a particle."""
+    size = iota.Box((0.2, 0.2, 0.2))
+    hung, free = (system.body(shape=size, mass=1, position=(x, 0, 0)) for x in (0, 1))
+    system.revolute(hung, at=(0, 0.3, 0), axis=(0, 0, 1))
+    return [hung, free, particle(system, 2).body]
+
+
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_a_force_of_round_off_keeps_nothing_awake_and_wakes_nothing(which: int) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.rest_after, system.rest_speed = 0.2, 0.01
+    body = pushed_pair(system)[which]
+    for _ in range(80):
+        body.apply_force((1e-17, 0, 0))
+        system.step(DT)
+    assert body.kind == "resting"
+    for _ in range(20):
+        body.apply_force((1e-17, 0, 0))
+        system.step(DT)
+        assert body.kind == "resting"
+    body.apply_force((1e-6, 0, 0))
+    system.step(DT)
+    assert body.kind == "dynamic"
+
+
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_a_small_force_moves_what_could_sleep_as_what_never_does(which: int) -> None:
+    ways = []
+    for rest_after in (0.0, 0.2):
+        system = iota.System(gravity=(0, 0, 0))
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        body = pushed_pair(system)[which]
+        for _ in range(120):
+            body.apply_force((1e-6, 0, 0))
+            system.step(DT)
+        ways.append(body.position.x)
+    assert ways[1] == pytest.approx(ways[0], rel=1e-9)
