@@ -159,7 +159,8 @@ class Integrator {
   std::optional<RigidMotion> rigid_motion(const Problem&) const;
   bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
   bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
-  void give_energy_back_by_piece(Problem&);
+  void give_energy_back_by_piece(Problem&, const Stage&, AdvanceReport&);
+  void turn_body(Problem&, const Stage&, double missing, const RigidMotion&, std::uint32_t piece, AdvanceReport&);
   void find_pieces_if_due(const Problem&);
   void find_holds_of_pieces(const Problem&);
   RigidMotion rigid_motion_of_piece(const Problem&, std::uint32_t piece) const;

@@ -171,25 +171,33 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
   if (missing == 0) return false;
   find_pieces_if_due(problem);
   if (!pieces_.empty()) {
-    give_energy_back_by_piece(problem);
+    give_energy_back_by_piece(problem, stage, report);
     return true;
   }
   const std::optional<RigidMotion> rigid = rigid_motion(problem);
-  if (rigid && problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty()) {
-    if (!(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
-      std::copy(problem.position.begin(), problem.position.end(), newton_.room().begin());
-      // By less than it turns in the step: a body at rest jumped by 1e-4 rad for the energy of its noise.
-      turn_for_energy(problem, missing, step_length_ * norm(rigid->turning), holds_.pivot());
-      double work = 0;
-      for (std::size_t i = 0; i < problem.force.size(); ++i)
-        work += dot(problem.force[i], problem.position[i] - newton_.room()[i]);
-      report.external_work += work;
-      energy_.measure_change(problem, stage.fraction, work);
-      return true;
-    }
+  if (rigid && problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty() &&
+      !(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
+    turn_body(problem, stage, missing, *rigid, FreeMotion::all, report);
+    return true;
   }
   (void)change_kinetic_energy(problem, -missing, rigid);
   return true;
+}
+
+// A rigid body, or a piece, has no motion but the rigid one.
+void Integrator::turn_body(Problem& problem, const Stage& stage, double missing, const RigidMotion& rigid,
+                           std::uint32_t piece, AdvanceReport& report) {
+  const bool is_all = piece == FreeMotion::all;
+  std::copy(problem.position.begin(), problem.position.end(), newton_.room().begin());
+  // By less than it turns in the step: a body at rest jumped by 1e-4 rad for the energy of its noise.
+  turn_for_energy(problem, missing, step_length_ * norm(rigid.turning),
+                  is_all ? holds_.pivot() : pieces_[piece].holds.pivot(),
+                  is_all ? std::span<const std::uint32_t>{} : std::span<const std::uint32_t>(piece_of_), piece);
+  double work = 0;
+  for (std::size_t i = 0; i < problem.force.size(); ++i)
+    work += dot(problem.force[i], problem.position[i] - newton_.room()[i]);
+  report.external_work += work;
+  energy_.measure_change(problem, stage.fraction, work);
 }
 
 void Integrator::find_pieces_if_due(const Problem& problem) {
@@ -229,8 +237,9 @@ void Integrator::scale_motions_of_pieces(Problem& problem, double missing) {
 }
 
 // After a cut both halves stay in one problem for a while, but their energies are balanced separately.
-void Integrator::give_energy_back_by_piece(Problem& problem) {
+void Integrator::give_energy_back_by_piece(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const auto earlier = newton_.velocities_before();
+  const bool may_turn = problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty();
   find_holds_of_pieces(problem);
   const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
     Piece& piece = pieces_[piece_of_[a]];
@@ -244,7 +253,11 @@ void Integrator::give_energy_back_by_piece(Problem& problem) {
     if (!(piece.taken > 0)) continue;
     const RigidMotion rigid = rigid_motion_of_piece(problem, k);
     const double rest = piece.kinetic - rigid.kinetic_energy();
-    if (!(piece.taken <= rest)) continue;
+    if (!(piece.taken <= rest)) {
+      if (may_turn && (piece.holds.are_none() || piece.holds.pivot()))
+        turn_body(problem, stage, piece.taken, rigid, k, report);
+      continue;
+    }
     const double factor = std::sqrt(1 + piece.taken / rest);
     for (std::size_t i = 0; i < problem.size(); ++i)
       if (piece_of_[i] == k) scale_beside(rigid, factor, problem, i);

@@ -35,15 +35,17 @@ void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
 }
 
 /// The torque of forces from outside on the points, about the center, N m. Gravity does not turn a free problem.
-Vec3 torque_on(const Problem& problem, const RigidMotion& motion, bool is_free) {
+template <class Counts>
+Vec3 torque_on(const Problem& problem, const RigidMotion& motion, bool is_free, Counts counts) {
   Vec3 torque;
   for (std::size_t i = 0; i < problem.force.size(); ++i)
-    torque += cross(problem.position[i] - motion.center, problem.force[i]);
+    if (counts(i)) torque += cross(problem.position[i] - motion.center, problem.force[i]);
   if (is_free) return torque;
   Vec3 moment;
-  for (std::size_t i = 0; i < problem.size(); ++i) moment += problem.mass[i] * (problem.position[i] - motion.center);
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    if (counts(i)) moment += problem.mass[i] * (problem.position[i] - motion.center);
   for (const auto& c : problem.mass_couplings)
-    moment += c.mass * (problem.position[c.a] - motion.center + problem.position[c.b] - motion.center);
+    if (counts(c.a)) moment += c.mass * (problem.position[c.a] - motion.center + problem.position[c.b] - motion.center);
   return torque + cross(moment, problem.gravity);
 }
 
@@ -80,11 +82,15 @@ RigidMotion rigid_motion_about(const Problem& problem, const Vec3& pivot, std::s
 }
 
 // The energy (R'L)' I^-1 (R'L) / 2 of a body turned by R = 1 + [a] falls by a . (L x w), its potential energy by a . torque.
-void turn_for_energy(Problem& problem, double energy, double most_angle, const std::optional<Vec3>& pivot) {
+void turn_for_energy(Problem& problem, double energy, double most_angle, const std::optional<Vec3>& pivot,
+                     std::span<const std::uint32_t> piece_of, std::uint32_t piece) {
   constexpr double largest_angle = 0.1;  // rad
   constexpr double most_curved = 0.3;    // of the slope: what it changes by on the way
   constexpr int passes = 4;              // each is right to first order
-  const auto motion = [&] { return pivot ? rigid_motion_about(problem, *pivot) : rigid_motion_of(problem); };
+  const auto counts = [&](std::size_t node) { return piece_of.empty() || piece_of[node] == piece; };
+  const auto motion = [&] {
+    return pivot ? rigid_motion_about(problem, *pivot, piece_of, piece) : rigid_motion_of(problem, piece_of, piece);
+  };
   const auto potential = [&] {
     double sum = pivot ? problem.potential_energy(problem.position.data()) : 0;
     for (std::size_t i = 0; i < problem.force.size(); ++i) sum -= dot(problem.force[i], problem.position[i]);
@@ -93,7 +99,7 @@ void turn_for_energy(Problem& problem, double energy, double most_angle, const s
   for (int pass = 0; pass < passes; ++pass) {
     const RigidMotion before = motion();
     const double potential_before = potential();
-    const Vec3 torque = torque_on(problem, before, !pivot);
+    const Vec3 torque = torque_on(problem, before, !pivot, counts);
     const Vec3 slope = -(cross(before.angular_momentum, before.turning) + torque);
     const double steepness = norm(slope), angle = energy / steepness;
     // Beside a principal axis the slope is round-off: a body would jump by up to the largest angle, and gain by the square.
@@ -102,6 +108,7 @@ void turn_for_energy(Problem& problem, double energy, double most_angle, const s
     if (!(is_straight && std::abs(angle) <= std::min(largest_angle, most_angle) && std::abs(angle) > 1e-15)) return;
     const Quaternion turn = axis_angle((1 / steepness) * slope, angle);
     for (std::size_t i = 0; i < problem.size(); ++i) {
+      if (!counts(i)) continue;
       const Vec3 own = problem.velocity[i] - before.velocity_at(problem.position[i]);
       problem.position[i] = before.center + rotate(turn, problem.position[i] - before.center);
       problem.velocity[i] = before.velocity + rotate(turn, own);
@@ -109,7 +116,7 @@ void turn_for_energy(Problem& problem, double energy, double most_angle, const s
     const RigidMotion rest = motion();  // of the rest: none, but for round-off
     const Vec3 turning = solve_semidefinite(rest.inertia, before.angular_momentum - rest.angular_momentum, 1e-12);
     for (std::size_t i = 0; i < problem.size(); ++i)
-      problem.velocity[i] += cross(turning, problem.position[i] - before.center);
+      if (counts(i)) problem.velocity[i] += cross(turning, problem.position[i] - before.center);
     energy -= motion().kinetic_energy() - before.kinetic_energy() + potential() - potential_before;
   }
 }

@@ -35,8 +35,9 @@ RigidMotion rigid_motion_about(const Problem&, const Vec3& pivot, std::span<cons
 /// sign) while its momentum and angular momentum stay: a free body that has lost energy at the same angular
 /// momentum has a wrong attitude. With `pivot` the problem hangs on this point, and turns about it; its energy then
 /// includes that of gravity and of forces that are held over the step. If the angle is not small, or above `most_angle`, rad,
-/// nothing is changed.
-void turn_for_energy(Problem&, double energy, double most_angle, const std::optional<Vec3>& pivot = {});
+/// nothing is changed. With `piece_of` only one piece.
+void turn_for_energy(Problem&, double energy, double most_angle, const std::optional<Vec3>& pivot = {},
+                     std::span<const std::uint32_t> piece_of = {}, std::uint32_t piece = 0);
 
 /// A rigid body about its center of mass or the point that it hangs on; vectors at the begin of the motion.
 struct TurningBody {

@@ -175,3 +175,18 @@ def test_a_rope_that_becomes_taut_between_two_free_things_keeps_what_both_have_t
     assert tight > 0
     assert momenta(boxes) == pytest.approx(before, abs=1e-9 if mode in ("energy_keeping", "accurate") else 1e-6)
     assert highest <= kinetic * (1 + 1e-9)
+
+
+def test_a_box_on_a_rope_that_is_never_taut_turns_as_a_free_one() -> None:
+    ways = []
+    for tied in (False, True):
+        system, boxes = two_tumbling_pairs("energy_keeping", None)
+        lone = system.body(
+            shape=iota.Box((0.2, 0.3, 0.1)), position=(0, 5, 0), spin=(3, 20, 1), attachments=[(0.1, 5, 0)]
+        )
+        if tied:
+            system.rope(lone.attachments[0], boxes[0].attachments[0], 100)
+        for _ in range(60):
+            system.step(1 / 60)
+        ways.append(lone.attachments[0].position)
+    assert ways[1] == pytest.approx(ways[0], abs=1e-9)
