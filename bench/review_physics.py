@@ -39,13 +39,13 @@ def make(mode: str = "energy_keeping", gravity: float = 0.0) -> iota.System:
 
 
 def angle_about_z(body: iota.Body) -> float:
-    """Of its y axis, by its attitude, rad; within half a turn."""
+    """The angle of its y axis, by its attitude, rad; within half a turn."""
     x, y, z, w = body.orientation
     return math.atan2(1 - 2 * (x * x + z * z), 2 * (x * y - w * z))
 
 
 def kinetic(bodies: list[iota.Body]) -> float:
-    """Of rigid bodies, J."""
+    """The energy of rigid bodies, J."""
     return sum(0.5 * b.mass * abs(b.velocity) ** 2 + 0.5 * b.angular_velocity.dot(b.angular_momentum) for b in bodies)
 
 

@@ -35,8 +35,8 @@ def _attitude(body: iota.Body) -> float:
 
 
 def _gears(mode: str, turns: float) -> tuple[float, float, float]:
-    """Of a geared pair and a screw that begin with so many turns a step: the part of the turns in a second that joints do not
-    count, of the screw's way that is missing, and of the speed that the second gear has lost."""
+    """Missing parts after a second that begins with so many turns a step: of the turns that a joint counts, of the way of a
+    screw, and of the speed of a gear."""
     system = _system(mode)
     speed = 2 * math.pi * turns * HZ
     first, second = (_disc(system, x, part * speed) for x, part in ((0, 1), (1, -0.5)))
@@ -99,7 +99,7 @@ def fast_shafts(run: Run) -> None:
 
 
 def _inertia(angle: float) -> float:
-    """Of crank, rod and slider, boxes of 1 kg, by the angle of the crank, kg m^2: twice the kinetic energy at 1 rad/s."""
+    """Twice the kinetic energy of crank, rod and slider at 1 rad/s of the crank, kg m^2, by its angle."""
     c, s = math.cos(angle), math.sin(angle)
     lean = CRANK * s / ROD  # sine of the rod's angle
     across = math.sqrt(1 - lean * lean)
