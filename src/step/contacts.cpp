@@ -6,6 +6,7 @@
 #include "solver/heap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -150,7 +151,33 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
   return of_way * steps * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
-// Few obstacles are looked at one by one, many by the tree.
+namespace {
+
+bool touch_each_other(model::Model&, contact::Outlines&, const std::pair<std::uint32_t, std::uint32_t>&);
+
+}  // namespace
+
+// Each axis has its own speed: a swing past a post is none towards it. It turns less than a stride may.
+geometry::Bounds ContactFinder::way_of_stride(const model::Model& model, contact::Outlines& outlines,
+                                              const Mover& mover) const {
+  constexpr double sideways = 0.35;  // of the way of a point on its arc
+  const model::Body& body = model.bodies[mover.body];
+  Vec3 most = sideways * mover.spread * Vec3{1, 1, 1};
+  const Vec3 gravity = model.acting_gravity();
+  const double time = of_way * mover.steps * h_;
+  for (double Vec3::* const axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    double fastest = 0;
+    for (std::size_t k = 0; k < body.rank; ++k)
+      fastest = std::max(fastest, std::abs(model.velocity(body.basis[k]).*axis));
+    most.*axis += fastest + std::abs(mover.steps * h_ * gravity.*axis);
+  }
+  const Vec3 way = time * most + of_size * mover.reach * Vec3{1, 1, 1};
+  geometry::Bounds box = contact::bounds(outlines.placed(mover.body));
+  box.low -= way, box.high += way;
+  return box;
+}
+
+// Few obstacles are looked at one by one, many by the tree. What hangs on a beam may take strides.
 void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outlines) {
   constexpr std::size_t few = 16;
   if (movers_.empty() || obstacles_.empty()) return;
@@ -160,12 +187,17 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
     const double reach_of_stride = mover.steps > 1 ? mover.reach + within(mover, nullptr, mover.steps) : reach;
+    const auto is_in_the_way = [&](const Obstacle& obstacle) {
+      return obstacle.is_half_space || geometry::overlap(way_of_stride(model, outlines, mover), obstacle.box);
+    };
     const auto look_at = [&](std::uint32_t body) {
       const Obstacle& obstacle = obstacle_at(model, outlines, body);
       if (is_scripted && !obstacle.is_sensor) return;
       const double distance = obstacle.distance(mover.place);
       if (distance <= reach) pairs_.push_back({mover.body, body});
-      if (mover.steps > 1 && distance <= reach_of_stride) ingredient::Strides::note_near(model, mover.body);
+      if (mover.steps > 1 && distance <= reach_of_stride && is_in_the_way(obstacle) &&
+          touch_each_other(model, outlines, {mover.body, body}))
+        ingredient::Strides::note_near(model, mover.body);
     };
     if (!tree) {
       for (const std::uint32_t body : obstacles_) look_at(body);
@@ -194,7 +226,8 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
       const Mover& other = mover_at(model, outlines, body);
       const double apart = norm(other.place - mover.place) - mover.reach - other.reach;
       if (mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
-          apart <= within(mover, &other, mover.steps))
+          apart <= within(mover, &other, mover.steps) &&
+          touch_each_other(model, outlines, {std::min(body, mover.body), std::max(body, mover.body)}))
         ingredient::Strides::note_near(model, mover.body);
       if (apart > within(mover, &other)) return;
       pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});

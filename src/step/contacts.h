@@ -86,6 +86,8 @@ class ContactFinder {
   bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;
+  /// The box that a body stays in for its stride.
+  geometry::Bounds way_of_stride(const model::Model&, contact::Outlines&, const Mover&) const;
 
   /// A pair on its way.
   struct Ahead {

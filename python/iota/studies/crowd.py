@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import iota
 from iota import looks
@@ -77,15 +78,18 @@ class Crowd:
     def tint(self, thing: Managed, level: Level) -> None:
         """Draws a thing in the color of its level."""
         color = TINTS[level.name] if self.is_tinted else PAINTS[thing.root.slot % 4]
-        for body in thing.bodies:
-            self.world.draw(
-                body, looks.solid("paint", color) if body.solids else looks.capsule(0.02, "paint", color=color)
-            )
+        self.world.draw(thing.bodies, coat(color, bool(thing.root.solids)))
+
+
+@cache
+def coat(color: str, is_solid: bool) -> looks.Look:
+    """The look of a body."""
+    return looks.solid("paint", color) if is_solid else looks.capsule(0.02, "paint", color=color)
 
 
 def gallows(world: iota.World, at: iota.Vec3) -> None:
-    world.add_static(looks.box((0.5, 0.08, 0.08), "wood"), tuple(at))
-    world.add_static(looks.box((0.07, at.y, 0.07), "wood"), (at.x - 0.28, at.y / 2, at.z))
+    world.add_static(looks.box((0.67, 0.08, 0.08), "wood"), (at.x - 0.085, at.y, at.z))
+    world.add_static(looks.box((0.07, at.y, 0.07), "wood"), (at.x - 0.42, at.y / 2, at.z))
 
 
 def chain(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Body:
