@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 namespace iota::edit {
@@ -334,7 +335,7 @@ void apply(Editor& e, const SetPose& c) {
     return e.orientations.forget();
   }
   require_particles(model, body);
-  e.orientations.refresh(e.model);
+  e.orientations.refresh(e.model, std::span(&body, 1));
   const Quaternion& q = model.bodies[body].orientation;
   const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
   const Vec3 center = model.center_of_mass(body);

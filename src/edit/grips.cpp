@@ -5,6 +5,8 @@
 #include "math/checks.h"
 #include "math/mat3.h"
 
+#include <span>
+
 namespace iota::edit {
 
 GripId apply(Editor& e, const CreateGrip& c) {
@@ -15,7 +17,7 @@ GripId apply(Editor& e, const CreateGrip& c) {
   require_positive("frequency", c.options.frequency);
   require_positive("max_acceleration", c.options.max_acceleration);
   if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to hold"));
-  e.orientations.refresh(model);
+  e.orientations.refresh(model, std::span(&body, 1));
   ingredient::Grip grip;
   grip.body = body;
   grip.client = c.options.client, grip.hold = c.options.hold;

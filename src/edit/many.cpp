@@ -353,7 +353,11 @@ void apply(Editor& e, const AssignBodies& c) {
     for (const auto& [particle, share] : forces) apply(e, ApplyForce{particle, share});
     return;
   }
-  e.orientations.refresh(e.model);
+  if (c.quantity == orientation || c.quantity == pose) {
+    std::vector<std::uint32_t> slots;
+    for (const BodyId id : c.bodies) slots.push_back(id.slot);
+    e.orientations.refresh(e.model, slots);
+  }
   std::vector<Wanted> all;
   for (std::size_t i = 0; i < count; ++i) all.push_back(wanted(model, c.bodies[i], c.quantity, row(i)));
   if (c.quantity == position || c.quantity == orientation || c.quantity == pose)

@@ -25,7 +25,28 @@ bool is_along(const Vec3& v, const Vec3& unit) {
   return dot(across, across) <= round_off * round_off * dot(v, v) && dot(unit, v) >= 0;
 }
 
+/// Whether the frame of a body follows from the places of its points.
+bool has_no_past(const model::Body& b) { return b.first_solid != none || b.rank > 2; }
+
+void refresh_frame(const model::Model& model, model::Body& b) {
+  if (b.first_solid != none) {
+    b.orientation = solid_pose(model, b.first_solid).orientation;
+    return;
+  }
+  const Vec3 x0 = model.position(b.basis[0]);
+  const Vec3 x = unit_or(model.position(b.basis[1]) - x0, rotate(b.orientation, {1, 0, 0}));
+  const Vec3 in_plane = model.position(b.basis[2]) - x0;
+  const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x));
+  b.orientation = from_axes(x, y, cross(x, y));
+}
+
 }  // namespace
+
+void Orientations::refresh(model::Model& model, std::span<const std::uint32_t> bodies) {
+  if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return has_no_past(model.bodies[body]); }))
+    return refresh(model);
+  for (const std::uint32_t body : bodies) refresh_frame(model, model.bodies[body]);
+}
 
 void Orientations::refresh(model::Model& model) {
   const std::uint64_t now = model.step << 32 | model.structure_version;
@@ -34,10 +55,7 @@ void Orientations::refresh(model::Model& model) {
   made_for_ = now;
 
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
-    if (b.first_solid != none) {
-      b.orientation = solid_pose(model, b.first_solid).orientation;
-      return;
-    }
+    if (has_no_past(b)) return refresh_frame(model, b);
     if (b.rank < 2) {  // a ball may have an orientation
       const std::uint32_t a = b.rank > 0 ? model.particles[b.basis[0]].attributes : none;
       if (a != none && model.attributes[a].oriented) b.orientation = model.attributes[a].orientation;
@@ -46,20 +64,15 @@ void Orientations::refresh(model::Model& model) {
     const Vec3 x0 = model.position(b.basis[0]), along = model.position(b.basis[1]) - x0;
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     // Most rods have not turned since an edit between two steps.
-    if (b.rank == 2 && is_along(along, old_x) && !model.spins.has(slot)) return;
+    if (is_along(along, old_x) && !model.spins.has(slot)) return;
     const Vec3 x = unit_or(along, old_x);
-    if (b.rank == 2) {  // turn the frame by the smallest rotation, and about its axis by the spin
-      b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
-      if (ingredient::RodSpin* const spin = model.spins.find(slot)) {
-        const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
-        b.orientation = normalized(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
-        spin->drawn = spin->angle;
-      }
-      return;
+    // Turn the frame by the smallest rotation, and about its axis by the spin.
+    b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
+    if (ingredient::RodSpin* const spin = model.spins.find(slot)) {
+      const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
+      b.orientation = normalized(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
+      spin->drawn = spin->angle;
     }
-    const Vec3 in_plane = model.position(b.basis[2]) - x0;
-    const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x));
-    b.orientation = from_axes(x, y, cross(x, y));
   });
 
   // Smallest rotations accumulate a twist between neighbors on closed paths. Frames of rods are turned back towards

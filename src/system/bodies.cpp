@@ -8,6 +8,7 @@
 #include "system/core.h"
 
 #include <algorithm>
+#include <span>
 
 namespace iota {
 
@@ -260,7 +261,7 @@ Vec3 Bodies::center_of_mass(BodyId id) const { return core_.model.center_of_mass
 
 Quaternion Bodies::orientation(BodyId id) const {
   const std::uint32_t body = core_.slot(id);
-  core_.orientations.refresh(core_.model);
+  core_.orientations.refresh(core_.model, std::span(&body, 1));
   return core_.model.bodies[body].orientation;
 }
 

@@ -6,6 +6,7 @@
 #include "system/core.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace iota {
 
@@ -86,7 +87,11 @@ void Many::read(Quantity quantity, std::span<const ParticleId> ids, std::span<do
 
 void Many::read(Quantity quantity, std::span<const BodyId> ids, std::span<double> out) const {
   const model::Model& m = core_.model;
-  if (quantity == Quantity::orientation || quantity == Quantity::pose) core_.orientations.refresh(core_.model);
+  if (quantity == Quantity::orientation || quantity == Quantity::pose) {
+    std::vector<std::uint32_t> slots;
+    for (const BodyId id : ids) slots.push_back(core_.slot(id));
+    core_.orientations.refresh(core_.model, slots);
+  }
   write_rows(core_, quantity, ids, out, [&](std::uint32_t body, double* row) {
     switch (quantity) {
       case Quantity::position: return put(m.center_of_mass(body), row);

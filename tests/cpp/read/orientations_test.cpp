@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace iota {
 namespace {
@@ -47,6 +48,28 @@ TEST(Orientations, of_rods_lose_their_twist_by_steps_and_not_by_edits) {
   EXPECT_LT(scene.twist(), before - 0.05);
   for (int i = 0; i < 100; ++i) (void)system.step(0.01), (void)scene.twist();
   EXPECT_NEAR(scene.twist(), 0, 1e-6);
+}
+
+TEST(Orientations, of_a_solid_are_the_same_alone_and_with_those_of_all) {
+  TwistedRods alone(1), together(1);
+  for (TwistedRods* const scene : {&alone, &together}) {
+    const BodyId box = scene->system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 0}});
+    scene->system.bodies().set_angular_velocity(box, {1, 2, 3});
+  }
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Quaternion> found;
+    for (TwistedRods* const scene : {&alone, &together}) {
+      System& system = scene->system;
+      (void)system.step(0.01);
+      if (scene == &together) (void)scene->twist();
+      const BodyId box = system.bodies().all().back();
+      system.bodies().set_pose(box, {0, 5.0 + i, 0}, system.bodies().orientation(box));
+      found.push_back(system.bodies().orientation(box));
+    }
+    EXPECT_EQ(found[0].x, found[1].x);
+    EXPECT_EQ(found[0].w, found[1].w);
+    EXPECT_LT(found[0].w, 1);
+  }
 }
 
 TEST(Orientations, of_rods_follow_an_edit_that_turns_them) {
