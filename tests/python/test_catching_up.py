@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 import iota
+from iota import looks
+from iota._core import Places
 from iota.studies import crowd
 from iota.world import catching_up
-from iota.world.catching_up import catch_up
+from iota.world.catching_up import CatchUp, catch_up
 from iota.world.ties import Ties
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -252,21 +254,52 @@ def test_what_is_tied_to_something_in_full_stays_where_it_was() -> None:
 def test_its_work_is_bounded() -> None:
     place = Place(hung(crowd.ladder))
     place.run(0.2)
-    steps: list[float] = []
-    step = iota.System.step
-
-    class Counted:
-        def __call__(self, system: iota.System, dt: float) -> iota.types.StepReport:
-            steps.append(dt)
-            return step(system, dt)
-
-    copy = catching_up._Copy(place.system, place.thing.bodies, 1e6)
-    counted = Counted()
-    for _ in range(3):
-        counted(copy.system, catching_up.LONGEST)
-    assert len(steps) == 3
+    found = CatchUp(place.system, place.thing.bodies, 1e6, (), Places(place.system))
+    pieces = 1
+    while not found.go_on(0.0):
+        pieces += 1
+    assert pieces <= catching_up.STEPS + 3
     assert catch_up(place.system, place.thing.bodies, 1e6), "as after a few seconds"
     assert math.isfinite(place.system.energy.total) and place.system.validate() == []
+
+
+def test_what_comes_into_sight_step_by_step_is_found_in_pieces_before_it_is_there() -> None:
+    place = Place(box)
+    place.freeze()
+    place.run(3.0)
+    place.eye[2] = 35.0
+    place.run(0.1)
+    assert place.root.position.y > 5
+    taken: list[int] = []
+    for step in range(240):
+        place.eye[2] -= 4 * DT
+        place.world.step()
+        if place.root.position.y < 0.2:
+            taken.append(step)
+    assert place.eye[2] < 30 and taken
+    came = 35 - 4 * DT * (taken[0] + 1)
+    assert 30 < came < 33, "it lies there before it is seen"
+    assert taken[0] - (35 - 33) / (4 * DT) > 10, "in pieces"
+
+
+def test_what_was_moved_meanwhile_stays_there() -> None:
+    place = Place(box)
+    place.freeze()
+    found = CatchUp(place.system, place.thing.bodies, 2.0, (), Places(place.system))
+    assert not found.go_on(0.0)
+    place.root.set_pose((0, 20, 0))
+    assert found.go_on()
+    assert not found.finish()
+    assert place.root.position.y == pytest.approx(20)
+
+
+def test_only_obstacles_near_it_are_copied_however_many_there_are() -> None:
+    place = Place(box)
+    for number in range(300):
+        place.world.add_static(looks.box((0.1, 0.1, 0.1)), (50 + number, 0.05, 0))
+    place.world.add_static(looks.box((2, 1, 2)), (0, 0.5, 0))
+    assert catch_up(place.system, place.thing.bodies, 3.0)
+    assert place.root.position.y == pytest.approx(1.1, abs=2e-3), "on the block, which was made last"
 
 
 def test_what_is_replayed_has_the_same_bits() -> None:

@@ -205,6 +205,18 @@ def test_an_edit_makes_full_at_once(made: tuple[iota.World, list[iota.Body]]) ->
     assert roots[3].stride == 1
 
 
+def test_what_hangs_on_a_beam_takes_its_strides() -> None:
+    world = crowd.build(3, None)
+    run(world, 20)
+    roots = [thing.root for thing in world.levels.things]
+    for root in roots:
+        root.articulate.stride = 4
+    run(world, 9)
+    steps = world.system.array(roots).work[:, 1]
+    assert steps.tolist() == [4, 4, 4], "an acrobat, a rope ladder and a chain, beside gallows and each other"
+    assert world.system.validate() == []
+
+
 def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:
     system = iota.System(gravity=(0, 0, 0))
     root = chain(system, (0, 0, 0))
@@ -358,7 +370,7 @@ def test_wrong_arguments_of_manage_are_refused(made: tuple[iota.World, list[iota
 def test_an_undo_after_off_does_not_bring_strides_back(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     world.levels.budget_ms = LITTLE
-    run(world, 100)
+    run(world, 120)
     reduced = world.system.snapshot()
     world.levels.budget_ms = None
     run(world, 5)

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import math
+import time
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Particle, System
+from iota._core import Body, Box, Particle, Places, System, Vec3
 from iota.world.stand_ins import put
 from iota.world.ties import Tie, can_be_copied, copy_tie, needed_particles
 
@@ -22,26 +23,63 @@ ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are loo
 
 
 def catch_up(system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie] = ()) -> bool:
-    """Moves bodies on by `seconds`. ties: all that connect them to each other and to the world but for hinges and nails. Takes up to
-    STEPS steps of LONGEST, or more of few bodies that are held; what lasts longer counts as that, but what is held has lost as much energy by
-    damping as in all the time. Others do not meet the bodies on their way. False for what cannot be copied: functions of the script,
-    fields, couplings, and what stands on something that may move."""
-    if seconds <= 0 or not _can_be_copied(system, bodies) or not all(can_be_copied(tie) for tie in ties):
-        return False
-    copy = _Copy(system, bodies, seconds, ties)
-    points = sum(len(twin.particles) for twin in copy.twins)
-    most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held else STEPS
-    steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
-    length = min(seconds / steps, LONGEST)
-    if copy.is_held:
-        copy.raise_damping(seconds / (steps * length))
-    for _ in range(steps):
-        copy.system.step(length)
-    energy = copy.system.energy
-    if energy.total > copy.energy + max(energy.external_work, 0.0) + GAIN * (1 + energy.kinetic):
-        return False
-    copy.put_back(system)
-    return True
+    """Moves bodies on by `seconds` at once: see CatchUp. False for what cannot be copied."""
+    made = CatchUp(system, bodies, seconds, ties, Places(system))
+    made.go_on()
+    return made.finish()
+
+
+class CatchUp:
+    """Moves bodies on by `seconds`, in pieces: `go_on` until it is done, then `finish`. places: of the system. ties: all that connect them to each other and to the
+    world but for hinges and nails. Takes up to STEPS steps of LONGEST, or more of few bodies that are held; what lasts longer counts as that,
+    but what is held has lost as much energy by damping as in all the time. Others do not meet the bodies on their way. Functions of the
+    script, fields, couplings, and what stands on something that may move cannot be copied."""
+
+    def __init__(
+        self, system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places
+    ) -> None:
+        self._system = system
+        self._copy: _Copy | None = None
+        self._places: list[Vec3] = []
+        self._pieces: Iterator[None] = iter(())
+        if seconds > 0 and _can_be_copied(system, bodies) and all(can_be_copied(tie) for tie in ties):
+            self._places = _places_of(bodies)
+            self._pieces = self._work(bodies, seconds, ties, places)
+
+    def go_on(self, until: float = math.inf) -> bool:
+        """Does pieces of the work until a processor time, s, but at least one. Whether it is done."""
+        return not any(time.process_time() > until for _ in self._pieces)
+
+    def _work(self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places) -> Iterator[None]:
+        self._copy = copy = _Copy(self._system, bodies, ties)
+        yield
+        copy.copy_obstacles(places, seconds)
+        yield
+        copy.move_as_before()
+        points = sum(len(twin.particles) for twin in copy.twins)
+        most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held else STEPS
+        steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
+        length = min(seconds / steps, LONGEST)
+        if copy.is_held:
+            copy.raise_damping(seconds / (steps * length))
+        for _ in range(steps):
+            copy.system.step(length)
+            yield
+
+    def finish(self) -> bool:
+        """The bodies get the state of the copy. False if it has gained energy, if something has moved them meanwhile, or without a copy."""
+        copy = self._copy
+        if copy is None or not copy.is_as_it_was(self._places):
+            return False
+        energy = copy.system.energy
+        if energy.total > copy.energy + max(energy.external_work, 0.0) + GAIN * (1 + energy.kinetic):
+            return False
+        copy.put_back(self._system)
+        return True
+
+
+def _places_of(bodies: Sequence[Body]) -> list[Vec3]:
+    return [p.position for body in bodies for p in body.particles]
 
 
 def _can_be_copied(system: System, bodies: Sequence[Body]) -> bool:
@@ -54,7 +92,7 @@ def _can_be_copied(system: System, bodies: Sequence[Body]) -> bool:
 
 
 class _Copy:
-    def __init__(self, system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie] = ()) -> None:
+    def __init__(self, system: System, bodies: Sequence[Body], ties: Sequence[Tie]) -> None:
         self.bodies = list(bodies)
         self.system = System(gravity=system.gravity, damping=system.damping, mode="energy_keeping")
         self.system.usual_material = system.usual_material
@@ -66,7 +104,9 @@ class _Copy:
         for tie in ties:
             copy_tie(tie, self.system, twin_bodies, self.twin_of)
         self.is_held = bool(ties) or any(p.is_nailed for p in self.twin_of)
-        self._copy_obstacles(system, seconds)
+
+    def move_as_before(self) -> None:
+        """The copy gets the velocities of the bodies. energy: J, then."""
         move_as(
             self.system, [(self.twin_of[p], p) for p in self.twin_of], list(zip(self.twins, self.bodies, strict=True))
         )
@@ -100,6 +140,10 @@ class _Copy:
         for twin in self.twins:
             twin.damping = _raised(twin.damping, factor)
 
+    def is_as_it_was(self, places: Sequence[Vec3]) -> bool:
+        """Whether all of it is still there, at the same places."""
+        return all(body.alive for body in self.bodies) and _places_of(self.bodies) == places
+
     def _copy_hinges(self) -> None:
         done: set[Particle] = set()
         for own, twin in self.twin_of.items():
@@ -112,21 +156,20 @@ class _Copy:
             if own.is_nailed:
                 twin.nail()
 
-    def _copy_obstacles(self, system: System, seconds: float) -> None:
+    def copy_obstacles(self, places: Places, seconds: float) -> None:
         """Copies those near the way of the thing, which goes downwards at most as far as it falls."""
         time = min(seconds, STEPS * LONGEST)
-        places = np.array([list(body.center_of_mass) for body in self.bodies])
-        moved = places + time * np.array([list(body.velocity) for body in self.bodies])
-        low = np.minimum(places, moved).min(axis=0) - ROOM
-        high = np.maximum(places, moved).max(axis=0) + ROOM
-        pull = 0.5 * np.array(list(system.gravity)) * time**2
+        centers = np.array([list(body.center_of_mass) for body in self.bodies])
+        moved = centers + time * np.array([list(body.velocity) for body in self.bodies])
+        low = np.minimum(centers, moved).min(axis=0) - ROOM
+        high = np.maximum(centers, moved).max(axis=0) + ROOM
+        pull = 0.5 * np.array(list(self.system.gravity)) * time**2
         low, high = low + np.minimum(pull, 0), high + np.maximum(pull, 0)
-        for obstacle in system.obstacles[:MOST_OBSTACLES]:
+        near = places.overlap(Box(high - low), Vec3(*(low + high) / 2), (0, 0, 0, 1), None)
+        for obstacle in [body for body in near if body.kind == "static" and body.solids][:MOST_OBSTACLES]:
             solid = obstacle.solids[0]
-            place, bounds = np.array(list(solid.position)), _reach(solid.shape)
-            if (place + bounds >= low).all() and (place - bounds <= high).all():
-                twin = self.system.obstacle(solid.shape, solid.position, solid.orientation)
-                twin.material = obstacle.material
+            twin = self.system.obstacle(solid.shape, solid.position, solid.orientation)
+            twin.material = obstacle.material
 
     def put_back(self, system: System) -> None:
         """The state of the copy becomes that of the thing."""
@@ -155,13 +198,3 @@ def move_as(system: System, points: Sequence[tuple[Particle, Particle]], bodies:
 
 def _raised(damping: float, factor: float) -> float:
     return min(damping * factor, max(damping, MOST_DAMPING))
-
-
-def _reach(shape: Any) -> float:
-    """The largest distance of its surface from its origin, m; infinite for a half-space."""
-    try:
-        low, high = shape.bounds
-    except (AttributeError, TypeError, ValueError):
-        return float("inf")
-    corner = np.maximum(np.abs(np.array(list(low))), np.abs(np.array(list(high))))
-    return float(np.linalg.norm(corner))

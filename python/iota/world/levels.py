@@ -14,12 +14,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Articulate, Body, Particle, StepReport, System, Vec3
+from iota._core import Articulate, Body, BodyArray, Particle, ParticleArray, Places, StepReport, System, Vec3
 from iota._core import Part as Weld
 from iota.arguments import SHORT, is_number
 from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
-from iota.world.catching_up import catch_up
+from iota.world.catching_up import CatchUp
 from iota.world.clients import Client, Clients
 from iota.world.costs import Costs
 from iota.world.parts import Part
@@ -40,12 +40,17 @@ SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes
 LONGEST_STRIDE = 16  # steps, as in the engine
 URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
+SPEND, SPEND_URGENT = (
+    0.1,
+    0.5,
+)  # of the budget, and of a step: what changes may take before the rest waits for the next step
 SMOOTH, SLOW = 0.15, 0.03  # of the newest step in the smoothed time, and in that of a unit of work
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
 SHOWN_FOR, MOST_SHOWN, LINES = 0.5, 4000, 5  # s, bodies, changes that a page shows
 SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
 MISSED = 0.25  # s: a thing that was frozen for less has missed nothing; its last stride is over then
-CATCH_UP = 2.0  # ms in a step, for what frozen things would have done
+CATCH_UP = 2.0  # ms in a step, for what frozen things would have done, if it must be done at once
+EARLY, LATE = 1.1, 0.9  # of the sight: nearer, it begins to be found; nearer, it is too late
 GONE = 1000  # things that are remembered after their end
 JOINED = "joined"  # the reason of a change: two things have become one
 LEAST_SLACK = 0.25  # m: so far viewers go at least before a thing is looked at again
@@ -99,6 +104,16 @@ STIFF = Level("stiff", is_stiff=True, quality=0.4, share=0.15)
 FROZEN = Level("frozen", 0, quality=0.05, share=0.0)
 STANDARD = (FULL_LEVEL, HALF, QUARTER, EIGHTH, STIFF, FROZEN)
 BY_NAME = {level.name: level for level in STANDARD}
+
+
+@dataclass(eq=False)
+class _Coming:
+    """Things that were frozen out of sight and soon are in it: what they would have done is found in pieces."""
+
+    thing: Managed
+    things: list[Managed] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
+    found: CatchUp | None = None
 
 
 @dataclass(frozen=True)
@@ -286,6 +301,9 @@ class Levels(Part):
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
+        self._change_until = 0.0  # s, of processor time
+        self._coming: deque[_Coming] = deque()
+        self._places: Places | None = None  # made when it is asked
         self._ties: Ties | None = None  # None: to be found when they are needed
         self._version = -1  # of the structure after the latest changes of levels, which make and end no ties
         self._by_root: dict[Body, Managed] = {}  # empty: as of no time
@@ -346,7 +364,8 @@ class Levels(Part):
     @property
     def sight(self) -> float:
         """Distance from all viewers beyond which nobody sees whether a thing moves, m. What was frozen there has done what it would
-        have done, about, when it comes into sight: it has fallen, or swung on. Nearer than that it stays where it is seen."""
+        have done, about, when it comes into sight: it has fallen, or swung on. That begins at 1.1 times this distance. Nearer it stays where
+        it is seen."""
         return self._sight
 
     @sight.setter
@@ -442,6 +461,7 @@ class Levels(Part):
         for thing in self._things:  # a function of the script may have undone that
             thing._be_full()
         self._parked = [*self._things, *self._gone]
+        self._coming.clear()
         self._things.clear()
         self._gone.clear()
         self._manages_all = False
@@ -528,7 +548,7 @@ class Levels(Part):
             ended = time.process_time()
             self._expected_step = self._system.step_count
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
-            self._take_ms(1e3 * (ended - planned))
+            self._take_ms(1e3 * (ended - began))
 
     def _stay_off(self) -> None:
         """Before a step without a budget: an undo or a reset to a time with one brings strides back."""
@@ -592,13 +612,17 @@ class Levels(Part):
         self._steps += 1
         arrays = self._arrays
         self._catch_up_ms = CATCH_UP
-        for part in arrays.due(self._steps, np.inf if is_new else moved, max((NEAR - 1) * self._reach, LEAST_SLACK)):
+        slack = max((NEAR - 1) * self._reach, LEAST_SLACK)
+        for part in arrays.due(self._steps, np.inf if is_new else moved, slack):
             rows = slice(part, None, arrays.slices)
             arrays.look(rows, part, seen, self._reach, self._sight)
-            come = arrays.come_into_sight(rows, self._system.time)
-            for row in come:
-                self._catch_up(self._things[row])
-            if len(come):
+            come = [self._things[row] for row in arrays.come_into_sight(rows, self._system.time)]
+            if moved <= slack:
+                for thing in come:
+                    self._await(thing)
+            elif come:
+                for thing in come:
+                    self._catch_up(thing)
                 arrays.look(rows, part, seen, self._reach, self._sight)
             for near in np.nonzero(arrays.near[rows] & (arrays.level[rows] > 0))[0]:
                 self._change(self._things[part + arrays.slices * int(near)], 0, 1.0, 0.0, "in reach")
@@ -607,6 +631,7 @@ class Levels(Part):
         for row, thing in arrays.own:
             if row % arrays.slices == self._steps % arrays.slices:
                 self._ask(row, thing)
+        self._find_what_comes()
         if self._ms > URGENT * self._budget or self._steps % (1 + len(self._things) // PER_DECISION) == 0:
             self._decide()
 
@@ -614,6 +639,8 @@ class Levels(Part):
         assert self._budget is not None
         arrays, budget = self._arrays, self._budget
         is_urgent = self._ms > URGENT * budget
+        spend = SPEND_URGENT * self._ms if is_urgent else SPEND * budget
+        self._change_until = time.process_time() + 1e-3 * spend
         waited = self._steps - arrays.changed
         if self._ms > self._full * budget:
             hold = HOLD_URGENT if is_urgent else HOLD
@@ -641,7 +668,7 @@ class Levels(Part):
         order = np.argsort((lost + 1e-12) / saved, kind="stable")[:most]
         sums = np.cumsum(saved[order])
         for i, done in zip(order, sums - saved[order], strict=True):
-            if done >= need:
+            if done >= need or time.process_time() > self._change_until:
                 break
             self._change(
                 self._things[rows[i]],
@@ -667,10 +694,17 @@ class Levels(Part):
             fitting = np.nonzero(costs <= room)[0]
             if not len(fitting):
                 break
+            if (
+                room < CATCH_UP and arrays.missed(row, self._system.time) > MISSED
+            ):  # first what it would have done, in pieces
+                self._await(self._things[row])
+                continue
             cost = float(costs[fitting[0]])
             room -= cost
             self._change(self._things[row], int(fitting[0]), float(arrays.significance[row]), -cost, "time is left")
             self._ms += cost
+            if time.process_time() > self._change_until:
+                break
 
     def _change(self, thing: Managed, index: int, significance: float, ms: float, reason: str) -> None:
         """One or several levels up or down; what fails stays at its level and is not managed any more."""
@@ -696,8 +730,8 @@ class Levels(Part):
             was_stiff = bool(thing._welds)
             is_stiff = after.is_stiff or (was_stiff and after.stride == 0)  # frozen things cost nothing either way
             if is_stiff != was_stiff:
-                thing._set_stiff(is_stiff)
-            if is_stiff != was_stiff or before.structure is not None or after.structure is not None:
+                self._set_stiff(thing, is_stiff)
+            if before.structure is not None or after.structure is not None:
                 thing._members = thing.bodies
             thing._set_stride(after.stride)
             if after.enter is not None:
@@ -723,6 +757,13 @@ class Levels(Part):
             LevelChange(self._system.time, thing.name, before.name, after.name, significance, ms, reason)
         )
 
+    def _set_stiff(self, thing: Managed, is_stiff: bool) -> None:
+        thing._set_stiff(is_stiff)
+        thing._members = thing.bodies
+        if not is_stiff and not thing.middle.alive:
+            thing._measure()
+        self._arrays.find_points_of(thing)
+
     def _is_as_it_was(self, thing: Managed) -> bool:
         """Whether nothing was joined to it, or parted, since its level was decided last: see _living."""
         version = self._system.structure_version
@@ -735,22 +776,74 @@ class Levels(Part):
     def _catch_up(self, thing: Managed) -> None:
         """A thing that was frozen out of sight has done what it would have done, unless this step has had enough of that. So have all that
         joints tie to it, if all of that was."""
-        if not self._arrays.has_missed(thing):
+        coming = self._coming_of(thing)
+        if coming is None:
+            if not self._arrays.has_missed(thing):
+                return
+            coming = _Coming(thing)
+        else:
+            self._coming.remove(coming)
+        if self._catch_up_ms <= 0:
+            self._begin(coming, is_late=True)
             return
         began = time.process_time()
-        things, bodies, ties = [thing], thing.bodies, list[Tie]()
-        if self._is_jointed_by_now(thing, bodies):
-            bodies, ties = self._all_ties().around(bodies)
-            things = list(dict.fromkeys(each for body in bodies if (each := self._thing_of_root(body)) is not None))
-        seconds = min((self._arrays.take_missed(each, self._system.time) for each in things), default=0.0)
-        if thing.is_jointed and any(body.stride != 0 for body in bodies):
-            return
-        if not (seconds > MISSED and thing.root.alive and all(each._stand_in is None for each in things)):
-            return
-        if self._catch_up_ms > 0 and catch_up(self._system, bodies, seconds, ties):
-            for each in things:
-                each._set_stride(each.level.stride)
+        if self._begin(coming) and coming.found is not None:
+            coming.found.go_on()
+            self._end(coming)
         self._catch_up_ms -= 1e3 * (time.process_time() - began)
+
+    def _begin(self, coming: _Coming, is_late: bool = False) -> bool:
+        """Copies what comes, once. False if it has missed nothing, or goes on from where it was."""
+        if coming.found is not None:
+            return True
+        thing = coming.thing
+        if not thing.root.alive or thing.level.stride != 0 or not self._arrays.has_missed(thing):
+            return False
+        if thing._welds and not is_late:  # frozen, it costs nothing apart
+            self._set_stiff(thing, False)
+        coming.things, coming.bodies, ties = [thing], thing.bodies, list[Tie]()
+        if self._is_jointed_by_now(thing, coming.bodies):
+            coming.bodies, ties = self._all_ties().around(coming.bodies)
+            found = (self._thing_of_root(body) for body in coming.bodies)
+            coming.things = list(dict.fromkeys(each for each in found if each is not None))
+        seconds = min((self._arrays.take_missed(each, self._system.time) for each in coming.things), default=0.0)
+        if is_late or (thing.is_jointed and any(body.stride != 0 for body in coming.bodies)):
+            return False
+        if not (seconds > MISSED and all(each._stand_in is None for each in coming.things)):
+            return False
+        self._places = self._places or Places(self._system)
+        coming.found = CatchUp(self._system, coming.bodies, seconds, ties, self._places)
+        return True
+
+    def _end(self, coming: _Coming) -> None:
+        """What comes is where it would have come."""
+        is_whole = all(body.alive and body.stride == 0 for body in coming.bodies)
+        if is_whole and coming.found is not None and coming.found.finish():
+            for each in coming.things:
+                each._set_stride(each.level.stride)
+
+    def _await(self, thing: Managed) -> None:
+        if self._coming_of(thing) is None:
+            self._coming.append(_Coming(thing))
+
+    def _coming_of(self, thing: Managed) -> _Coming | None:
+        return next((each for each in self._coming if thing is each.thing or thing in each.things), None)
+
+    def _find_what_comes(self) -> None:
+        """In what is left of the time of a step, and at least a small part of it."""
+        assert self._budget is not None
+        left = max(SPEND * self._budget, self._full * self._budget - self._ms)
+        until = time.process_time() + 1e-3 * left
+        while self._coming:
+            coming = self._coming[0]
+            is_late = coming.found is None and self._arrays.is_seen(coming.thing)
+            if self._begin(coming, is_late) and coming.found is not None:
+                if not coming.found.go_on(until):
+                    return
+                self._end(coming)
+            self._coming.popleft()
+            if time.process_time() > until:
+                return
 
     def _thing_of_root(self, body: Body) -> Managed | None:
         if not self._by_root:
@@ -836,7 +929,10 @@ class Levels(Part):
     ) -> Managed:
         size, middle, extent = _measured(members)
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
-        levels = tuple(stiff if level is STIFF else level for level in STANDARD if can_be_stiff or level is not STIFF)
+        # What hangs saves little by stiffness, and loses its swing: strides of 8 cost less.
+        is_hung = any(p.is_nailed for body in members for p in body.particles)
+        has_stiff = can_be_stiff and not is_hung
+        levels = tuple(stiff if level is STIFF else level for level in STANDARD if has_stiff or level is not STIFF)
         lines: list[tuple[Particle, Particle]] = []
         if can_be_stiff:  # as they are drawn now
             lined = {p.body for p, _ in self._system.cosmetic_lines}
@@ -951,6 +1047,7 @@ class Levels(Part):
 
     def _resync(self) -> None:
         """The system was restored or undone: its bodies tell the levels of their things."""
+        self._coming.clear()
         for thing in self._things:
             self._reread(thing)
         for thing in self._revived():
@@ -1067,7 +1164,7 @@ class _Arrays:
                     level.share,
                     level.stride,
                 )
-        self.near, self.is_far = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.near, self.is_far, self.is_near = (np.zeros(count, dtype=bool) for _ in range(3))
         self.significance, self.load, self.full_load = np.zeros(count), np.zeros(count), np.zeros(count)
         self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.changed = np.full(count, -HOLD, dtype=int)
@@ -1079,14 +1176,21 @@ class _Arrays:
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
                 self.since[row] = since[former]
         self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
-        self._roots, self._starts, self._middles = [], [], []
-        for part in range(self.slices):
-            roots = [thing._roots for thing in things[part :: self.slices]]
-            self._roots.append(self._system.array([root for each in roots for root in each]) if roots else None)
-            middles = [thing._middle for thing in things[part :: self.slices]]
-            self._middles.append(self._system.array(middles) if middles else None)
-            self._starts.append(np.cumsum([0, *(len(each) for each in roots[:-1])]))
+        self._roots: list[BodyArray | None] = [None] * self.slices
+        self._middles: list[ParticleArray | None] = [None] * self.slices
+        self._starts = [np.zeros(0, dtype=int)] * self.slices
+        self._is_old = np.ones(self.slices, dtype=bool)
         self._things = things
+
+    def _find_points(self, part: int) -> None:
+        """The bodies and particles by which things of a slice are looked at."""
+        things = self._things[part :: self.slices]
+        roots = [thing._roots for thing in things]
+        self._roots[part] = self._system.array([root for each in roots for root in each]) if roots else None
+        self._middles[part] = self._system.array([thing._middle for thing in things]) if things else None
+        self._starts[part] = np.cumsum([0, *(len(each) for each in roots[:-1])])
+        self.extent[part :: self.slices] = [thing._extent for thing in things]
+        self._is_old[part] = False
 
     def note(self, thing: Managed, step: int) -> None:
         row = self._row.get(thing)
@@ -1094,6 +1198,16 @@ class _Arrays:
             self.level[row], self.changed[row] = thing.index, step
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
             self.touches[row] = self.runs[row] = False
+
+    def find_points_of(self, thing: Managed) -> None:
+        """Its bodies have become one, or come apart: its middle may be another particle."""
+        if (row := self._row.get(thing)) is not None:
+            self._is_old[row % self.slices] = True
+
+    def is_seen(self, thing: Managed) -> bool:
+        """Whether it has been in sight for some time."""
+        row = self._row.get(thing)
+        return row is not None and bool(self.is_near[row])
 
     def come_into_sight(self, rows: slice, now: float) -> NDArray[np.intp]:
         """The frozen things that have. Notes those that are out of sight."""
@@ -1104,17 +1218,22 @@ class _Arrays:
         come: NDArray[np.intp] = indices[is_frozen & ~is_far & is_missed]
         return come
 
+    def missed(self, row: int, now: float) -> float:
+        """For how long it has been frozen out of sight, s."""
+        seconds = now - float(self.since[row])
+        return seconds if math.isfinite(seconds) else 0.0
+
     def has_missed(self, thing: Managed) -> bool:
         """Whether it has been frozen out of sight."""
         row = self._row.get(thing)
         return row is not None and bool(np.isfinite(self.since[row]))
 
     def take_missed(self, thing: Managed, now: float) -> float:
-        """For how long it has been frozen out of sight, s."""
+        """For how long that was, s; it begins anew."""
         row = self._row.get(thing)
-        if row is None or not np.isfinite(self.since[row]):
+        if row is None:
             return 0.0
-        seconds = now - float(self.since[row])
+        seconds = self.missed(row, now)
         self.since[row] = np.nan
         return seconds
 
@@ -1129,6 +1248,8 @@ class _Arrays:
 
     def look(self, rows: slice, part: int, eyes: Floats, reach: float, sight: float) -> None:
         """Reads some things, and what they mean to the viewers."""
+        if self._is_old[part]:
+            self._find_points(part)
         roots, middles = self._roots[part], self._middles[part]
         if roots is None or middles is None:
             return
@@ -1153,12 +1274,13 @@ class _Arrays:
         if len(eyes):
             distance = np.linalg.norm(places[:, None, :] - eyes[None, :, :], axis=2).min(axis=1)
             self.near[rows] = distance - self.extent[rows] <= NEAR * reach
-            self.is_far[rows] = distance - self.extent[rows] > sight
+            self.is_far[rows] = distance - self.extent[rows] > EARLY * sight
+            self.is_near[rows] = distance - self.extent[rows] < LATE * sight
             distance = np.maximum(distance - 0.5 * size, 1e-3)
             seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
         else:
             seen = speeds + IDLE
-            self.near[rows], self.is_far[rows] = False, True
+            self.near[rows], self.is_far[rows], self.is_near[rows] = False, True, False
         self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen)
 
     def share_now(self, rows: NDArray[np.intp]) -> Floats:
