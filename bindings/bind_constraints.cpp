@@ -248,6 +248,12 @@ ConstraintHandle& holder_of(CoordinateView& coordinate) { return coordinate.join
 
 void bind_coordinate(nb::module_& module) {
   nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc, nb::type_slots(handle_slots<CoordinateView>))
+      .def_prop_ro(
+          "joint", [](const CoordinateView& self) { return self.joint; },
+          nb::for_getter(nb::sig("def joint(self) -> Constraint")), "The joint whose coordinate it is.")
+      .def_prop_ro(
+          "name", [](const CoordinateView& self) { return coordinate_names[self.index()]; },
+          "'angle', 'slide' or 'second_angle': its name in the joint.")
       .def_prop_rw(
           "value",
           [](const CoordinateView& self) {

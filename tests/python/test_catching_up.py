@@ -141,13 +141,13 @@ def test_what_cannot_be_copied_goes_on_from_where_it_was() -> None:
     start = place.places()
     assert not catch_up(place.system, [place.root], 1.0)
     assert np.array_equal(place.places(), start) and lower.position.y == 30
-    geared = Place(arm)
-    elbow, shoulder = geared.system.constraints
-    geared.system.gear(elbow.angle, shoulder.angle, -2.0)
-    start = geared.places()
-    bodies, ties = Ties(geared.system).around([geared.root])
-    assert not catch_up(geared.system, bodies, 1.0, ties)
-    assert np.array_equal(geared.places(), start)
+    railed = Place(arm)
+    bead = railed.root.attachment((1, 5, 0))
+    railed.system.on_path(bead, [(1, 5, 0), (0, 4, 0), (-1, 5, 0)])
+    start = railed.places()
+    bodies, ties = Ties(railed.system).around([railed.root])
+    assert not catch_up(railed.system, bodies, 1.0, ties)
+    assert np.array_equal(railed.places(), start)
 
 
 def pendulum(world: iota.World) -> iota.Body:
@@ -180,6 +180,28 @@ def wheel(world: iota.World) -> iota.Body:
     return made
 
 
+def geared(world: iota.World) -> iota.Body:
+    """A wheel with a weight on its rim drives another one; a third carries the difference of both."""
+    wheels = [
+        world.system.body(shape=iota.Cylinder(0.2, 0.1), mass=2, position=(0.6 * k, 3, 0), orientation=("x", 90))
+        for k in range(3)
+    ]
+    joints = [
+        world.system.revolute(body, at=(0.6 * k, 3, 0), axis=(0, 0, 1), limits=(-9, 9)) for k, body in enumerate(wheels)
+    ]
+    joints[0].angle.spring = (3.0, 0.0, 1.0)
+    world.system.gear(joints[0].angle, joints[1].angle, -1.5)
+    world.system.couple([(joints[0].angle, 1.0), (joints[1].angle, 1.0), (joints[2].angle, -2.0)])
+    return wheels[0]
+
+
+def nut(world: iota.World) -> iota.Body:
+    """It turns down a screw by its weight."""
+    made = world.system.body(shape=iota.Cylinder(0.2, 0.1), mass=2, position=(0, 4, 0))
+    world.system.screw(made, at=(0, 4, 0), axis=(0, 1, 0), lead=-0.6)
+    return made
+
+
 def bent_rods(world: iota.World) -> iota.Body:
     points = [world.system.body() for _ in range(2)]
     first, middle = (points[0].particle((x, 4, 0), mass=1) for x in (0, 0.5))
@@ -192,7 +214,15 @@ def bent_rods(world: iota.World) -> iota.Body:
 
 @pytest.mark.parametrize(
     ("make", "seconds", "off"),
-    [(pendulum, 8, 0.06), (arm, 1.5, 0.05), (hung_on_a_spring, 5, 0.1), (wheel, 9, 0.01), (bent_rods, 2, 0.15)],
+    [
+        (pendulum, 8, 0.06),
+        (arm, 1.5, 0.05),
+        (hung_on_a_spring, 5, 0.1),
+        (wheel, 9, 0.01),
+        (bent_rods, 2, 0.15),
+        (geared, 2, 0.03),
+        (nut, 1.5, 0.02),
+    ],
 )
 def test_what_joints_and_springs_hold_has_gone_on_with_its_energy_and_phase(
     make: Callable[[iota.World], iota.Body], seconds: float, off: float

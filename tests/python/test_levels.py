@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -215,6 +216,24 @@ def test_what_hangs_on_a_beam_takes_its_strides() -> None:
     steps = world.system.array(roots).work[:, 1]
     assert steps.tolist() == [4, 4, 4], "an acrobat, a rope ladder and a chain, beside gallows and each other"
     assert world.system.validate() == []
+
+
+def test_things_that_joints_tie_together_are_reduced_together_however_little_time_there_is() -> None:
+    world = iota.World(iota.System(), ground=None)
+    wheels = [world.system.body(shape=iota.Cylinder(0.2, 0.1), mass=2, position=(0.6 * k, 3, 0)) for k in range(4)]
+    joints = [world.system.revolute(body, at=body.position, axis=(0, 0, 1)) for body in wheels]
+    for joint, other in pairwise(joints):
+        world.system.gear(joint.angle, other.angle, -1.0)
+    world.levels.viewers = lambda: [(0, 0, 90)]
+    world.levels.budget_ms = LITTLE
+    run(world, 120)
+    assert [body.stride for body in wheels] == [0, 0, 0, 0]
+    world.levels.pin(wheels[3])
+    run(world, 60)
+    assert [body.stride for body in wheels] == [1, 1, 1, 1]
+    changes = len(world.levels.changes)
+    run(world, 60)
+    assert len(world.levels.changes) == changes, "what is tied to something pinned is not tried again and again"
 
 
 def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Box, Particle, Places, System, Vec3
 from iota.world.stand_ins import put
-from iota.world.ties import Tie, can_be_copied, copy_tie, needed_particles
+from iota.world.ties import Tie, can_be_copied, copy_ties, needed_particles
 
 Floats = NDArray[np.float64]
 STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass through each other
@@ -33,7 +33,7 @@ class CatchUp:
     """Moves bodies on by `seconds`, in pieces: `go_on` until it is done, then `finish`. places: of the system. ties: all that connect them to each other and to the
     world but for hinges and nails. Takes up to STEPS steps of LONGEST, or more of few bodies that are held; what lasts longer counts as that,
     but what is held has lost as much energy by damping as in all the time. Others do not meet the bodies on their way. Functions of the
-    script, fields, couplings, and what stands on something that may move cannot be copied."""
+    script, fields, paths, surfaces, and what stands on something that may move cannot be copied."""
 
     def __init__(
         self, system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places
@@ -101,8 +101,7 @@ class _Copy:
         self.twins = [self._copy(body, needed) for body in self.bodies]
         self._copy_hinges()
         twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
-        for tie in ties:
-            copy_tie(tie, self.system, twin_bodies, self.twin_of)
+        copy_ties(ties, self.system, twin_bodies, self.twin_of)
         self.is_held = bool(ties) or any(p.is_nailed for p in self.twin_of)
 
     def move_as_before(self) -> None:

@@ -77,6 +77,12 @@ class Level:
     leave: Callable[[Managed], None] | None = None
     structure: Callable[[Managed], Structure] | None = None
 
+    def is_like(self, other: Level) -> bool:
+        """Whether both do no more than take strides, of the same length."""
+        functions = (self.enter, self.structure, other.enter, other.structure)
+        is_plain = not (self.is_stiff or other.is_stiff) and all(function is None for function in functions)
+        return is_plain and self.stride == other.stride
+
     def __post_init__(self) -> None:
         """Raises TypeError and ValueError for what is not a level."""
         if not isinstance(self.name, str) or not self.name:
@@ -670,14 +676,16 @@ class Levels(Part):
         for i, done in zip(order, sums - saved[order], strict=True):
             if done >= need or time.process_time() > self._change_until:
                 break
-            self._change(
-                self._things[rows[i]],
-                int(target[i]),
-                float(arrays.significance[rows[i]]),
-                float(saved[i]),
-                "over budget",
-            )
+            thing, significance = self._things[rows[i]], float(arrays.significance[rows[i]])
+            tied = self._tied_to(thing)
+            if any(not arrays.is_free(each) for each in tied):
+                continue
+            self._change(thing, int(target[i]), significance, float(saved[i]), "over budget")
             self._ms -= float(saved[i])
+            for each in tied:  # of what is solved together the shortest stride counts
+                index = next((k for k, level in enumerate(each.levels) if level.is_like(thing.level)), None)
+                if index is not None and index > each.index:
+                    self._change(each, index, significance, 0.0, "over budget")
 
     def _restore(self, rows: NDArray[np.intp], room: float) -> None:
         """The most significance for each millisecond first."""
@@ -844,6 +852,14 @@ class Levels(Part):
             self._coming.popleft()
             if time.process_time() > until:
                 return
+
+    def _tied_to(self, thing: Managed) -> list[Managed]:
+        """The other things that joints, bonds and angle springs tie to it."""
+        if not thing.is_jointed:
+            return []
+        bodies, _ = self._all_ties().around(thing.bodies)
+        found = dict.fromkeys(each for body in bodies if (each := self._thing_of_root(body)) is not None)
+        return [each for each in found if each is not thing]
 
     def _thing_of_root(self, body: Body) -> Managed | None:
         if not self._by_root:
@@ -1203,6 +1219,11 @@ class _Arrays:
         """Its bodies have become one, or come apart: its middle may be another particle."""
         if (row := self._row.get(thing)) is not None:
             self._is_old[row % self.slices] = True
+
+    def is_free(self, thing: Managed) -> bool:
+        """Whether it may be reduced."""
+        row = self._row.get(thing)
+        return row is not None and not self.near[row] and not self.pinned[row]
 
     def is_seen(self, thing: Managed) -> bool:
         """Whether it has been in sight for some time."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ Tie = Constraint | Bond | AngleSpring
 
 ANGLES, SLIDES = ("revolute", "planar", "cylindrical"), ("prismatic", "cylindrical")  # kinds of joints with an axis
 WITH_PLACE, PLAIN, BETWEEN_PARTICLES = ("ball", "weld"), ("orientation",), ("rod", "rope")
+SCREW, COUPLING = "screw", "coupling"  # the latter of coordinates of other joints, as gears are
 LAWS = ("predefined", "expression")  # other ones are functions of the script
 
 
@@ -54,14 +56,16 @@ def bodies_of(tie: Tie) -> list[Body]:
 
 
 def can_be_copied(tie: Tie) -> bool:
-    """Whether `copy_tie` knows its kind."""
+    """Whether `copy_ties` knows its kind."""
     if isinstance(tie, Bond):
         return tie.law.kind in LAWS
     if isinstance(tie, AngleSpring):
         return True
     if tie.a.kind == "static" or (tie.kind in BETWEEN_PARTICLES and len(tie.particles) != 2):
         return False
-    return tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, *BETWEEN_PARTICLES)
+    if tie.kind == COUPLING:
+        return all(can_be_copied(coordinate.joint) for coordinate, _ in tie.terms)
+    return tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, *BETWEEN_PARTICLES, SCREW)
 
 
 def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
@@ -75,19 +79,32 @@ def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
     return found
 
 
-def copy_tie(tie: Tie, system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]) -> None:
-    """Makes the same one of a system between copies of its bodies, at the same places; static bodies are the world there. It does not
-    break."""
-    if isinstance(tie, AngleSpring):
-        p, middle, q = (particle_of[end] for end in tie.ends)
-        system.angle_spring(p, middle, q, tie.stiffness, tie.damping, tie.rest)
-    elif isinstance(tie, Bond):
-        if tie.active:
-            p, q = (particle_of[end] for end in tie.ends)
-            law = tie.law.name if tie.law.kind == "predefined" else tie.law.text
-            system.bond(p, q, law, implicit=tie.implicit, **tie.parameters)
-    elif tie.active:
-        copy = _copy_joint(tie, system, body_of, particle_of)
+def copy_ties(
+    ties: Iterable[Tie], system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]
+) -> None:
+    """Makes the same ones of a system between copies of their bodies, at the same places; static bodies are the world there. They do not
+    break. Couplings are made last, of the copies of their joints."""
+    joint_of: dict[Constraint, Constraint] = {}
+    couplings: list[Constraint] = []
+    for tie in ties:
+        if isinstance(tie, AngleSpring):
+            p, middle, q = (particle_of[end] for end in tie.ends)
+            system.angle_spring(p, middle, q, tie.stiffness, tie.damping, tie.rest)
+        elif isinstance(tie, Bond):
+            if tie.active:
+                p, q = (particle_of[end] for end in tie.ends)
+                law = tie.law.name if tie.law.kind == "predefined" else tie.law.text
+                system.bond(p, q, law, implicit=tie.implicit, **tie.parameters)
+        elif tie.kind == COUPLING:
+            couplings.append(tie)
+        elif tie.active:
+            joint_of[tie] = _copy_joint(tie, system, body_of, particle_of)
+    for coupling in couplings:
+        if coupling.active and all(coordinate.joint in joint_of for coordinate, _ in coupling.terms):
+            joint_of[coupling] = system.couple(
+                [(getattr(joint_of[each.joint], each.name), ratio) for each, ratio in coupling.terms]
+            )
+    for tie, copy in joint_of.items():
         if any(tie.compliance):
             copy.compliance = tie.compliance
 
@@ -105,11 +122,13 @@ def _copy_joint(
         made = make(a, b)
     elif joint.kind in WITH_PLACE:
         made = make(a, b, at=joint.position)
+    elif joint.kind == SCREW:
+        made = make(a, b, at=joint.position, axis=joint.axis, lead=2 * math.pi * joint.length)
     else:
         made = make(a, b, at=joint.position, axis=joint.axis)
-    if joint.kind in ANGLES:
+    if joint.kind in (*ANGLES, SCREW):
         _copy_coordinate(joint.angle, made.angle)
-    if joint.kind in SLIDES:
+    if joint.kind in (*SLIDES, SCREW):
         _copy_coordinate(joint.slide, made.slide)
     return made
 

@@ -52,9 +52,10 @@ TEST(Orientations, of_rods_lose_their_twist_by_steps_and_not_by_edits) {
 
 TEST(Orientations, of_a_solid_are_the_same_alone_and_with_those_of_all) {
   TwistedRods alone(1), together(1);
+  std::vector<BodyId> boxes;
   for (TwistedRods* const scene : {&alone, &together}) {
-    const BodyId box = scene->system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 0}});
-    scene->system.bodies().set_angular_velocity(box, {1, 2, 3});
+    boxes.push_back(scene->system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 0}}));
+    scene->system.bodies().set_angular_velocity(boxes.back(), {1, 2, 3});
   }
   for (int i = 0; i < 20; ++i) {
     std::vector<Quaternion> found;
@@ -62,7 +63,7 @@ TEST(Orientations, of_a_solid_are_the_same_alone_and_with_those_of_all) {
       System& system = scene->system;
       (void)system.step(0.01);
       if (scene == &together) (void)scene->twist();
-      const BodyId box = system.bodies().all().back();
+      const BodyId box = boxes[found.size()];
       system.bodies().set_pose(box, {0, 5.0 + i, 0}, system.bodies().orientation(box));
       found.push_back(system.bodies().orientation(box));
     }
