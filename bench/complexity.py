@@ -182,7 +182,15 @@ def together(factor: float, count: int = 240, steps: int = 1500) -> Row:
 
 def draw(rows: list[Row]) -> None:
     """Gain against error, both logarithmic."""
-    colors = {"acrobats": "#b5462f", "rope ladders": "#2f6c80", "chains": "#5b7f4b"}
+    colors = {
+        "acrobats": "#b5462f",
+        "rope ladders": "#2f6c80",
+        "chains": "#5b7f4b",
+        "cradles": "#8a5a83",
+        "cloths": "#b8860b",
+        "shoals": "#4a7fb5",
+        "together": "#222222",
+    }
 
     def at(row: Row) -> tuple[float, float]:
         x = 70 + 110 * (math.log10(max(row.p99, 1e-3)) + 3)
@@ -198,14 +206,16 @@ def draw(rows: list[Row]) -> None:
         parts.append(f'<path d="M70 {y}H610" stroke="#ddd"/><text x="36" y="{y + 4}">{10**power}</text>')
     parts.append('<path d="M290 40V320" stroke="#888" stroke-dasharray="4"/>')
     parts.append('<text x="200" y="354">error at 10 m after up to 0.5 s, p99, degrees</text>')
-    parts.append('<text x="10" y="30">times cheaper than full</text>')
+    parts.append('<text x="6" y="14">times cheaper than full</text>')
     for i, (name, color) in enumerate(colors.items()):
-        mine = [row for row in rows if row.name == name and row.level != "full"]
-        parts.append(f'<text x="{200 + 120 * i}" y="30" fill="{color}">{name}</text>')
+        mine = [row for row in rows if row.name.startswith(name) and row.level != "full"]
+        parts.append(f'<text x="{70 + 82 * i}" y="32" fill="{color}">{name}</text>')
         for row in mine:
             x, y = at(row)
+            label = row.name.split(", ")[1].split()[0] + "x" if name == "together" else row.level
             parts.append(f'<circle cx="{x:.0f}" cy="{y:.0f}" r="4" fill="{color}"/>')
-            parts.append(f'<text x="{x + 6:.0f}" y="{y - 4:.0f}" fill="{color}">{row.level}</text>')
+            if row.gain > 1.2 and not (row.p99 > 1 and row.gain < 3):  # others lie on each other
+                parts.append(f'<text x="{x + 6:.0f}" y="{y - 4:.0f}" fill="{color}">{label}</text>')
     PICTURE.write_text("\n".join([*parts, "</svg>"]) + "\n")
 
 
