@@ -462,3 +462,12 @@ def test_wrong_couplings_are_refused_with_the_reason() -> None:
         system.rope([s.particle(tuple(s.position), mass=0) for s in solids])
     with pytest.raises(ValueError, match="no length"):
         a.length = 3
+
+
+def test_a_term_of_a_coupling_tells_its_joint_and_its_name() -> None:
+    system = iota.System()
+    nut, wheel = (system.body(shape=iota.Cylinder(0.1, 0.1), mass=1, position=(x, 0, 0)) for x in (0, 1))
+    screw = system.screw(nut, at=(0, 0, 0), axis=(0, 1, 0), lead=0.1)
+    axle = system.revolute(wheel, at=(1, 0, 0), axis=(0, 1, 0))
+    rack = system.gear(axle.angle, screw.slide, 0.05)
+    assert [(each.joint, each.name) for each, _ in rack.terms] == [(axle, "angle"), (screw, "slide")]
