@@ -8,7 +8,6 @@ from iota import looks
 from iota.studies import _laboratory, cradle, ladder
 from iota.studies._laboratory import TOP
 
-BUDGET = 2.0  # ms of processor time a step: half of it
 LADDER = iota.Vec3(-0.3, 1.46, 0.02)  # the axle of its top block, m
 CRADLE = iota.Vec3(0.14, TOP, 0.14)
 VIEWS = (
@@ -26,10 +25,8 @@ def build() -> iota.World:
     room.show(world)
     _laboratory.furnish(world)
     world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))
-    blocks, balls = ladder.Ladder(world, 7, LADDER), cradle.Cradle(world, CRADLE)
-    story = ladder.add_actions(world, blocks)
-    cradle.add_actions(world, balls, on_lift=story.touch)
-    manage(world, blocks, balls)
+    story = ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
+    cradle.add_actions(world, cradle.Cradle(world, CRADLE), on_lift=story.touch)
     world.camera = VIEWS[0]
 
     @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")
@@ -37,10 +34,3 @@ def build() -> iota.World:
         world.camera = VIEWS[(VIEWS.index(world.camera) + 1) % len(VIEWS)]
 
     return world
-
-
-def manage(world: iota.World, blocks: ladder.Ladder, balls: cradle.Cradle) -> None:
-    """If steps take too long, the ladder waits for somebody who comes near. The script of the cradle moves it in each step."""
-    world.levels.manage([block.body for block in blocks.blocks], levels=("full", "frozen"), name="ladder")
-    world.levels.pin(world.levels.manage(balls.balls, levels=("full",), name="cradle"))
-    world.levels.budget_ms = BUDGET
