@@ -218,6 +218,26 @@ def test_what_hangs_on_a_beam_takes_its_strides() -> None:
     assert world.system.validate() == []
 
 
+def test_a_thing_that_is_destroyed_just_after_stiffness_ends_is_no_error() -> None:
+    world = iota.World(iota.System(gravity=(0, 0, 0)), ground=None)
+    first, second = world.system.body(), world.system.body()
+    first.particle((0, 0, 0)), first.particle((0.3, 0, 0))
+    second.particle((0.3, 0, 0)).combine(first.particles[1])
+    second.particle((0.6, 0, 0))
+    thing = world.levels.manage(first.articulate, levels=["full", "stiff"])
+    world.levels.viewers = lambda: [(0, 0, 90)]
+    world.levels.budget_ms = LITTLE
+    run(world, 60)
+    assert thing.level.name == "stiff"
+    world.system.body().particle((5, 0, 0))  # articulates were counted just now
+    run(world, 2)
+    world.levels._change(thing, 0, 1.0, 0.0, "in reach")
+    for body in thing.bodies:
+        body.destroy()
+    run(world, 10)
+    assert world.levels.things == [] and world.system.validate() == []
+
+
 def test_things_that_joints_tie_together_are_reduced_together_however_little_time_there_is() -> None:
     world = iota.World(iota.System(), ground=None)
     wheels = [world.system.body(shape=iota.Cylinder(0.2, 0.1), mass=2, position=(0.6 * k, 3, 0)) for k in range(4)]

@@ -1202,6 +1202,8 @@ class _Arrays:
         """The bodies and particles by which things of a slice are looked at."""
         things = self._things[part :: self.slices]
         roots = [thing._roots for thing in things]
+        if not all(roots):
+            raise StaleIdError("a thing was destroyed since the last step")
         self._roots[part] = self._system.array([root for each in roots for root in each]) if roots else None
         self._middles[part] = self._system.array([thing._middle for thing in things]) if things else None
         self._starts[part] = np.cumsum([0, *(len(each) for each in roots[:-1])])
