@@ -8,8 +8,8 @@ Counts come from each runner's machine-readable results in build/test-results. A
 runs no test counts as one failure. The output of a suite is in build/logs/test-SUITE.log; the end of a failed one is
 shown. Exit code 0 only if nothing failed.
 
-Lanes: suites run beside each other on as many cores as each keeps busy, the longest first. The suites that draw run one
-after another, since software rendering needs several cores.
+Lanes: suites run beside each other on as many cores as each keeps busy, the longest first. The suites that draw, since
+software rendering needs several cores, and those that a busy machine fails run one after another.
 
 Amounts: tests that sample (random scenes, edits, damaged bytes) try a tenth of what they try with --all, which sets
 IOTA_TEST_ALL (tests/cpp/amount.h, tests/python/amount.py). A suite with `inputs` runs when one of them has changed since
@@ -152,8 +152,8 @@ class Suite:
     about_s: float = 1
     #: How many cores it keeps busy.
     cores: int = 1
-    #: Never beside another suite that draws.
-    draws: bool = False
+    #: Never beside another one in turn.
+    in_turn: bool = False
     #: It is split into so many parts that run as suites (GoogleTest only).
     shards: int = 1
     #: Takes long and rarely finds anything that the others do not: runs with --all, or when it is named.
@@ -225,21 +225,21 @@ SUITES = [
         "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
         about_s=300, cores=OTHER_CORES,
     ),
-    # Alone: a busy machine answers Ray too late, and is taken for a dead one.
-    Suite("machines", pytest(MACHINES), 600, read_junit, about_s=50, cores=CORES, inputs=placed_by),
+    # After what draws, beside short suites: a busy machine answers Ray too late, and is taken for a dead one.
+    Suite("machines", pytest(MACHINES), 600, read_junit, about_s=25, in_turn=True, inputs=placed_by),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
     Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),
     Suite(
         "browser", vitest(*BROWSER, *(f"--exclude={name}" for name in PICTURES + PACKAGES)), 2400, read_vitest, WEB,
-        repeats=4, about_s=400, cores=DRAWING_CORES, draws=True,
+        repeats=4, about_s=400, cores=DRAWING_CORES, in_turn=True,
     ),
     Suite(
         "pictures", vitest(*BROWSER, *PICTURES), 1200, read_vitest, WEB,
-        repeats=2, about_s=300, cores=DRAWING_CORES, draws=True, inputs=drawn_by,
+        repeats=2, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite(
         "packages", vitest(*BROWSER, *PACKAGES), 600, read_vitest, WEB,
-        repeats=1, about_s=30, cores=DRAWING_CORES, draws=True, inputs=drawn_by,
+        repeats=1, about_s=30, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
     Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
@@ -374,9 +374,9 @@ class Lanes:
     def next(self) -> Suite | None:
         """The longest waiting suite that there is room for; the first always has room."""
         free = CORES - sum(suite.cores for suite in self.running)
-        drawing = any(suite.draws for suite in self.running)
+        in_turn = any(suite.in_turn for suite in self.running)
         for suite in self.waiting:
-            if not self.running or (suite.cores <= free and not (suite.draws and drawing)):
+            if not self.running or (suite.cores <= free and not (suite.in_turn and in_turn)):
                 return suite
         return None
 

@@ -195,8 +195,8 @@ def test_two_suites_run_beside_each_other_on_two_cores(runner: ModuleType, tmp_p
     assert a_began < b_ended and b_began < a_ended
 
 
-def test_suites_that_draw_or_need_all_cores_run_alone(runner: ModuleType, tmp_path: Path) -> None:
-    for more in ({"draws": True}, {"cores": 2}):
+def test_suites_in_turn_and_those_that_need_all_cores_run_one_after_another(runner: ModuleType, tmp_path: Path) -> None:
+    for more in ({"in_turn": True}, {"cores": 2}):
         runner.SUITES = [sleeper(runner, name, tmp_path, **more) for name in ("a", "b")]
         assert runner.main([]) == 0
         (a_began, a_ended), (b_began, b_ended) = spans(tmp_path, "a", "b")

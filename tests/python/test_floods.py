@@ -66,6 +66,13 @@ def steps_of(page: PageClient, seconds: float) -> float:
     return (step - first) / (time.monotonic() - began)
 
 
+@pytest.fixture(scope="module")
+def usual(served: Served) -> float:
+    """Steps in a second of the world without a flood."""
+    with PageClient(served.url) as page:
+        return steps_of(page, SECONDS)
+
+
 def flood_of(kind: str, page: PageClient) -> list[bytes]:
     """Messages that are sent in turn, over and over."""
     body, far = page.body(0), (2e9, 0.0, 0.0)
@@ -105,11 +112,11 @@ KINDS = [
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_flood_neither_stops_a_world_nor_is_told_to_others(served: Served, kind: str) -> None:
+def test_a_flood_neither_stops_a_world_nor_is_told_to_others(served: Served, usual: float, kind: str) -> None:
     """As many messages as one page can send; one that is sent away for it comes again."""
     sent, stopped = 0, threading.Event()
     with PageClient(served.url) as other:
-        usual, before = steps_of(other, SECONDS), memory_of(served.process)
+        before = memory_of(served.process)
 
         def attack() -> None:
             nonlocal sent

@@ -10,13 +10,21 @@ from typing import Any
 
 import pytest
 import sweep
+from amount import TRIES_ALL
 
 import iota
 
 CALLS = int(os.environ.get("IOTA_FUZZ_CALLS", "3000"))
 ROUNDS = 10
+ITERATIONS = 0 if TRIES_ALL else 300  # of a step: a search for what has no solution takes seconds
 # Slow, and swept elsewhere; threads: a crash in a worker thread is no finding that a seed repeats.
 SKIPPED = {"System.positions", "System.velocities", "System.solver", "System.threads", "diagnose"}
+
+
+def fresh() -> sweep.Scene:
+    scene = sweep.Scene()
+    scene.system.budget_iterations = ITERATIONS
+    return scene
 
 
 def arguments_for(scene: sweep.Scene, given: dict[str, Any], dice: random.Random) -> dict[str, Any]:
@@ -38,7 +46,7 @@ def arguments_for(scene: sweep.Scene, given: dict[str, Any], dice: random.Random
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_random_calls_leave_the_system_whole(seed: int) -> None:
     dice = random.Random(seed)
-    scene = sweep.Scene()
+    scene = fresh()
     names = [name for name in sweep.calls(scene) if name not in SKIPPED]
     made: list[str] = []
     for number in range(CALLS // ROUNDS):
@@ -47,7 +55,7 @@ def test_random_calls_leave_the_system_whole(seed: int) -> None:
             try:
                 table = sweep.calls(scene)
             except (iota.StaleIdError, IndexError):
-                scene = sweep.Scene()
+                scene = fresh()
                 made.clear()
         name = dice.choice(names)
         function, given = table[name]
@@ -63,5 +71,5 @@ def test_random_calls_leave_the_system_whole(seed: int) -> None:
         except Exception as error:
             raise AssertionError(f"seed {seed}: {error!r} after\n" + "\n".join(made[-8:])) from error
         if len(scene.system.bodies) > 80:
-            scene = sweep.Scene()
+            scene = fresh()
             made.clear()

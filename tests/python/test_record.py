@@ -82,11 +82,25 @@ def test_a_film_opens_where_the_browser_reports_no_paint(monkeypatch: pytest.Mon
     world.close()
 
 
+def curve_pixels(frame: Any) -> tuple[int, int]:
+    """Those in the color of a plot's first curve, 2f9d92, in the left and in the right half; a film blurs them."""
+    red, green, blue = (frame[..., channel].astype(int) for channel in range(3))
+    is_curve, middle = (green > red + 40) & (blue > red + 30), frame.shape[1] // 2
+    return int(is_curve[:, :middle].sum()), int(is_curve[:, middle:].sum())
+
+
+@pytest.fixture
+def plotted(script: Path) -> Path:
+    plot = 'world.controls.plot("up", lambda: system.time, seconds=1); return world'
+    script.write_text(script.read_text().replace("return world", plot))
+    return script
+
+
 @needs_browser
-def test_a_film_is_smooth_and_in_real_time_on_any_machine(script: Path, tmp_path: Path) -> None:
+def test_a_film_is_smooth_and_in_real_time_on_any_machine_and_shows_no_plots(plotted: Path, tmp_path: Path) -> None:
     film, sheet = tmp_path / "ball.mp4", tmp_path / "ball.png"
     done = record(
-        script, "-o", film, "--sheet", sheet, "--seconds", str(SECONDS), "--rate", str(RATE), "--size", "240x180",
+        plotted, "-o", film, "--sheet", sheet, "--seconds", str(SECONDS), "--rate", str(RATE), "--size", "240x180",
         "--pictures", "3", "--columns", "2",
     )  # fmt: skip
     assert done.returncode == 0 and done.stderr == "", done.stderr
@@ -99,6 +113,7 @@ def test_a_film_is_smooth_and_in_real_time_on_any_machine(script: Path, tmp_path
     pixels = 90 / (4 * np.tan(np.radians(21)))  # of a meter at the ball, whose distance is 4 m
     assert places[0] == pytest.approx(120 - 0.8 * pixels, abs=1.0)
     assert np.diff(places) == pytest.approx(SPEED * pixels / RATE, abs=0.6)
+    assert curve_pixels(frames[-1]) == (0, 0)
     with av.open(str(sheet)) as container:
         pixels_of_sheet = next(container.decode(video=0)).to_ndarray(format="rgb24")
     assert pixels_of_sheet.shape == (2 * 180 + 4, 2 * 240 + 4, 3)
@@ -106,25 +121,14 @@ def test_a_film_is_smooth_and_in_real_time_on_any_machine(script: Path, tmp_path
 
 
 @needs_browser
-def test_a_film_shows_the_plots_of_the_script_on_request(script: Path, tmp_path: Path) -> None:
-    plotted = script.read_text().replace(
-        "return world", 'world.controls.plot("up", lambda: system.time, seconds=1); return world'
-    )
-    script.write_text(plotted.replace("#ff0000", "#000000"))
-
-    def curve(*arguments: str) -> tuple[int, int]:
-        """Pixels in the color of the first curve, in the left and in the right half of the last frame."""
-        film = tmp_path / "film.mp4"
-        done = record(script, "-o", film, "--seconds", "0.9", "--rate", "10", "--size", "640x480", *arguments)
-        assert done.returncode == 0, done.stderr
-        with av.open(str(film)) as container:
-            *_, last = (frame.to_ndarray(format="rgb24").astype(int) for frame in container.decode(video=0))
-        red, green, blue = last[..., 0], last[..., 1], last[..., 2]
-        is_curve = (green > red + 40) & (blue > red + 30)  # 2f9d92, blurred by the film
-        return int(is_curve[:, :320].sum()), int(is_curve[:, 320:].sum())
-
-    assert curve() == (0, 0)
-    left, right = curve("--plots")
+def test_a_film_shows_the_plots_of_the_script_on_request(plotted: Path, tmp_path: Path) -> None:
+    plotted.write_text(plotted.read_text().replace("#ff0000", "#000000"))
+    film = tmp_path / "film.mp4"
+    done = record(plotted, "-o", film, "--seconds", "0.9", "--rate", "5", "--size", "480x360", "--plots")
+    assert done.returncode == 0, done.stderr
+    with av.open(str(film)) as container:
+        *_, last = (frame.to_ndarray(format="rgb24") for frame in container.decode(video=0))
+    left, right = curve_pixels(last)
     assert left == 0 and right > 40
 
 
