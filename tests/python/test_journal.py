@@ -605,6 +605,21 @@ def test_a_disk_that_is_full_for_a_while_is_told_once_and_the_journal_goes_on(
     assert make().system.state_hash() == end
 
 
+def test_what_is_handed_over_is_on_the_disk_at_once_and_the_rest_of_a_burst_by_one_more_sync(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, synced, fdatasync = make(), threading.Semaphore(0), os.fdatasync
+    monkeypatch.setattr(os, "fdatasync", lambda file: (fdatasync(file), synced.release()))
+    monkeypatch.setattr(writer, "SYNC_TIME", 60.0)
+    first.steps(1)
+    assert synced.acquire(timeout=20), "it waits for no clock"
+    first.steps(20)
+    first.world._stepper.journal._writer.flush()
+    assert not synced.acquire(blocking=False)
+    first.end(killed=False)
+    assert synced.acquire(blocking=False) and not synced.acquire(blocking=False)
+
+
 def test_an_error_at_any_call_of_the_disk_leaves_a_journal_that_leads_to_a_true_state(
     make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -23,7 +23,7 @@ from iota.saving import replacing
 from iota.world import Server, World
 from iota.world.callbacks import print_error
 
-LOOK = 0.2  # s, between two looks at who is there
+LOOK = 0.5  # s, between two looks at who is there
 TELL = 2.0  # s, after which everything is told anew
 FIRST_PICTURE, PICTURE = 5.0, 300.0  # s, from the first visitor to a picture, and from one to the next
 LATE = 30.0  # s, after which a picture does not come any more

@@ -19,6 +19,7 @@ from iota.arguments import SHORT, near_attribute
 from iota.world.costs import Costs
 
 SLOW = 0.5  # s, of a function
+LOOK = 0.25  # s, between two looks at what runs
 SLOW_STEP = 2.0  # s; before that, pages see slow motion
 ELSEWHERE = "Do long work elsewhere, or in small pieces once a step."
 GO_ON = "The world continues. Correct the script and run it again."
@@ -219,7 +220,7 @@ class Guard:
             self._watcher = None
 
     def _watch(self) -> None:
-        while not self._stop.wait(0.1):
+        while not self._stop.wait(LOOK):
             running = self._running
             if running and running is not self._told and time.monotonic() - running.since > running.longest:
                 self._told = running
