@@ -159,7 +159,7 @@ def stage(source: Path) -> None:
     add_films(source)
     for name in ("conf.py", "index.md"):
         shutil.copyfile(ROOT / "docs" / "site" / name, source / name)
-    shutil.copyfile(ROOT / "web" / "public" / "favicon.svg", source / "_static" / "favicon.svg")
+    shutil.copyfile(ROOT / "web" / "src" / "favicon.svg", source / "_static" / "favicon.svg")
 
 
 def main() -> int:

@@ -28,6 +28,18 @@ function compressed() {
   };
 }
 
+/** Puts what all pages have in their heads into each. */
+function commonHead() {
+  const head = readFileSync(new URL("head.html", import.meta.url), "utf8").trim().split("\n").slice(1);
+  return {
+    name: "common-head",
+    transformIndexHtml: {
+      order: "pre" as const,
+      handler: (html: string) => html.replace("<head>\n", `<head>\n${head.map((line) => `  ${line}\n`).join("")}`),
+    },
+  };
+}
+
 function withoutShaders() {
   return {
     name: "without-unused-shaders",
@@ -70,7 +82,7 @@ function player() {
 // No inlined assets: the server sends a content security policy without data: or inline sources.
 export default defineConfig({
   base: "./",
-  plugins: [withoutShaders(), player(), compressed()],
+  plugins: [commonHead(), withoutShaders(), player(), compressed()],
   build: {
     outDir: "dist",
     emptyOutDir: true,
