@@ -21,7 +21,7 @@ SEED ?= 1
 FILMS ?=
 
 iota = .venv/bin/iota
-cpp_presets = debug asan ubsan tsan coverage strict
+cpp_presets = debug sanitized tsan coverage strict
 
 .DEFAULT_GOAL := help
 .PHONY: help build demo films test test-all bench verify soak hostile check-determinism wheel sbom docs format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
@@ -67,9 +67,9 @@ soak: ## build, then for some hours: random scenes, promises of motion, edits by
 	@$(PYTHON) tools/build.py soak
 	@.venv/bin/python tools/soak.py $(SOAK)
 
-hostile: ## damaged snapshots and recordings under the address sanitizer, up to half an hour (HOSTILE=100000 SEED=2)
-	@$(PYTHON) tools/build.py cpp --preset asan
-	@IOTA_HOSTILE_COUNT=$(HOSTILE) IOTA_HOSTILE_SEED=$(SEED) build/asan/iota_tests --gtest_brief=1 --gtest_filter='Restore.*:*DamagedRecording.*'
+hostile: ## damaged snapshots and recordings under sanitizers, up to half an hour (HOSTILE=100000 SEED=2)
+	@$(PYTHON) tools/build.py cpp --preset sanitized
+	@IOTA_HOSTILE_COUNT=$(HOSTILE) IOTA_HOSTILE_SEED=$(SEED) build/sanitized/iota_tests --gtest_brief=1 --gtest_filter='Restore.*:*DamagedRecording.*'
 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py

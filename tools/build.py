@@ -3,7 +3,7 @@
 """Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
 
     tools/build.py build | films | test | test-all | bench | verify | soak | wheel | sbom | docs | lint
-    tools/build.py cpp --preset asan
+    tools/build.py cpp --preset sanitized
 
 Each step prints one line and writes the rest to build/logs/STEP.log. A step with unchanged inputs is skipped silently:
 a digest of its inputs is kept beside its results. Runs on Python 3.10 with only the standard library, because it makes

@@ -251,12 +251,9 @@ SUITES = [
         900, about_s=30, only_with_all=True,
     ),
     # With a tenth of the samples, damaged snapshots and recordings among them; `make hostile` tries more.
-    *(
-        Suite(
-            name, ["env", "-u", "IOTA_TEST_ALL", "make", f"check-{name}"], 5400, about_s=1500, cores=CORES,
-            only_with_all=True,
-        )
-        for name in ("asan", "ubsan")
+    Suite(
+        "sanitized", ["env", "-u", "IOTA_TEST_ALL", "make", "check-sanitized"], 5400,
+        about_s=1500, shards=min(4, CORES), only_with_all=True,
     ),
 ]  # fmt: skip
 

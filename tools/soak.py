@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes their programs.
 
-    tools/soak.py [NAME ...]      scenes heaps promises edits levels verify ladder studies messages kills page; all without a name
+    tools/soak.py [NAME ...]      scenes heaps promises edits levels verify ladder studies messages kills rooms page; all without a name
 
 Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
