@@ -111,6 +111,20 @@ std::vector<SchemaPart> schema_parts(const Schema& schema, std::span<const std::
   return parts;
 }
 
+/// Runs of bytes of a record that are in no field: where they begin, and how many.
+std::vector<std::pair<std::size_t, std::size_t>> gaps_of(const Schema::Record& record) {
+  std::vector<Schema::Field> fields = record.fields;
+  std::ranges::sort(fields, {}, &Schema::Field::offset);
+  std::vector<std::pair<std::size_t, std::size_t>> gaps;
+  std::size_t end = 0;
+  for (const Schema::Field& field : fields) {
+    if (field.offset > end) gaps.emplace_back(end, field.offset - end);
+    end = std::max(end, field.offset + std::size_t{field.size} * field.count);
+  }
+  if (record.size > end) gaps.emplace_back(end, record.size - end);
+  return gaps;
+}
+
 template <class Visit>
 void with_number_type(char kind, std::uint32_t size, Visit visit) {
   if (kind == 'f') return size == 4 ? visit(float{}) : visit(double{});
@@ -208,6 +222,16 @@ Schema Schema::from_text(std::string_view text) {
     schema.items.push_back(std::move(item));
   }
   return schema;
+}
+
+void clear_gaps(const Schema& schema, std::span<std::byte> bytes) {
+  for (const SchemaPart& part : schema_parts(schema, bytes)) {
+    if (part.item->kind == 'm') continue;
+    const Schema::Record& record = schema.records[part.item->record];
+    std::byte* begin = bytes.data() + (part.bytes.data() - bytes.data());
+    for (const auto& [offset, size] : gaps_of(record))
+      for (std::uint64_t i = 0; i < part.count; ++i) std::memset(begin + i * record.size + offset, 0, size);
+  }
 }
 
 std::vector<std::byte> translate(const Schema& from, std::span<const std::byte> bytes, const Schema& to,

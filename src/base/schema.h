@@ -52,6 +52,10 @@ struct Schema {
 std::vector<std::byte> translate(const Schema& from, std::span<const std::byte> bytes, const Schema& to,
                                  std::span<const std::byte> standard);
 
+/// Sets the bytes between the fields of all records to 0, which are whatever the memory held before. Throws std::invalid_argument for
+/// bytes that do not fit their schema.
+void clear_gaps(const Schema& schema, std::span<std::byte> bytes);
+
 /// A specialization names the fields of a struct: `visit(value, see)` calls see(name, field) for each. See IOTA_FIELDS.
 template <class T>
 struct FieldNames;

@@ -79,8 +79,10 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
 Snapshot Editor::pack(Origin origin) {
   const std::string_view schema = origin == Origin::anywhere ? own_schema_text() : std::string_view();
   std::vector<std::byte> content = head_with(schema);
+  const std::size_t head = content.size();
   Writer writer(content);
   model.archive(writer);
+  clear_gaps(own_schema(), std::span(content).subspan(head));
   return {seal(snapshot_seal, content)};
 }
 

@@ -119,6 +119,28 @@ TEST(Schema, the_same_schema_gives_the_same_bytes) {
   EXPECT_EQ(read.records[2].place.z, 3);
 }
 
+TEST(Schema, bytes_between_fields_tell_nothing_of_the_memory) {
+  Schema schema;
+  SchemaWriter names(schema);
+  names.name("records");
+  names.vector(std::vector<NewerRecord>());
+  std::vector<std::byte> bytes(8 + 2 * sizeof(NewerRecord), std::byte{0xcd}), expected(bytes.size());
+  std::vector<NewerRecord> records(2);
+  records[1].fresh = 43;
+  const std::uint64_t count = records.size();
+  for (std::vector<std::byte>* each : {&bytes, &expected}) {
+    std::memcpy(each->data(), &count, sizeof count);
+    for (std::size_t i = 0; i < records.size(); ++i)
+      FieldNames<NewerRecord>::visit(records[i], [&](const char*, const auto& field) {
+        const auto offset = reinterpret_cast<const std::byte*>(&field) - reinterpret_cast<const std::byte*>(&records[i]);
+        std::memcpy(each->data() + 8 + i * sizeof(NewerRecord) + offset, &field, sizeof field);
+      });
+  }
+  ASSERT_NE(bytes, expected) << "there are such bytes";
+  clear_gaps(schema, bytes);
+  EXPECT_EQ(bytes, expected);
+}
+
 TEST(Schema, a_number_that_a_type_cannot_have_becomes_zero) {
   Schema from, to;
   SchemaWriter wide(from), narrow(to);
