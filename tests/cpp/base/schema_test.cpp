@@ -132,7 +132,8 @@ TEST(Schema, bytes_between_fields_tell_nothing_of_the_memory) {
     std::memcpy(each->data(), &count, sizeof count);
     for (std::size_t i = 0; i < records.size(); ++i)
       FieldNames<NewerRecord>::visit(records[i], [&](const char*, const auto& field) {
-        const auto offset = reinterpret_cast<const std::byte*>(&field) - reinterpret_cast<const std::byte*>(&records[i]);
+        const auto offset =
+            reinterpret_cast<const std::byte*>(&field) - reinterpret_cast<const std::byte*>(&records[i]);
         std::memcpy(each->data() + 8 + i * sizeof(NewerRecord) + offset, &field, sizeof field);
       });
   }

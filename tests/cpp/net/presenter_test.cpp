@@ -229,8 +229,7 @@ TEST(Presenter, draws_each_solid_of_a_body_in_a_material_of_its_own_with_what_is
   const std::uint32_t visual = entities<protocol::BodyEntity>(changes).at(arm.slot).visual;
   const protocol::VisualEntity shown = entities<protocol::VisualEntity>(changes).at(visual);
   std::vector<std::string> drawn;
-  for (const protocol::Part& each : shown.parts)
-    drawn.push_back(each.shape.kind + " of " + each.material);
+  for (const protocol::Part& each : shown.parts) drawn.push_back(each.shape.kind + " of " + each.material);
   // The last material is that of all further solids.
   EXPECT_EQ(drawn,
             (std::vector<std::string>{"capsule of steel", "sphere of brass", "sphere of brass", "sphere of glass"}));
