@@ -98,6 +98,20 @@ def test_a_world_for_users_gives_up_a_step_after_a_time_unless_its_script_says_o
         assert world.call(lambda system=system: system.budget_seconds) == seconds
 
 
+def test_what_an_action_takes_counts_as_more_actions() -> None:
+    world, calls = iota.World(iota.System()), []
+
+    @world.action("slow", key="s", on="world")
+    def slow() -> None:
+        calls.append(0)
+        time.sleep(0.1)
+
+    joins = protocol.Join("one", protocol.Role.ACTOR)
+    acts = [protocol.Action("slow", protocol.Id(0, 0), ())] * 30
+    world._inputs.take([(1, joins), *((1, act) for act in acts)], lambda ids: [])
+    assert 1 < len(calls) < 15, "each is as three that take no time, less what has come back meanwhile"
+
+
 def test_a_page_that_floods_the_world_with_actions_holds_up_nobody(run_world: Runner) -> None:
     system = iota.System()
     chain = iota.builder.chain(links=24, length=1.2, top=(0, 2, 0)).realize(system)
