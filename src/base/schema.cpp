@@ -111,20 +111,6 @@ std::vector<SchemaPart> schema_parts(const Schema& schema, std::span<const std::
   return parts;
 }
 
-/// Runs of bytes of a record that are in no field: where they begin, and how many.
-std::vector<std::pair<std::size_t, std::size_t>> gaps_of(const Schema::Record& record) {
-  std::vector<Schema::Field> fields = record.fields;
-  std::ranges::sort(fields, {}, &Schema::Field::offset);
-  std::vector<std::pair<std::size_t, std::size_t>> gaps;
-  std::size_t end = 0;
-  for (const Schema::Field& field : fields) {
-    if (field.offset > end) gaps.emplace_back(end, field.offset - end);
-    end = std::max(end, field.offset + std::size_t{field.size} * field.count);
-  }
-  if (record.size > end) gaps.emplace_back(end, record.size - end);
-  return gaps;
-}
-
 template <class Visit>
 void with_number_type(char kind, std::uint32_t size, Visit visit) {
   if (kind == 'f') return size == 4 ? visit(float{}) : visit(double{});
@@ -224,13 +210,38 @@ Schema Schema::from_text(std::string_view text) {
   return schema;
 }
 
-void clear_gaps(const Schema& schema, std::span<std::byte> bytes) {
-  for (const SchemaPart& part : schema_parts(schema, bytes)) {
-    if (part.item->kind == 'm') continue;
-    const Schema::Record& record = schema.records[part.item->record];
-    std::byte* begin = bytes.data() + (part.bytes.data() - bytes.data());
-    for (const auto& [offset, size] : gaps_of(record))
-      for (std::uint64_t i = 0; i < part.count; ++i) std::memset(begin + i * record.size + offset, 0, size);
+SchemaGaps::SchemaGaps(const Schema& schema) {
+  for (const Schema::Item& item : schema.items) {
+    const Schema::Record& record = schema.records[item.record];
+    std::vector<Schema::Field> fields = record.fields;
+    std::ranges::sort(fields, {}, &Schema::Field::offset);
+    Item& made = items_.emplace_back(Item{item.kind == 'l', record.size, {}});
+    std::size_t end = 0;
+    const auto add = [&](std::size_t next) {
+      if (next > end) made.runs.push_back({end, next - end});
+    };
+    for (const Schema::Field& field : fields) {
+      add(field.offset);
+      end = std::max(end, field.offset + std::size_t{field.size} * field.count);
+    }
+    add(record.size);
+  }
+}
+
+void SchemaGaps::clear(std::span<std::byte> bytes) const {
+  const auto take = [&](std::size_t size) {
+    if (size > bytes.size()) refuse_tables();
+    const auto taken = bytes.first(size);
+    bytes = bytes.subspan(size);
+    return taken.data();
+  };
+  for (const Item& item : items_) {
+    std::uint64_t count = 1;
+    if (item.is_list) std::memcpy(&count, take(sizeof count), sizeof count);
+    if (count > bytes.size() / std::max<std::size_t>(item.size, 1)) refuse_tables();
+    std::byte* begin = take(count * item.size);
+    for (const Run& run : item.runs)
+      for (std::uint64_t i = 0; i < count; ++i) std::memset(begin + i * item.size + run.offset, 0, run.size);
   }
 }
 

@@ -52,9 +52,25 @@ struct Schema {
 std::vector<std::byte> translate(const Schema& from, std::span<const std::byte> bytes, const Schema& to,
                                  std::span<const std::byte> standard);
 
-/// Sets the bytes between the fields of all records to 0, which are whatever the memory held before. Throws std::invalid_argument for
-/// bytes that do not fit their schema.
-void clear_gaps(const Schema& schema, std::span<std::byte> bytes);
+/// The bytes between the fields of the records of an archive, which are whatever the memory held before.
+class SchemaGaps {
+ public:
+  /// Without meshes of letter I.
+  explicit SchemaGaps(const Schema& schema);
+  /// Sets them to 0. Throws std::invalid_argument for bytes that do not fit the schema.
+  void clear(std::span<std::byte> bytes) const;
+
+ private:
+  struct Run {
+    std::size_t offset, size;
+  };
+  struct Item {
+    bool is_list;
+    std::size_t size;  ///< of a record
+    std::vector<Run> runs;
+  };
+  std::vector<Item> items_;
+};
 
 /// A specialization names the fields of a struct: `visit(value, see)` calls see(name, field) for each. See IOTA_FIELDS.
 template <class T>

@@ -82,7 +82,8 @@ Snapshot Editor::pack(Origin origin) {
   const std::size_t head = content.size();
   Writer writer(content);
   model.archive(writer);
-  clear_gaps(own_schema(), std::span(content).subspan(head));
+  static const SchemaGaps gaps(own_schema());
+  gaps.clear(std::span(content).subspan(head));
   return {seal(snapshot_seal, content)};
 }
 

@@ -138,7 +138,7 @@ TEST(Schema, bytes_between_fields_tell_nothing_of_the_memory) {
       });
   }
   ASSERT_NE(bytes, expected) << "there are such bytes";
-  clear_gaps(schema, bytes);
+  SchemaGaps(schema).clear(bytes);
   EXPECT_EQ(bytes, expected);
 }
 
