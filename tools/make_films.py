@@ -50,6 +50,7 @@ SECONDS = {
     "knot": 19.0,
     "molecule": 12.0,
     "museum": 12.0,
+    "ragdolls": 17.0,
     "rigging": 30.0,
     "undersea": 28.0,
 }
@@ -66,6 +67,7 @@ MOMENT = {
     "physics-class": 3.5,
     "playground": 0.6,
     "pour": 2.25,
+    "ragdolls": 4.75,
     "rigging": 9.5,
     "undersea": 9.0,
     "wrecking-ball": 2.3,

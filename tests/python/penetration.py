@@ -48,6 +48,8 @@ class Piece:
         ):
             radius = half.min()  # of a ball that goes along a segment or a circle
             half = np.sqrt(self.turn**2 @ (half - radius) ** 2) + radius
+        elif isinstance(self.shape, iota.Ellipsoid):
+            half = np.sqrt(self.turn**2 @ half**2)
         else:
             half = np.abs(self.turn) @ half
         return np.array([middle - half, middle + half])

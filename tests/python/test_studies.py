@@ -23,7 +23,7 @@ DEEPEST = 0.03  # share of the smaller shape
 # A fish that feeds is between leaves, and fish do not know of weed. Blocks that are hit and turn fast may get into each
 # other, and are eased out within 0.1 s: docs/contact.md, Not here yet. So may what falls on a heap. An acrobat's own limbs do not touch,
 # nor do the threads of a flag.
-DEEPER = {"museum": 0.2, "crowd": 0.4, "undersea": 0.2, "wrecking-ball": 0.15, "pour": 0.35}
+DEEPER = {"museum": 0.2, "crowd": 0.4, "undersea": 0.2, "wrecking-ball": 0.15, "pour": 0.35, "ragdolls": 0.1}
 LOOKED_AT = {
     "museum": 3.0,
     "undersea": 16.0 if TRIES_ALL else 8.0,
@@ -32,10 +32,11 @@ LOOKED_AT = {
     "pour": 4.0,
     "capstan": 3.0,
     "knot": 2.0,
+    "ragdolls": 6.0 if TRIES_ALL else 4.0,
 }
 STYLES = {"chain": ("rope", "chain")}
 NOT_LOOKED_AT = {"shoal"}  # a thousand fish: at their start in test_penetration.py, later in test_study_cloth.py
-GAPS = {"pour": 0.02}  # m, if more than usual: of what falls on a heap that is solved by sweeps
+GAPS = {"pour": 0.02, "ragdolls": 0.02}  # m, if more than usual: of what falls on a heap that is solved by sweeps
 
 
 @pytest.mark.parametrize("name", studies.names())

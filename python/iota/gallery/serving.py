@@ -31,6 +31,7 @@ GROUPS = {  # on the page, the best first: each study and its title
         "shoal": "A shoal of fish",
         "mechanisms": "Mechanisms",
         "undersea": "Under the sea",
+        "ragdolls": "Ragdolls",
         "grasp": "Grippers",
         "wrecking-ball": "Wrecking ball",
         "rigging": "A derrick",

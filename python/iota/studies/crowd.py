@@ -10,6 +10,8 @@ import iota
 from iota import looks
 from iota.world.levels import Level, Managed
 
+from ._figure import ALONG, UPRIGHT, Figure, Part
+
 COUNT = 30
 BUDGET = 0.3  # ms of processor time a step
 ROWS, APART, HEIGHT = 3, 2.6, 3.4  # of gallows; m
@@ -17,7 +19,19 @@ PACE = 2.0  # of the lamp, m/s
 LINK, LINKS = 0.24, 8  # of a chain; m
 RUNGS, STEP, WIDTH = 6, 0.3, 0.36  # of a rope ladder; m
 ARM, LEG, THICK = 0.5, 0.7, 0.045  # of an acrobat; m
-UPRIGHT = (0.0, 0.0, 0.5**0.5, 0.5**0.5)  # of a capsule, which lies along x
+ACROBAT = [
+    Part("torso", iota.Box((0.36, 0.5, 0.18)), 30, (0, 0, 0), ALONG),
+    *(
+        Part(f"{name} arm", iota.Capsule(THICK, ARM - 2 * THICK), 4, (x, 0.25 + ARM / 2, 0), UPRIGHT, "torso", (x, 0.25, 0),
+             hangs=((x, 0.25 + ARM, 0),))
+        for name, x in (("right", -0.2), ("left", 0.2))
+    ),
+    *(
+        Part(f"{name} leg", iota.Capsule(THICK, LEG - 2 * THICK), 9, (x, -0.25 - LEG / 2, 0), UPRIGHT, "torso", (x, -0.25, 0))
+        for name, x in (("right", -0.12), ("left", 0.12))
+    ),
+    Part("head", iota.Sphere(0.09), 5, (0, 0.37, 0), ALONG, "torso", (0, 0.25, 0)),
+]  # fmt: skip
 PAINTS = ("#b5462f", "#d9a441", "#5b7f4b", "#2f6c80")
 TINTS = {
     "full": "#ece6d6",
@@ -147,32 +161,12 @@ def ladder(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Bo
 
 def acrobat(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.Body:
     """Hangs by both hands and swings."""
-    middle = at - (0, ARM + 0.25, 0)
-    shoulders, hips = [(-0.2, 0.25, 0), (0.2, 0.25, 0)], [(-0.12, -0.25, 0), (0.12, -0.25, 0)]
-    torso = world.system.body(
-        shape=iota.Box((0.36, 0.5, 0.18)), mass=30, position=middle, attachments=[*shoulders, *hips, (0, 0.25, 0)]
+    made = Figure(
+        world.system, ACROBAT, at - (0, ARM + 0.25, 0), lambda _, body: world.draw(body, looks.solid("paint", color))
     )
-    made = [torso]
-    for index, (length, up) in enumerate([(ARM, 1), (ARM, 1), (LEG, -1), (LEG, -1)]):
-        joint = torso.attachments[index]
-        limb = world.system.body(
-            shape=iota.Capsule(THICK, length - 2 * THICK),
-            mass=4 if up > 0 else 9,
-            position=joint.position + (0, up * length / 2, 0),
-            orientation=UPRIGHT,
-            attachments=[(-up * length / 2, 0, 0), (up * length / 2, 0, 0)],
-        )
-        joint.combine(limb.attachments[0])
-        if up > 0:
-            limb.attachments[1].nail()
-        made.append(limb)
-    head = world.system.body(
-        shape=iota.Sphere(0.09), mass=5, position=middle + (0, 0.37, 0), attachments=[(0, -0.12, 0)]
-    )
-    torso.attachments[4].combine(head.attachments[0])
-    made.append(head)
-    for body in made:
-        world.draw(body, looks.solid("paint", color))
+    for hand in made.hangs:
+        hand.nail()
+    torso = made.bodies["torso"]
     torso.velocity = (0, 0, 1.2 + 0.4 * math.cos(number))
     return torso
 
