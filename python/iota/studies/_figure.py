@@ -116,7 +116,7 @@ def person(hook: Place) -> list[Part]:
     """A person of 1.75 m and 20 kg, as light as a mannequin, with its hips at the origin: eleven bodies. hook: where its chest can hang."""
     return [
         Part("hips", iota.Capsule(0.1, 0.14), 3.2, (0, 0, 0), ALONG),
-        Part("chest", iota.Ellipsoid((0.4, 0.42, 0.25)), 6.0, (0, 0.27, 0), ALONG, "hips", (0, 0.14, 0),
+        Part("chest", iota.Ellipsoid((0.42, 0.46, 0.25)), 6.0, (0, 0.26, 0), ALONG, "hips", (0, 0.14, 0),
              sways=((-0.4, 1.0), (-0.5, 0.5)), hangs=(hook,)),
         Part("head", iota.Capsule(0.095, 0.06), 1.4, (0, 0.63, 0.02), UPRIGHT, "chest", (0, 0.46, 0),
              sways=((-0.6, 0.7), (-0.6, 0.6))),
@@ -127,7 +127,7 @@ def person(hook: Place) -> list[Part]:
 
 def limbs(side: int) -> list[Part]:
     """An arm and a leg. side: 1 is the left one."""
-    name, arm, leg = "left" if side > 0 else "right", 0.27 * side, 0.1 * side
+    name, arm, leg = "left" if side > 0 else "right", 0.25 * side, 0.1 * side
 
     def outward(inner: float, outer: float) -> Range:
         return (-inner, outer) if side > 0 else (-outer, inner)

@@ -210,7 +210,7 @@ class Dress:
         if last == "head":
             parts += [
                 looks.sphere(0.096, "paint", color=self.hair, offset=(0.032, 0, -0.01)),
-                *(looks.sphere(0.02, "paint", color="#1c1d20", offset=(0.02, y, 0.074)) for y in (-0.035, 0.035)),
+                *(looks.sphere(0.02, "paint", color="#1c1d20", offset=(0.02, y, 0.071)) for y in (-0.035, 0.035)),
             ]
         elif last == "hand":
             sleeve = looks.capsule(0.042, "paint", 0.12, color=self.shirt, offset=(0.07, 0, 0))
