@@ -13,6 +13,7 @@ import pytest
 import iota
 from iota import _protocol as protocol
 from iota.fixtures import Fixture
+from iota.world import fingers
 
 MAKERS: dict[str, Callable[..., Any]] = {
     "push_button": lambda world, at, **more: world.push_button(at, **more),
@@ -160,6 +161,47 @@ def test_a_bare_hand_presses_with_the_tip_of_its_index_finger(rig: Rig) -> None:
         rig.point("right hand", (0, 1.05, tip[2] + 0.03), joints=tuple(number for joint in joints for number in joint))
         rig.world.step()
     assert button.pressed and len(rig.told) == 1
+
+
+def test_a_paddle_at_the_mouse_pushes_what_it_touches_and_nothing_while_the_mouse_holds(rig: Rig) -> None:
+    rig.world.tools.push(radius=0.05)
+    ball = rig.system.body(shape=iota.Sphere(0.1), mass=1, position=(0.4, 0.1, 0))
+    eye = (0.0, 0.1, 3.0)
+
+    def sweep(button: float) -> float:
+        """The mouse goes by from left to right, at the depth of the ball. Returns how far the ball went, m."""
+        before = ball.position.x
+        for step in range(-60, 120):  # it comes to the left of the ball as one that passes through things
+            x = before - 0.6 + 0.006 * max(step, 0)
+            rig.point("mouse", (x, 0.1, 0.05), eye, (x, 0.0, -2.95), button if step >= 0 else 1.0)
+            rig.world.step()
+        return float(ball.position.x - before)
+
+    assert sweep(0.0) == pytest.approx(0, abs=1e-9), "nobody has taken it"
+    rig.send(protocol.Action("paddle", protocol.Id(0, 0), ()))
+    assert sweep(1.0) == pytest.approx(0, abs=1e-6), "the button is down"
+    assert sweep(0.0) > 0.08
+    (paddle,) = [body for body in rig.system.bodies if body.name == "paddle"]
+    assert abs(paddle.position.z) < 0.06, "at the depth at which it began"
+    rig.send(protocol.Action("paddle", protocol.Id(0, 0), ()))
+    assert [body.name for body in rig.system.bodies if body.name == "paddle"] == []
+    assert len(rig.system.bodies) == 1 and rig.system.validate() == []
+
+
+def test_a_paddle_stays_while_the_mouse_rests_and_goes_with_its_user(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    rig.world.tools.push(key="k")
+    rig.point("mouse", (0, 1, 0), (0, 1, 3))
+    rig.send(protocol.Action("paddle", protocol.Id(0, 0), ()))
+    rig.point("mouse", (0.1, 1, 0), (0, 1, 3), (0.1, 0, -3))
+    later = fingers.time.monotonic() + 60
+    monkeypatch.setattr(fingers.time, "monotonic", lambda: later)
+    rig.run(0.1)
+    rig.world._inputs.frame()
+    assert [body.name for body in rig.system.bodies] == ["paddle"]
+    rig.send(protocol.Leave())
+    assert rig.system.bodies == []
+    with pytest.raises(ValueError, match="radius must be a finite number above 0 m, not -1"):
+        rig.world.tools.push(radius=-1)
 
 
 def test_fingertips_are_neither_drawn_nor_left_over_by_an_undo(rig: Rig) -> None:

@@ -9,6 +9,9 @@ interface Told {
   readonly pressed: boolean;
   readonly on: boolean;
   readonly slide: number;
+  /** Its z, m. */
+  readonly ball: number;
+  readonly paddles: number;
 }
 
 let server: WorldServer;
@@ -36,6 +39,26 @@ function onScreen(place: [number, number, number]): Promise<[number, number]> {
     return [((point.x + 1) / 2) * innerWidth, ((1 - point.y) / 2) * innerHeight] as [number, number];
   }, place);
 }
+
+it("a paddle at the mouse pushes a ball away", async () => {
+  const begin = told().ball;
+  const at = await onScreen([-0.1, 0.95, begin]);
+  // It moves at the depth of what the mouse pointed at first.
+  const point = async () => {
+    await tab.page.mouse.move(at[0] - 2, at[1]);
+    await tab.goOn(0.1);
+    await tab.page.mouse.move(...at);
+    await tab.goOn(0.3);
+  };
+  await point();
+  expect(told().ball, "nobody has taken it").toBe(begin);
+  await tab.page.keyboard.press("h");
+  await point();
+  await expect.poll(() => told().ball).toBeLessThan(begin - 0.02);
+  expect(told().paddles).toBe(1);
+  await tab.page.keyboard.press("h");
+  await expect.poll(() => told().paddles).toBe(0);
+});
 
 it("a button is in as long as the mouse button is down on it", async () => {
   await tab.page.mouse.move(...await onScreen([-0.3, 1.2, 0.05]));

@@ -39,6 +39,7 @@ def present(world: iota.World) -> None:
     for x in (-1.05, 1.05):
         for z in (-0.34, 0.34):
             world.add_static(looks.box((0.06, TABLE - TOP[1], 0.06), "wood"), (x, (TABLE - TOP[1]) / 2, z))
+    world.stage("room")
     world.camera = iota.Camera(position=(0.5, 1.45, 2.25), target=(0.02, 0.78, 0))
 
 
@@ -59,6 +60,7 @@ class Stacks:
         self.start = {body: (body.position, body.orientation) for body in self.system.bodies}
         world.action("push", key="k", help="pushes the first domino", on="world")(self.push)
         world.action("build anew", key="c", help="everything stands again where it stood", on="world")(self.build_anew)
+        world.tools.push(radius=0.02)
         world.at(1.0)(self.push)
 
     def box(

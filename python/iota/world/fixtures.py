@@ -67,6 +67,7 @@ class Fixtures(Part):
         clients: Clients,
         notices: Notices,
         guard: Guard,
+        fingers: Fingers,
     ) -> None:
         self._system, self._scene, self._drawings, self._controls = system, scene, drawings, controls
         self._events, self._clients, self._notices, self._guard = events, clients, notices, guard
@@ -74,7 +75,7 @@ class Fixtures(Part):
         self._users: dict[Fixture, int] = {}
         self._of: dict[Body, Fixture] = {}
         self._guiding: Guiding | None = None
-        self._fingers: Fingers | None = None
+        self._fingers = fingers
         self._ghosts: dict[Fixture, Ghost] = {}
 
     def __iter__(self) -> Iterator[Fixture]:
@@ -303,7 +304,7 @@ class Fixtures(Part):
     def _begin(self) -> None:
         """With the first that acts."""
         self._guiding = Guiding(self._system, self._events, self._clients, self._guide_of)
-        self._fingers = Fingers(self._system, self._scene, self._events)
+        self._fingers.begin()
         self._events.on_step(self._act)
         taken = {action.key for action in self._controls.actions}
         if "use" not in {action.name for action in self._controls.actions}:
@@ -374,7 +375,7 @@ class Fixtures(Part):
 
     def _feel(self, fixture: Fixture) -> None:
         """A fingertip that moves a part is felt in its hand, and its user is the one of the event."""
-        touch = None if self._fingers is None else self._fingers.touching(fixture.bodies)
+        touch = self._fingers.touching(fixture.bodies)
         client = None if touch is None else self._clients.by_id.get(touch[0])
         if touch is not None and client is not None:
             self._users[fixture] = client.id

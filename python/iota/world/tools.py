@@ -10,11 +10,14 @@ from time import perf_counter
 from typing import Any
 
 from iota._core import Body, Bond, Constraint, Particle, System, Vec3
+from iota.arguments import SHORT, is_number
+from iota.colors import ColorLike, color_text
 from iota.world.clients import Clients, alive
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
+from iota.world.fingers import Fingers
 from iota.world.ghosts import FREE, READY, Ghost
 from iota.world.history import History
 from iota.world.joining import Joins, hinge_above, nearest_ends
@@ -56,8 +59,10 @@ class Tools(Part):
         events: Events,
         history: History,
         clients: Clients,
+        fingers: Fingers,
     ) -> None:
         self._system, self._visuals, self._scene, self._history = system, visuals, scene, history
+        self._fingers = fingers
         self._drawings, self._controls, self._events, self._clients = drawings, controls, events, clients
         self._joins = Joins()
 
@@ -73,6 +78,25 @@ class Tools(Part):
             if not isinstance(name, str) or name not in OFFERS:
                 raise ValueError(f"there are {', '.join(map(repr, OFFERS))}, not {name!r}")
             OFFERS[name](self)
+
+    def push(self, key: str = "h", radius: float = 0.04, color: ColorLike = "#f2a324") -> None:
+        """Lets users push what they touch, with at most 50 N: in a headset the tips of index fingers and controllers do, and with a mouse
+        the key gives a paddle, a ball at the pointer, and takes it away. It moves at the depth of the body that the mouse
+        pointed at first, or of the middle of the scene. A hand that holds something pushes nothing. radius: of the paddle, m. Worlds with ready parts have fingertips already.
+        Raises ValueError for a radius that is not above 0.
+
+        world.tools.push()
+        """
+        if not (is_number(radius) and 0 < float(radius) < math.inf):
+            raise ValueError(f"radius must be a finite number above 0 m, not {SHORT.repr(radius)}")
+        size, shade = float(radius), color_text(color)
+        self._fingers.begin()
+
+        @self._controls.action(
+            "paddle", key=key, help="takes a paddle that pushes what it touches, or puts it away", on="world"
+        )
+        def turn(event: Event) -> None:
+            self._fingers.turn_paddle(event.client, size, shade)
 
     def socket(
         self,

@@ -23,6 +23,7 @@ from iota.world.clock import Clock
 from iota.world.controls import Controls
 from iota.world.drawings import Drawings
 from iota.world.events import Events
+from iota.world.fingers import Fingers
 from iota.world.fixtures import Fixtures
 from iota.world.ground import level_below
 from iota.world.inputs import Inputs
@@ -139,6 +140,7 @@ class World:
         self._drawings = Drawings(state.things, state.notices, state.scene)
         self._controls = Controls(state.things, state.actions, lambda action, bodies: inputs.act(action, 0, bodies))
         self._events = Events(state.listeners, state.system)
+        fingers = Fingers(state.system, state.scene, self._drawings, self._events)
         self._tools = Tools(
             state.system,
             state.visuals,
@@ -148,6 +150,7 @@ class World:
             self._events,
             state.history,
             state.clients,
+            fingers,
         )
         self._fixtures = Fixtures(
             state.system,
@@ -158,6 +161,7 @@ class World:
             state.clients,
             state.notices,
             self._guard,
+            fingers,
         )
         self._queries = Queries(state.system, state.scene)
         self._users = Users(state.clients, state.notices, self._controls, self._events, self._guard, title, self.call)
