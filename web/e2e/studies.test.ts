@@ -423,7 +423,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.does("c", "the bar lies as at the start", ({ time }) => time < 1);
     await study.does("k", "a gripper moves", ({ kinetic }) => kinetic > 1e-3);
     // A finger moves along its slide only.
-    const bar = 7;
+    const bar = await study.tab.page.evaluate(() => iota.bodies()[0]);
     await study.drag([some, -some], (body) => body === bar);
     await study.letGo();
   },

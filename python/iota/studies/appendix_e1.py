@@ -42,5 +42,6 @@ def present(world: iota.World) -> iota.World:
     world.add_strut((left - 1, 20, -20), (right + 1, 20, -20), looks.cylinder(0.8, "wood"))
     middle = (left + right) / 2
     world.every(12.0)(lambda: None if world.users.held() else world.reset())
+    world.stage("studio")
     world.camera = iota.Camera(position=(middle + 10, -5, 90), target=(middle, -13, 0))
     return world

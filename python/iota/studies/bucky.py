@@ -97,8 +97,8 @@ def present(world: iota.World) -> None:
     """The cage's springs, its stand, and where one stands in front of it."""
     world.draw_ties("spring", looks.cylinder(0.012, "brass"))
     stand(world)
-    x, _, z = CENTER
-    world.camera = iota.Camera(position=(1.2, 1.5, 2.5), target=(x, 1.02, z))
+    world.stage("studio")
+    world.camera = iota.Camera(position=(1.2, 1.5, 2.5), target=(CENTER.x, 1.02, CENTER.z))
 
 
 def stand(world: iota.World, center: iota.Vec3 = CENTER) -> None:

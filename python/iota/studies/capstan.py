@@ -46,6 +46,7 @@ def present(world: iota.World) -> None:
         world.add_static(looks.box((0.12, HEIGHT, 0.06), "wood"), (0, HEIGHT / 2, end))
         world.add_static(looks.box((0.5, 0.04, 0.08), "wood"), (0, 0.02, end))
     world.draw_ties("rope", looks.cylinder(ROPE, "rope"))
+    world.stage("room")
     world.camera = iota.Camera(position=(1.5, 1.25, 1.0), target=(0, 0.78, 0))
 
 

@@ -27,6 +27,7 @@ def build(left: int = 1, right: int = 0, balls: int = BALLS) -> iota.World:
     world = iota.World(iota.System(), title="cradle: of 24 mm balls as many leave as arrive", dt=1 / 240, ground=0.0)
     cradle = Cradle(world, balls=balls)
     add_actions(world, cradle, left, right)
+    world.stage("room")
     world.camera = iota.Camera(position=(0.11, 0.2, 0.42), target=(0, 0.08, 0))
     return world
 

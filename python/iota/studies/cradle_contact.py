@@ -55,6 +55,7 @@ def make_world() -> iota.World:
     world = iota.World(
         iota.System(), title="cradles by contact: impacts run through 24 mm balls", dt=1 / 240, ground=0.0
     )
+    world.stage("room")
     world.camera = iota.Camera(position=(0.1, 0.22, 0.56), target=(0, 0.09, 0))
     return world
 

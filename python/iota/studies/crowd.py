@@ -49,6 +49,7 @@ def build(count: int = COUNT, budget_ms: float | None = BUDGET) -> iota.World:
     system.usual_material = iota.Material(touches="obstacles")  # their own legs do not matter from afar
     length = APART * math.ceil(count / ROWS)
     world = iota.World(system, title=f"crowd: a lamp walks through a valley of {length:.0f} m", ground=0.0)
+    world.stage(ground="#93a06f")
     world.camera = iota.Camera(position=(-4.2, 2.3, 4.9), target=(4, 1.9, -0.5))
     crowd = Crowd(world, count)
     world.levels.viewers = lambda: [crowd.eye()]

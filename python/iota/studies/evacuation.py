@@ -98,6 +98,7 @@ def build(people: int = 50) -> iota.World:
     world = iota.World(
         iota.System(gravity=(0, 0, 0)), title="evacuation: people leave a house of 20 m", dt=1 / 60, ground=0.0
     )
+    world.stage(ground="#9c9f9b")
     world.camera = iota.Camera(position=(1.2, 16.0, 15.0), target=(1.2, 0, 0.3))
     for gate in plan.gates:
         hang(world, plan, gate)

@@ -43,6 +43,7 @@ def build() -> iota.World:
 
 def make_world() -> iota.World:
     world = iota.World(iota.System(), title="knot: two hands tie a rope of 2.4 m", dt=STEP, ground=0.0)
+    world.stage("room")
     world.camera = iota.Camera(position=(-0.3, 1.25, 1.75), target=(-0.3, 0.36, 0))
     return world
 

@@ -245,4 +245,5 @@ def present(world: iota.World) -> None:
     world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
     for mark in range(1, 5):
         world.add_static(looks.box((0.025, 0.0015, 0.0036), "rubber"), (x - 0.1, 0.02 + 0.1 * mark, back))
+    world.stage("room")
     world.camera = iota.Camera(position=(0.56, 0.44, 0.69), target=(0, 0.285, 0))

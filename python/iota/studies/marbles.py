@@ -34,6 +34,7 @@ def build() -> iota.World:
 
 
 def present(world: iota.World) -> None:
+    world.stage("room")
     world.camera = iota.Camera(position=(0.5, 1.35, 2.35), target=(0.02, 0.74, 0))
 
 

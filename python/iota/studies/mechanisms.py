@@ -63,6 +63,7 @@ def present(world: iota.World) -> None:
         world.label(name, at=(x, BENCH - 0.025, BENCH_SIZE[2] / 2 + 0.03), height=0.026)
     world.draw_ties("spring", looks.spring(0.016, 0.0022))
     world.draw_ties("rope", looks.cylinder(0.005, "rope"))
+    world.stage("room")
     world.camera = iota.Camera(position=(0.25, 1.15, 2.15), target=(0.15, 0.64, 0))
 
 

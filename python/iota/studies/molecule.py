@@ -63,8 +63,8 @@ def hang(world: iota.World, kind: Literal["rigid", "soft"], nail: iota.Vec3 = NA
 def present(world: iota.World) -> None:
     """The molecule's stand, and where one stands in front of it."""
     stand(world)
-    x, y, z = NAIL
-    world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=(x, y - 0.53, z - 0.1))
+    world.stage("studio")
+    world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=tuple(NAIL - (0, 0.53, 0.1)))
 
 
 def stand(world: iota.World, nail: iota.Vec3 = NAIL) -> None:

@@ -34,6 +34,7 @@ def build() -> iota.World:
     world.controls.plot(
         "energy", {"moving": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J"
     )
+    world.stage("room")
     world.camera = iota.Camera(position=(0.47, 1.6, 4.35), target=(0.33, 1.22, 0))
     return world
 

@@ -26,6 +26,7 @@ def build(folder: Path | None = None) -> iota.World:
     """The world of the study. folder: where files go, None: the current one."""
     system = iota.System(damping=0.1)
     world = iota.World(system, title="playground: build with balls of 0.2 m, boxes and ropes", camera=CAMERA)
+    world.stage(ground="#8a9670")
     start(world)
     world.offer()
     placing(world)

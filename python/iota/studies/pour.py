@@ -45,6 +45,7 @@ def make_world() -> iota.World:
 
 
 def present(world: iota.World) -> None:
+    world.stage("room")
     world.camera = iota.Camera(position=(0.62, 0.95, 1.5), target=(0.04, 0.43, 0))
 
 

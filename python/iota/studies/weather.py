@@ -27,6 +27,7 @@ def build() -> iota.World:
     world.draw_ties("spring", [])
     fountain(world, iota.Vec3(0.3, 0.75, 0.1))
     beads(world, MIDDLE)
+    world.stage(ground="#8a9670")
     world.camera = iota.Camera(position=(0.05, 1.5, 3.4), target=(0.05, 1.05, 0))
 
     @world.action("calm", key="n", help="the wind drops, or comes back", on="world")

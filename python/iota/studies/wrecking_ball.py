@@ -48,6 +48,7 @@ def present(world: iota.World) -> None:
     for z in (-0.5, 0.5):
         world.add_strut((POST.x, 0, z), tuple(POST), paint)
     world.draw_ties("rope", looks.cylinder(0.012, "rope"))
+    world.stage(ground="#96918a")
     world.camera = iota.Camera(position=(1.9, 1.9, 5.2), target=(-0.8, 1.35, 0))
 
 
