@@ -55,6 +55,35 @@ def test_the_cloth_hangs_in_the_wind_without_tearing() -> None:
     assert not any(bond.broken for bond in system.bonds)
 
 
+def test_a_hem_that_is_pushed_against_its_own_cloth_does_not_pass_through_it() -> None:
+    world = cloth.build()
+    system, particles = world.system, world.system.particles[: cloth.ROWS * cloth.COLUMNS]
+    for field in system.fields:
+        field.active = False
+    world.advance(60)
+    start = [particle.position for particle in particles]
+    middle = range(6, cloth.COLUMNS - 6)
+    for row in range(3, 9):
+        for column in range(2, cloth.COLUMNS - 2):
+            knot = particles[row * cloth.COLUMNS + column]
+            system.grip(knot.body, target=knot.position, max_acceleration=300)
+    hem = [(cloth.ROWS - 1) * cloth.COLUMNS + column for column in middle]
+    grips = [system.grip(particles[knot].body, target=start[knot], max_acceleration=120) for knot in hem]
+    way = [(0, (0, 0, 0)), (60, (0, 0, 0.4)), (156, (0, 0.5, 0.4)), (276, (0, 0.5, -0.25))]  # steps; m
+    for step in range(336):
+        offset = [np.interp(step, [when for when, _ in way], [place[axis] for _, place in way]) for axis in range(3)]
+        for grip, knot in zip(grips, hem, strict=True):
+            grip.move(start[knot] + offset)
+        world.step()
+    places = np.array([tuple(particle.position) for particle in particles]).reshape(cloth.ROWS, cloth.COLUMNS, 3)
+    sheet = (places[:-1, :-1] + places[1:, 1:]) / 2  # middles of cells
+    normals = np.cross(places[:-1, 1:] - places[:-1, :-1], places[:-1, :-1] - places[1:, :-1])
+    for knot in hem:
+        away = np.array(tuple(particles[knot].position)) - sheet[: cloth.ROWS - 4]
+        row, column = np.unravel_index(np.linalg.norm(away, axis=2).argmin(), away.shape[:2])
+        assert float(away[row, column] @ normals[row, column]) > 0, "it is before the cloth"
+
+
 @pytest.mark.parametrize("column", [8, 16])
 def test_a_rip_runs_from_the_hem_to_the_bar_while_the_hand_keeps_what_it_holds(
     column: int, monkeypatch: pytest.MonkeyPatch

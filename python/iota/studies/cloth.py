@@ -20,6 +20,9 @@ POST, CLEAR = (
 )  # m: radius of a post; how near a knot comes, so that no thread between two knots cuts through it
 
 
+NEAR, PUSH = 0.07, 60.0  # m: knots that are nearer push each other away, so that layers do not pass each other; N/m
+
+
 class Weave:
     """The threads of a cloth, and what a rip and a hand do to them. Threads are numbered as the bonds of the cloth."""
 
@@ -94,6 +97,7 @@ def build() -> iota.World:
     wind = system.field(
         "current", group=made.groups["cloth"], velocity=(0.3, 0, 1.2), drag=0.0035, speed=1.0, size=0.6, evolution=1.0
     )
+    system.pair_force("soft_repulsion", cutoff=NEAR, group=made.groups["cloth"], stiffness=PUSH, length=NEAR)
     Weave(world, made)
     present(world, made)
 
