@@ -540,17 +540,6 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.drag([some, 0]);
     await study.letGo();
   },
-  ragdolls: async (study) => {
-    const hand = await study.tab.page.evaluate(() => iota.bodies().find((body) => iota.page.world.entities.body.nameOf(body) === "right hand")!);
-    await study.does("c", "all hang on their hooks", ({ nails, time }) => nails === 12 && time < 1);
-    await study.does("k", "a figure falls", ({ nails, kinetic }) => nails < 12 && kinetic > 10);
-    await study.drag([some, -some], (body) => body === hand);
-    await study.does("t", "its arm comes off at the elbow", (now, before) => now.joints === before.joints - 1);
-    await study.does("t", "it is on again", (now, before) => now.joints === before.joints + 1);
-    await study.letGo();
-    await study.does("x", "the fallen are thrown away", (now, before) => now.kinetic > before.kinetic + 100);
-    await study.does("c", "all hang again", ({ nails, time }) => nails === 12 && time < 1);
-  },
   rigging: async (study) => {
     // Not an eye of the deck, which is nailed.
     const named = await study.tab.page.evaluate(() => iota.bodies().filter((body) => iota.page.world.entities.body.ownNameOf(body) !== ""));
@@ -604,6 +593,17 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.knows("the ball swings", ({ kinetic }) => kinetic > 1000);
     await study.drag([some, -some]);
     await study.letGo();
+  },
+  ragdolls: async (study) => {
+    const hand = await study.tab.page.evaluate(() => iota.bodies().find((body) => iota.page.world.entities.body.nameOf(body) === "right hand")!);
+    await study.does("c", "all hang on their hooks", ({ nails, time }) => nails === 12 && time < 1);
+    await study.does("k", "a figure falls", ({ nails, kinetic }) => nails < 12 && kinetic > 10);
+    await study.drag([some, -some], (body) => body === hand);
+    await study.does("t", "its arm comes off at the elbow", (now, before) => now.joints === before.joints - 1);
+    await study.does("t", "it is on again", (now, before) => now.joints === before.joints + 1);
+    await study.letGo();
+    await study.does("x", "the fallen are thrown away", (now, before) => now.kinetic > before.kinetic + 100);
+    await study.does("c", "all hang again", ({ nails, time }) => nails === 12 && time < 1);
   },
 };
 
