@@ -39,7 +39,7 @@ def present(world: iota.World) -> None:
     for x in (-1.05, 1.05):
         for z in (-0.34, 0.34):
             world.add_static(looks.box((0.06, TABLE - TOP[1], 0.06), "wood"), (x, (TABLE - TOP[1]) / 2, z))
-    world.stage("room")
+    world.stage("studio")
     world.camera = iota.Camera(position=(0.5, 1.45, 2.25), target=(0.02, 0.78, 0))
 
 
