@@ -100,7 +100,7 @@ void Integrator::solve_impacts(Problem& problem, const Stage& stage, const StepE
     }
   if (const double made = energy_.total - allowed, before = energy_.kinetic; made > 0 && any_bounces && !drives) {
     const double missing = energy_.missing;
-    (void)change_kinetic_energy(problem, made, free_motion(problem));
+    (void)change_kinetic_energy(problem, made, rigid_motion(problem));
     energy_.missing = missing, taken += before - energy_.kinetic;
   }
   report.dissipated += taken;  // if negative: of what the rows have taken
