@@ -86,7 +86,7 @@ class HeapTies {
 
   std::vector<Tie> ties_;  // by pools, copies last
   std::vector<Vec3> x_, x_next_;
-  // Of the equations: their ties, and the factor that projects onto them.
+  // The ties of equations, and the factor that projects onto them.
   std::vector<std::uint32_t> equations_;
   DelassusFactor factor_;
   std::vector<Vec3> answers_;

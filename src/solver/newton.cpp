@@ -152,7 +152,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
     const double wanted = (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
     factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing) : wanted);
   }
-  // What stands still keeps its factors: they are half of the time of a step of a tower.
+  // A problem that stands still keeps its factors: they are half of the time of a step of a tower.
   const bool stands = report.iterations == 0 && has_laws_ && assembly_.is_dear() && assembly_.has_factors_of(stage);
   if (!stuck && !stage.is_projection() && (stage.is_mid_point() || report.iterations == 0))
     polish(problem, stage, report, served_on || stands);

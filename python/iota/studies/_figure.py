@@ -108,7 +108,7 @@ def inside(part: Part, point: Place) -> Place:
 
 
 def nearest(body: iota.Body, place: iota.Vec3) -> iota.Particle:
-    """Of its attachments."""
+    """The attachment of a body that is nearest to a place."""
     return min(body.attachments, key=lambda particle: abs(particle.position - place))
 
 

@@ -116,7 +116,7 @@ class Ragdolls:
 
     @property
     def hung(self) -> list[Figure]:
-        """Those on their hooks."""
+        """The figures on their hooks."""
         return [figure for figure in self.figures if figure.hangs[0].is_nailed]
 
     # --- what is done -------------------------------------------------------------------------------------------------

@@ -39,7 +39,7 @@ class Finger:
 
 @dataclass
 class Paddle:
-    """That a client has taken. anchor, normal: of the plane in which it moves, m, once the mouse has moved. start: where it is made."""
+    """A paddle that a client has taken. anchor, normal: of the plane in which it moves, m, once the mouse has moved. start: where it is made."""
 
     radius: float
     color: str
@@ -115,7 +115,7 @@ class Fingers:
         return self._paddles.get(event.client) if event.pointer == MOUSE else None
 
     def _tip(self, event: Event) -> Vec3 | None:
-        """Where the pointer of an event pushes; None if it does not."""
+        """The place at which the pointer of an event pushes; None if it does not."""
         paddle = self._paddle_of(event)
         if paddle is not None:
             return paddle.place(event)

@@ -824,7 +824,7 @@ class Levels(Part):
         return True
 
     def _end(self, coming: _Coming) -> None:
-        """What comes is where it would have come."""
+        """Puts a thing where it would have come."""
         is_whole = all(body.alive and body.stride == 0 for body in coming.bodies)
         if is_whole and coming.found is not None and coming.found.finish():
             for each in coming.things:
@@ -945,7 +945,7 @@ class Levels(Part):
     ) -> Managed:
         size, middle, extent = _measured(members)
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
-        # What hangs saves little by stiffness, and loses its swing: strides of 8 cost less.
+        # A thing that hangs saves little by stiffness, and loses its swing: strides of 8 cost less.
         is_hung = any(p.is_nailed for body in members for p in body.particles)
         has_stiff = can_be_stiff and not is_hung
         levels = tuple(stiff if level is STIFF else level for level in STANDARD if has_stiff or level is not STIFF)
