@@ -20,6 +20,7 @@ RestructureReport apply(Editor& e, const EndEdit&) {
   if (!e.batch) throw std::logic_error("end_edit: no edit has been begun");
   if (--e.batch->depth > 0) return {};
   e.held.book_edits();
+  e.batch->count_coordinates(e.model);
   RestructureReport report = e.batch->finish(e.model);
   settle_batch(e, report);
   if (!e.batch->is_empty) {

@@ -366,7 +366,7 @@ void apply(Editor& e, const SetPose& c) {
     if (ingredient::Nail* const nail = model.nails.find(slot))
       nail->position = nail->position_before = moved(nail->position);
   }
-  model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates_of(model, b); });
+  model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates_of(e, b); });
   model.bodies[body].orientation = wanted;
   e.orientations.forget();
   e.mark_velocity_dirty(model.bodies[body].first);

@@ -134,10 +134,14 @@ ConstraintId made(Editor& e, std::uint32_t slot) {
 
 }  // namespace
 
-void refresh_coordinates_of(model::Model& model, std::uint32_t body) {
+void refresh_coordinates_of(Editor& e, std::uint32_t body) {
+  model::Model& model = e.model;
   if (model.constraints.size() == 0) return;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.for_each_constraint_of(p, [&](std::uint32_t c, int) { ingredient::refresh_coordinates(model, c); });
+    model.for_each_constraint_of(p, [&](std::uint32_t c, int) {
+      if (e.batch) e.batch->note_coordinates(model, c);
+      ingredient::refresh_coordinates(model, c);
+    });
   });
 }
 

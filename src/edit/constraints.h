@@ -72,7 +72,7 @@ void apply(Editor&, const SetBreakLimits&);
 void apply(Editor&, const SetCompliance&);
 void apply(Editor&, const Destroy<ConstraintId>&);
 
-/// Updates the coordinates of a body's joints after places were assigned.
-void refresh_coordinates_of(model::Model&, std::uint32_t body);
+/// Updates the coordinates of a body's joints after places were assigned. In a batch the turns of angles are counted at its end.
+void refresh_coordinates_of(Editor&, std::uint32_t body);
 
 }  // namespace iota::edit

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/history.h"
 
+#include "ingredient/joint_readings.h"
 #include "ingredient/quantities.h"
 
 #include <iota/reports.h>
@@ -62,6 +63,24 @@ void Batch::add(const RestructureReport& report) {
   const std::uint32_t articulates = report_->articulates_before;
   add_report(*report_, report);
   report_->articulates_before = articulates;
+}
+
+void Batch::note_coordinates(const model::Model& model, std::uint32_t joint) {
+  const ConstraintId id = model.constraints.id(joint);
+  if (std::ranges::none_of(coordinates_, [&](const Coordinates& c) { return c.joint == id; }))
+    coordinates_.push_back({id, model.constraints[joint].coordinate});
+}
+
+void Batch::forget_coordinates(const model::Model& model, std::uint32_t joint) {
+  std::erase_if(coordinates_, [&](const Coordinates& c) { return c.joint == model.constraints.id(joint); });
+}
+
+void Batch::count_coordinates(model::Model& model) const {
+  for (const Coordinates& c : coordinates_) {
+    if (!model.constraints.contains(c.joint)) continue;
+    model.constraints[c.joint.slot].coordinate = c.values;
+    ingredient::refresh_coordinates(model, c.joint.slot);
+  }
 }
 
 RestructureReport Batch::finish(const model::Model& model) {

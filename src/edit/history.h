@@ -5,9 +5,11 @@
 
 #include <iota/record.h>
 
+#include <array>
 #include <deque>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace iota {
 struct RestructureReport;
@@ -24,6 +26,12 @@ class Batch {
   void add(const RestructureReport&);
   /// One report of all edits.
   RestructureReport finish(const model::Model&);
+  /// Before an edit assigns places of bodies of a joint. Its angles will be counted on from the present ones when the batch
+  /// ends, and not from those between two of its edits.
+  void note_coordinates(const model::Model&, std::uint32_t joint);
+  /// After an edit has assigned a coordinate of a joint: its angles are counted on from there.
+  void forget_coordinates(const model::Model&, std::uint32_t joint);
+  void count_coordinates(model::Model&) const;
 
   int depth = 1;  ///< of nested batches
   bool is_empty = true;
@@ -33,6 +41,11 @@ class Batch {
   std::unique_ptr<RestructureReport> report_;
   std::vector<BodyId> bodies_;  // alive at the start, in order of slots
   std::vector<ParticleId> particles_;
+  struct Coordinates {
+    ConstraintId joint;
+    std::array<double, joint_coordinates.size()> values;
+  };
+  std::vector<Coordinates> coordinates_;
   std::uint32_t version_;
   double edit_energy_;
 };

@@ -112,7 +112,8 @@ class CoordinateSetter {
   /// Call it after positions have changed. False if the coordinate is wrong.
   bool finish(std::span<const std::uint32_t> bodies, double value) {
     joint().coordinate[index_] = value;  // an angle is then counted from here
-    for (const std::uint32_t body : bodies) refresh_coordinates_of(model_, body);
+    if (e_.batch) e_.batch->forget_coordinates(model_, joint_);
+    for (const std::uint32_t body : bodies) refresh_coordinates_of(e_, body);
     e_.orientations.forget();
     e_.mark_velocity_dirty(joint().particles[ingredient::a_origin]);
     return std::abs(now() - value) <= 1e3 * met * scale();
@@ -183,7 +184,7 @@ class CoordinateSetter {
       model_.rings[s.ring].position = s.position, model_.rings[s.ring].velocity = s.velocity;
     for (std::size_t i = 0; i < bodies_.size(); ++i) model_.bodies[bodies_[i]].orientation = orientations_[i];
     joint().coordinate[index_] = coordinate_;
-    for (const std::uint32_t body : bodies_) refresh_coordinates_of(model_, body);
+    for (const std::uint32_t body : bodies_) refresh_coordinates_of(e_, body);
     e_.orientations.forget();
   }
 

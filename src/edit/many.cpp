@@ -292,7 +292,7 @@ void place_bodies(Editor& e, const std::vector<Wanted>& all) {
     model.rings[at.ring].position = at.position, model.rings[at.ring].velocity = at.velocity;
     if (auto* const nail = model.nails.find(at.ring)) nail->position = nail->position_before = at.position;
   }
-  for (const Wanted& w : all) refresh_coordinates_of(model, w.body);
+  for (const Wanted& w : all) refresh_coordinates_of(e, w.body);
   e.orientations.forget();
 }
 

@@ -82,7 +82,7 @@ void apply(Editor& e, const SetPosition& c) {
     model.rebuild_basis(body);
     model.mark_body(body);
   });
-  model.for_each_in_ring(ring, [&](std::uint32_t p) { refresh_coordinates_of(model, model.particles[p].body); });
+  model.for_each_in_ring(ring, [&](std::uint32_t p) { refresh_coordinates_of(e, model.particles[p].body); });
   e.mark_velocity_dirty(particle);
 }
 

@@ -54,6 +54,27 @@ TEST(EditBatch, leaves_the_islands_that_follow_cuts_as_they_are) {
   EXPECT_EQ(system.islands().size(), 2u);
 }
 
+TEST(EditBatch, angles_are_counted_on_from_its_begin_and_not_from_places_between_its_edits) {
+  for (int k = -6; k <= 6; ++k) {
+    System system({.gravity = {}});
+    const BodyId a = system.bodies().create(Capsule{0.1, 0.3}, {.mass = 1});
+    const BodyId b = system.bodies().create(Capsule{0.1, 0.3}, {.mass = 1, .position = {0.5, 0, 0}});
+    const ConstraintId hinge = system.joints().create(
+        JointSpec{.kind = ConstraintKind::revolute, .a = b, .b = a, .at = {0.25, 0, 0}, .axis = {0, 1, 0}});
+    system.joints().set_value(hinge, JointCoordinate::angle, -2);
+    system.bodies().set_angular_velocity(a, {0, 0.5 * k, 0}), system.bodies().set_angular_velocity(b, {0, 0.5 * k, 0});
+    for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 60);  // both turn by k / 2
+    system.edits().begin();
+    system.bodies().set_pose(a, {}, {}), system.bodies().set_pose(b, {0.5, 0, 0}, {});
+    (void)system.edits().end();
+    EXPECT_NEAR(system.joints().state(hinge).coordinate[0], 0, 1e-9) << k;
+    system.edits().begin();
+    system.bodies().set_pose(a, {}, {}), system.joints().set_value(hinge, JointCoordinate::angle, 7);
+    (void)system.edits().end();
+    EXPECT_NEAR(system.joints().state(hinge).coordinate[0], 7, 1e-9) << k;
+  }
+}
+
 TEST(EditBatch, undo_and_redo_give_the_same_hash) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 6});
