@@ -179,11 +179,40 @@ def ragdolls(count: int) -> Scene:
     return scene
 
 
+def rope(ratio: float) -> Scene:
+    """Sixty beads with ball joints between them hang over half a turn of a fixed cylinder, friction 0.3, with weights at both ends.
+
+    ratio: of the weights. Friction acts on the lever of the cylinder, tensions on that of the beads' centers: with r the radius of a
+    bead and R that of the cylinder it holds up to exp(0.3 pi R / (R + r)) = 2.43, beads' weights aside.
+    """
+    beads, around, radius = 60, 27, 0.0125  # around: joints along the half turn
+    turning = math.pi / around
+    line = radius / math.sin(turning / 2)  # the circle of the beads' centers
+    middle = (0.0, 2.0)
+    places = []
+    for k in range(beads):
+        before = (beads - 1 - around) // 2  # beads that hang on the first side
+        step = min(max(k - before, 0), around)
+        down = max(before - k, k - before - around, 0)
+        angle = math.pi - step * turning
+        places.append((middle[0] + line * math.cos(angle), middle[1] + line * math.sin(angle) - 2 * radius * down))
+    scene = Scene([], friction=0.3, seconds=4)
+    along_z = np.array([[0, 0, 1.0], [0, 1, 0], [-1, 0, 0]])
+    scene.things.append(Thing((line - radius, 0.5), (*middle, 0), 0, along_z))
+    weights = {0: 1.0, beads - 1: ratio}
+    scene.things += [Thing((radius,), (x, y, 0), weights.get(k, 0.002)) for k, (x, y) in enumerate(places)]
+    for k in range(1, beads):
+        a, b = places[k - 1], places[k]
+        scene.joints.append((k, k + 1, ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0)))
+    return scene
+
+
 SCENES = {
     "tower": tower, "tower, 1000:1": lambda: tower(1000), "pyramid 55": lambda: pyramid(10),
     "pyramid 1035": lambda: pyramid(45), "heap 200": lambda: heap(200), "heap 1000": lambda: heap(1000),
     "slope 0.99": lambda: slope(0.99), "slope 1.2": lambda: slope(1.2), "grip 1.5": lambda: grip(1.5), "grip 20": lambda: grip(20),
     "bounce, e = 1": lambda: bounce(1.0), "bounce, e = 0.5": lambda: bounce(0.5), "cradle": cradle,
+    "rope 2.3": lambda: rope(2.3), "rope 2.6": lambda: rope(2.6),
     "ragdolls 20": lambda: ragdolls(20), "ragdolls 100": lambda: ragdolls(100),
 }  # fmt: skip
 
@@ -309,6 +338,11 @@ class Judge:
             return bool(abs(shares[-1] - 1) < 0.07 and (abs(shares[:-1]) < 0.07).all()), "speeds " + " ".join(
                 f"{s:.2f}" for s in shares
             )
+        if name.startswith("rope"):
+            fallen = float(places[hz, -1, 1] - places[-1, -1, 1])
+            holds = abs(fallen) < 0.01
+            passes = holds if "2.3" in name else fallen > 0.1
+            return passes and self.gap < 0.005, f"falls {1000 * fallen:.2g} mm, gaps of joints {1000 * self.gap:.2g} mm"
         if name.startswith("ragdolls"):
             return self.gap < 0.02 and self.worst < 0.05, f"gaps of joints {1000 * self.gap:.2g} mm"
         off = places[-1] - self.start

@@ -39,7 +39,9 @@ def test_the_judge_measures_overlaps(a, b, way, turn, depth) -> None:  # type: i
         assert overlap(first, second, np.zeros(3), turns[0], to, turns[1]) == pytest.approx(depth, abs=1e-12)
 
 
-@pytest.mark.parametrize("scene", ["cradle", "bounce, e = 1", "bounce, e = 0.5", "slope 0.99", "slope 1.2", "grip 20"])
+@pytest.mark.parametrize(
+    "scene", ["cradle", "bounce, e = 1", "bounce, e = 0.5", "slope 0.99", "slope 1.2", "grip 20", "rope 2.3"]
+)
 def test_iota_passes_where_the_judge_reads_poses_alone(scene: str) -> None:
     row = contact_bench.run(scene, "iota", 60, 20.0)
     assert row["passes"], row["figure"]

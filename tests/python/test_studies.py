@@ -23,7 +23,15 @@ DEEPEST = 0.03  # share of the smaller shape
 # A fish that feeds is between leaves, and fish do not know of weed. Blocks that are hit and turn fast may get into each
 # other, and are eased out within 0.1 s: docs/contact.md, Not here yet. So may what falls on a heap. An acrobat's own limbs do not touch,
 # nor do the threads of a flag.
-DEEPER = {"museum": 0.2, "stack": 0.07, "crowd": 0.4, "undersea": 0.2, "wrecking-ball": 0.15, "pour": 0.35, "ragdolls": 0.1}
+DEEPER = {
+    "museum": 0.2,
+    "stack": 0.07,
+    "crowd": 0.4,
+    "undersea": 0.2,
+    "wrecking-ball": 0.15,
+    "pour": 0.35,
+    "ragdolls": 0.1,
+}
 LOOKED_AT = {
     "museum": 3.0,
     "undersea": 16.0 if TRIES_ALL else 8.0,
