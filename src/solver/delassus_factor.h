@@ -39,15 +39,14 @@ class DelassusFactor {
   void begin();
   void factorize();
 
-  std::vector<std::uint32_t> order_;  // the ties as they are eliminated
-  std::vector<std::uint32_t> first_;  // of the blocks below each pivot
-  std::vector<std::uint32_t> rows_;   // of each block: its place in the order
-  std::vector<std::uint32_t>
-      targets_;                 // for each two blocks of a column, where their product goes; pivots come after blocks
-  std::vector<Entry> entries_;  // of the matrix
-  std::vector<Mat3> pivots_, below_;  // then the inverses of D, and L
-  std::vector<Mat3> column_;
-  std::vector<Vec3> least_;  // pivots of rows that depend on no others are larger
+  std::vector<std::uint32_t> order_;    // the ties as they are eliminated
+  std::vector<std::uint32_t> first_;    // of the blocks below each pivot
+  std::vector<std::uint32_t> rows_;     // of each block: its place in the order
+  std::vector<std::uint32_t> targets_;  // for each two blocks of a column: the block that their product changes
+  std::vector<Entry> entries_;          // of the matrix
+  std::vector<Mat3> pivots_, below_;    // then the inverses of D, and L
+  std::vector<Mat3> column_;            // before it is divided by its pivot
+  std::vector<Vec3> least_;             // pivots that count are larger
   mutable std::vector<Vec3> x_;
 };
 
