@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from amount import sampled
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, precondition, rule
@@ -213,7 +214,7 @@ class Restructuring(RuleBasedStateMachine):
 
 
 Restructuring.TestCase.settings = settings(
-    max_examples=200,
+    max_examples=sampled(1000),
     stateful_step_count=30,
     deadline=None,
     derandomize=True,  # the same in every run; IOTA's soak looks further
