@@ -31,14 +31,12 @@ namespace detail {
 inline constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
 inline constexpr double to_integer = 0x1.8p52;  // adding and subtracting it rounds to the nearest integer
 
-/// 2^n for n = 0x1.8p52-shifted integer bits, |n| <= 1022.
-IOTA_ALWAYS_INLINE double power_of_two(std::int64_t n) {
-  return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
-}
+/// 2^n for n = 0x1.8p52-shifted integer bits, |n| <= 1022. They are modulo 2^64: those of a NaN are any number.
+IOTA_ALWAYS_INLINE double power_of_two(std::uint64_t n) { return std::bit_cast<double>((n + 1023) << 52); }
 
 struct Reduced {
-  double p;        ///< exp(r) - 1
-  std::int64_t n;  ///< exp(x) = 2^n (1 + p)
+  double p;         ///< exp(r) - 1
+  std::uint64_t n;  ///< exp(x) = 2^n (1 + p), modulo 2^64
 };
 
 /// x = n ln 2 + r, |r| <= ln 2 / 2; the Taylor series of exp(r) - 1 up to r^13 leaves 4e-18.
@@ -59,8 +57,7 @@ IOTA_ALWAYS_INLINE Reduced reduce_exp(double x) {
   q = q * r + 1.0 / 6;
   q = q * r + 0.5;
   const double p = r + r * r * q;
-  const std::int64_t bits = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(to_integer);
-  return {p, bits};
+  return {p, std::bit_cast<std::uint64_t>(shifted) - std::bit_cast<std::uint64_t>(to_integer)};
 }
 
 struct Angle {
@@ -100,7 +97,7 @@ IOTA_ALWAYS_INLINE Angle reduce_angle(double x) {
 IOTA_ALWAYS_INLINE double exp(double x) {
   const double inside = x < -746 ? -746 : (x > 710 ? 710 : x);  // NaN is kept
   const auto [p, n] = detail::reduce_exp(inside);
-  const std::int64_t half = static_cast<std::int64_t>(static_cast<std::uint64_t>(n + 2048) >> 1) - 1024;
+  const std::uint64_t half = ((n + 2048) >> 1) - 1024;
   return ((1 + p) * detail::power_of_two(half)) * detail::power_of_two(n - half);
 }
 
