@@ -399,7 +399,7 @@ def test_a_statement_without_end_is_ended_by_its_time_or_by_ctrl_c_and_the_world
         "import iota\nsystem = iota.System(gravity=(0, 0, 0))\nball = system.body().particle((0, 1, 0))\n"
         "iota.World(system, title='mine').run()\n"
     )
-    start = "import sys; from iota.cli import main, prompt; prompt.LONGEST = 1; sys.exit(main(sys.argv[1:]))"
+    start = "import sys; from iota.cli import main, prompt; prompt.LONGEST = 2; sys.exit(main(sys.argv[1:]))"
     command = [sys.executable, "-c", start, "run", "--prompt", "--port", "0", str(path)]
     with subprocess.Popen(command, stdin=-1, stdout=-1, stderr=-1, text=True) as process:
         assert process.stdin and process.stdout and process.stderr
@@ -433,7 +433,7 @@ def test_a_statement_without_end_is_ended_by_its_time_or_by_ctrl_c_and_the_world
             assert page.closed.wait(20)
         assert process.wait(20) == 0
         said = process.stderr.read()
-        assert said.count("StatementEnded: it was ended after 1 s") == 2
+        assert said.count("StatementEnded: it was ended after 2 s") == 2
         assert said.count("\nKeyboardInterrupt") == 1 and "Ctrl-D ends the world" in said
 
 
