@@ -12,7 +12,7 @@ from iota.journal.reader import Found
 from iota.journal.records import Commands
 from iota.world import World
 
-PATIENCE = 0.05  # s, for the messages of a frame
+PATIENCE = 2.0  # s, for the messages of a frame: a busy machine sends them late
 POSES = 68  # type of the message
 FRAME = 1 / 120  # s, between the frames of states that no time is known of
 
