@@ -66,20 +66,18 @@ void Batch::add(const RestructureReport& report) {
 }
 
 void Batch::note_coordinates(const model::Model& model, std::uint32_t joint) {
-  const ConstraintId id = model.constraints.id(joint);
-  if (std::ranges::none_of(coordinates_, [&](const Coordinates& c) { return c.joint == id; }))
-    coordinates_.push_back({id, model.constraints[joint].coordinate});
+  const Coordinates now{model.constraints.id(joint), model.constraints[joint].coordinate};
+  const auto [noted, is_new] = coordinates_.try_emplace(joint, now);
+  if (!is_new && noted->second.joint != now.joint) noted->second = now;  // another one has taken its slot
 }
 
-void Batch::forget_coordinates(const model::Model& model, std::uint32_t joint) {
-  std::erase_if(coordinates_, [&](const Coordinates& c) { return c.joint == model.constraints.id(joint); });
-}
+void Batch::forget_coordinates(std::uint32_t joint) { coordinates_.erase(joint); }
 
 void Batch::count_coordinates(model::Model& model) const {
-  for (const Coordinates& c : coordinates_) {
-    if (!model.constraints.contains(c.joint)) continue;
-    model.constraints[c.joint.slot].coordinate = c.values;
-    ingredient::refresh_coordinates(model, c.joint.slot);
+  for (const auto& [slot, noted] : coordinates_) {
+    if (!model.constraints.contains(noted.joint)) continue;
+    model.constraints[slot].coordinate = noted.values;
+    ingredient::refresh_coordinates(model, slot);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,7 +31,7 @@ class Batch {
   /// ends, and not from those between two of its edits.
   void note_coordinates(const model::Model&, std::uint32_t joint);
   /// After an edit has assigned a coordinate of a joint: its angles are counted on from there.
-  void forget_coordinates(const model::Model&, std::uint32_t joint);
+  void forget_coordinates(std::uint32_t joint);
   void count_coordinates(model::Model&) const;
 
   int depth = 1;  ///< of nested batches
@@ -45,7 +46,7 @@ class Batch {
     ConstraintId joint;
     std::array<double, joint_coordinates.size()> values;
   };
-  std::vector<Coordinates> coordinates_;
+  std::map<std::uint32_t, Coordinates> coordinates_;  // by the slots of joints
   std::uint32_t version_;
   double edit_energy_;
 };

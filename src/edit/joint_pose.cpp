@@ -112,7 +112,7 @@ class CoordinateSetter {
   /// Call it after positions have changed. False if the coordinate is wrong.
   bool finish(std::span<const std::uint32_t> bodies, double value) {
     joint().coordinate[index_] = value;  // an angle is then counted from here
-    if (e_.batch) e_.batch->forget_coordinates(model_, joint_);
+    if (e_.batch) e_.batch->forget_coordinates(joint_);
     for (const std::uint32_t body : bodies) refresh_coordinates_of(e_, body);
     e_.orientations.forget();
     e_.mark_velocity_dirty(joint().particles[ingredient::a_origin]);
