@@ -15,8 +15,7 @@ namespace {
 
 /// Measured with towers, pyramids and heaps of 50 to 1000 bodies (docs/contact.md): with less a tower of ten sways or falls.
 constexpr int sweeps = 2;
-constexpr int first_sweeps = 8;     // where contacts begin
-constexpr double fastest_push = 1;  // m/s, with which an overlap ends
+constexpr int first_sweeps = 8;  // where contacts begin
 
 Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
 
@@ -165,97 +164,6 @@ void Heap::load_bodies(const Problem& problem, double h) {
     found_.all[found_.with(std::span(t.nodes).first(t.count))].turning += h * t.torque;
 }
 
-namespace {
-
-/// The sums over the points of both bodies of a contact of weight times f(node): of the first one, and of the second one,
-/// whose weights are negative.
-template <class Of>
-std::pair<Vec3, Vec3> sums_of(const ContactConstraint& c, std::size_t arm, std::uint32_t of_first, Of of) {
-  std::pair<Vec3, Vec3> sums;
-  for (std::uint32_t i = 0; i < c.count; ++i)
-    (i < of_first ? sums.first : sums.second) += (i < of_first ? 1 : -1) * c.weights[arm][i] * of(c.nodes[i]);
-  return sums;
-}
-
-/// A unit vector, or another one.
-Vec3 unit_or(const Vec3& v, const Vec3& other) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : other;
-}
-
-}  // namespace
-
-void Heap::load_points(Problem& problem, double h, double rate) {
-  points_.clear(), begins_.clear(), by_height_.clear();
-  has_new_points_ = false;
-  auto& pool = problem.pool_of<ContactConstraint>();
-  const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
-  const Vec3* const x = problem.position.data();
-  for (std::size_t i = 0; i < pool.items.size(); ++i) {
-    const ContactConstraint& c = pool.items[i];
-    Point point;
-    PointBegin begin{.row = static_cast<std::uint32_t>(i), .restitution = c.restitution};
-    double sum = 0;
-    for (std::uint32_t k = 0; k < c.count; ++k) sum += c.weights[0][k];
-    const bool has_world_point = c.first_side == 0 && sum < 0;
-    const std::uint32_t of_first = c.first_side > 0 ? c.first_side : has_world_point ? 0 : c.count;
-    const auto nodes = std::span(c.nodes).first(c.count);
-    if (of_first > 0) point.a = found_.with(nodes.first(of_first));
-    if (of_first < c.count) point.b = found_.with(nodes.subspan(of_first));
-    if (!is_free(point.a) && !is_free(point.b)) continue;
-    const auto place = [&](std::uint32_t node) -> const Vec3& { return x[node]; };
-    auto [center, origin] = sums_of(c, 0, of_first, place);
-    auto [touching, other] = sums_of(c, 1, of_first, place);
-    if (has_world_point)
-      center = c.constant[0], touching = c.constant_start[1];
-    else if (point.b == none)
-      origin = -1.0 * c.constant[0], other = -1.0 * c.constant_start[1];
-    const Vec3 tangent = c.arm(3, x, 1), turned = c.arm(2, x, 1), way = center - origin;
-    const Vec3 off = c.off(way, turned, tangent);
-    const Vec3 normal = point.normal.way = unit_or(c.is_round ? off : turned, up);
-    point.first.way = unit_or(tangent - dot(tangent, normal) * normal, any_perpendicular(normal));
-    point.second.way = cross(normal, point.first.way);
-    point.gap = begin.gap = c.is_round ? norm(off) - c.radius : dot(normal, way) - c.radius;
-    point.friction = c.friction;
-    // The point that touches is that of the middle of the step: of what rolls, it is beside where the force acts now.
-    const Vec3 at = center + dot(touching - center, normal) * normal;
-    const Vec3 belt = rate * (c.constant[1] - c.constant_start[1]);
-    begin.drift = belt - dot(belt, normal) * normal;
-    const auto drift = [&](std::uint32_t node) { return problem.velocity[node]; };
-    const auto [drift_a, drift_b] = sums_of(c, 1, of_first, drift);
-    const auto load_side = [&](std::uint32_t& b, const Vec3& gap_place, const Vec3& moving, double sign, Vec3& arm,
-                               Vec3& gap_arm) {
-      if (is_free(b)) {
-        arm = at - found_.all[b].center, gap_arm = gap_place - found_.all[b].center;
-        return;
-      }
-      if (b != none) begin.drift += sign * moving;
-      b = static_cast<std::uint32_t>(found_.all.size()), begin.is_at_rest = true;
-    };
-    load_side(point.a, center, drift_a, 1, begin.arm_a, begin.gap_a);
-    load_side(point.b, origin, drift_b, -1, begin.arm_b, begin.gap_b);
-    for (Line* const line : {&point.normal, &point.first, &point.second}) line->drift = dot(begin.drift, line->way);
-    turn_lines(point, begin.arm_a, begin.arm_b);
-    weigh(point);
-    const double* const l = pool.multiplier(i);
-    const Vec3 old = -(l[1] * tangent + l[2] * c.arm(4, x, 1));
-    point.normal.impulse = -h * l[0];
-    point.first.impulse = h * dot(old, point.first.way), point.second.impulse = h * dot(old, point.second.way);
-    begin.approach = -rate_of(point, point.normal);
-    has_new_points_ = has_new_points_ || l[0] == 0;
-    by_height_.push_back({-dot(at, up), static_cast<std::uint32_t>(points_.size())});
-    points_.push_back(point), begins_.push_back(begin);
-  }
-  // From above to below: a pyramid of 55 cubes creeps by 3e-6 m a second, in the other order by 4e-4 m.
-  std::sort(by_height_.begin(), by_height_.end());
-  const auto order = [&](auto& items, auto& sorted) {
-    sorted.clear();
-    for (const auto& [height, k] : by_height_) sorted.push_back(items[k]);
-    std::swap(items, sorted);
-  };
-  order(points_, sorted_points_), order(begins_, sorted_begins_);
-}
-
 void Heap::load_grips(const Problem& problem) {
   grips_.clear();
   const std::span forces = problem.items_of<GripForce>();
@@ -301,17 +209,6 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
   }
 }
 
-void Heap::give(const Point& point, const Line& line, double impulse) {
-  Motion &a = motions_[point.a], &b = motions_[point.b];
-  a.velocity += (a.by_mass * impulse) * line.way, a.spin += impulse * line.spin_a;
-  b.velocity -= (b.by_mass * impulse) * line.way, b.spin -= impulse * line.spin_b;
-}
-
-double Heap::rate_of(const Point& point, const Line& line) const {
-  const Motion &a = motions_[point.a], &b = motions_[point.b];
-  return line.drift + dot(line.way, a.velocity - b.velocity) + dot(line.turn_a, a.spin) - dot(line.turn_b, b.spin);
-}
-
 double Heap::power_of(const Vec3& gravity) const {
   double power = 0;
   for (std::size_t i = 0; i < found_.all.size(); ++i)
@@ -322,95 +219,7 @@ double Heap::power_of(const Vec3& gravity) const {
 void Heap::sweep(double h, const HeapSoftness& soft, int times) {
   for (int k = 0; k < times; ++k) {
     ties_.sweep(motions_, soft, h);
-    for (Point& point : points_) solve_point(point, h, soft);
-  }
-}
-
-// All of it works on copies of four vectors: most of the time of a sweep is that of loads and stores.
-void Heap::solve_point(Point& point, double h, const HeapSoftness& soft) {
-  Motion &a = motions_[point.a], &b = motions_[point.b];
-  Vec3 velocity_a = a.velocity, spin_a = a.spin, velocity_b = b.velocity, spin_b = b.spin;
-  const auto rate_of = [&](const Line& line) {
-    return line.drift + dot(line.way, velocity_a - velocity_b) + dot(line.turn_a, spin_a) - dot(line.turn_b, spin_b);
-  };
-  const auto give = [&](const Line& line, double impulse) {
-    velocity_a += (a.by_mass * impulse) * line.way, spin_a += impulse * line.spin_a;
-    velocity_b -= (b.by_mass * impulse) * line.way, spin_b -= impulse * line.spin_b;
-  };
-  Line &normal = point.normal, &first = point.first, &second = point.second;
-  const double before = normal.impulse;
-  double push = point.gap / h, of_mass = 1, of_impulse = 0;
-  if (point.gap <= 0)
-    push = std::max(soft.rate * point.gap, -fastest_push), of_mass = soft.mass, of_impulse = soft.impulse;
-  normal.impulse = std::max(0.0, before - normal.mass * of_mass * (rate_of(normal) + push) - of_impulse * before);
-  if (normal.impulse == 0 && before == 0) return;
-  give(normal, normal.impulse - before);
-  if (point.friction > 0) {
-    const double before_first = first.impulse, before_second = second.impulse;
-    first.impulse -= first.mass * rate_of(first), second.impulse -= second.mass * rate_of(second);
-    const double most = point.friction * normal.impulse,
-                 square = first.impulse * first.impulse + second.impulse * second.impulse;
-    if (square > most * most) {
-      const double part = most / std::sqrt(square);
-      first.impulse *= part, second.impulse *= part;
-    }
-    give(first, first.impulse - before_first), give(second, second.impulse - before_second);
-  }
-  a.velocity = velocity_a, a.spin = spin_a, b.velocity = velocity_b, b.spin = spin_b;
-}
-
-// Bodies that met leave each other with a part of their speed, unless that is what gravity gives in a step.
-void Heap::rebound(double least) {
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    PointBegin& begin = begins_[i];
-    if (begin.restitution == 0 || begin.approach <= least || begin.sum == 0) continue;
-    const double missing = begin.restitution * begin.approach - rate_of(point, point.normal);
-    const double impulse = std::max(0.0, point.normal.mass * missing);
-    begin.sum += impulse;
-    give(point, point.normal, impulse);
-  }
-}
-
-// The rates of its lines by spins, and what impulses add to these, with bodies that are turned as now.
-void Heap::turn_lines(Point& point, const Vec3& arm_a, const Vec3& arm_b) const {
-  const Motion &a = motions_[point.a], &b = motions_[point.b];
-  for (Line* const line : {&point.normal, &point.first, &point.second}) {
-    if (a.by_mass > 0) line->turn_a = cross(arm_a, line->way), line->spin_a = a.by_inertia * line->turn_a;
-    if (b.by_mass > 0) line->turn_b = cross(arm_b, line->way), line->spin_b = b.by_inertia * line->turn_b;
-  }
-}
-
-// The masses against which its impulses act.
-void Heap::weigh(Point& point) const {
-  const Motion &a = motions_[point.a], &b = motions_[point.b];
-  for (Line* const line : {&point.normal, &point.first, &point.second})
-    line->mass = 1 / (a.by_mass + dot(line->turn_a, line->spin_a) + b.by_mass + dot(line->turn_b, line->spin_b));
-}
-
-// A thin rod that turns has another mass at the same place: with that of the begin its impulses grew without bound.
-bool Heap::has_turned(std::uint32_t body) const {
-  constexpr double far = 0.1;  // rad
-  return body < found_.all.size() && std::abs(found_.all[body].turn.w) < 1 - far * far / 8;
-}
-
-// Gaps, and the arms of forces: both sides have theirs at one place, so that angular momentum is kept.
-void Heap::refresh_points(double h) {
-  const std::size_t world = found_.all.size();
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Point& point = points_[i];
-    PointBegin& begin = begins_[i];
-    begin.drifted += h * begin.drift;
-    Vec3 closing = begin.drifted;
-    const auto moved = [&](std::uint32_t b, const Vec3& arm) {
-      return found_.all[b].moved + found_.all[b].turned * arm - arm;
-    };
-    if (point.a < world) closing += moved(point.a, begin.gap_a);
-    if (point.b < world) closing -= moved(point.b, begin.gap_b);
-    point.gap = begin.gap + dot(point.normal.way, closing);
-    const Vec3 apart = begin.is_at_rest ? Vec3{} : 0.5 * (found_.all[point.a].moved - found_.all[point.b].moved);
-    turn_lines(point, begin.arm_a - apart, begin.arm_b + apart);
-    if (has_turned(point.a) || has_turned(point.b)) weigh(point);
+    points_.sweep(motions_, soft, h);
   }
 }
 
@@ -439,21 +248,8 @@ void Heap::store(Problem& problem, double h, HeapReport& report) {
     }
   }
   ties_.store(problem, h);
-  auto& pool = problem.pool_of<ContactConstraint>();
-  std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    const PointBegin& begin = begins_[i];
-    ContactConstraint& c = pool.items[begin.row];
-    double* const l = pool.multiplier(begin.row);
-    const Vec3 drag = (1 / h) * (begin.sum_first * point.first.way + begin.sum_second * point.second.way);
-    l[0] = -begin.sum / h;
-    l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
-    c.is_of_sweeps = true;
-    for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
-    report.external_work -= dot(begin.sum * point.normal.way + h * drag, begin.drift);
-    report.depth = std::max(report.depth, -point.gap);
-  }
+  const HeapPoints::Report points = points_.store(problem, h);
+  report.external_work += points.external_work, report.depth = points.depth;
 }
 
 HeapReport Heap::advance(Problem& problem, double h, double from, double fraction, int sub_steps) {
@@ -461,30 +257,26 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   const double part = h / sub_steps;
   const HeapSoftness pushing(0.25 / part, part), plain;
   load_bodies(problem, part);
-  load_points(problem, part, (fraction - from) / h);
+  points_.load(problem, found_, motions_, part, (fraction - from) / h);
   ties_.begin(problem, found_, part);
   load_grips(problem);
   const auto way_at = [&](int k) { return from + (fraction - from) * k / sub_steps; };
   ties_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
-    for (const Point& point : points_)
-      for (const Line* const line : {&point.normal, &point.first, &point.second}) give(point, *line, line->impulse);
+    points_.warm(motions_);
     ties_.warm(motions_);
-    sweep(part, pushing, k == 0 && has_new_points_ ? first_sweeps : sweeps);
+    sweep(part, pushing, k == 0 && points_.are_new() ? first_sweeps : sweeps);
     move(part);
     report.lifted -= part * power_of(problem.gravity);
-    refresh_points(part);
+    points_.refresh(found_, motions_, part);
     ties_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
     sweep(part, plain, sweeps);
     report.lifted += part * power_of(problem.gravity);
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      begins_[i].sum += points_[i].normal.impulse;
-      begins_[i].sum_first += points_[i].first.impulse, begins_[i].sum_second += points_[i].second.impulse;
-    }
+    points_.add_up();
     report.external_work += ties_.add_up();
   }
-  rebound(h * norm(problem.gravity));
+  points_.rebound(motions_, h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
   report.are_joints_met = ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1));

@@ -3,6 +3,7 @@
 
 #include "math/mat3.h"
 #include "solver/heap_bodies.h"
+#include "solver/heap_points.h"
 #include "solver/heap_ties.h"
 #include "solver/problem.h"
 
@@ -44,66 +45,24 @@ class Heap {
   using Body = HeapBody;
   using Motion = HeapMotion;
 
-  /// One of the three directions in which a place resists. All of a sweep is in it, but for the motions of the bodies.
-  struct Line {
-    Vec3 way;
-    Vec3 turn_a, turn_b;  ///< the rate of the way by the spins
-    Vec3 spin_a, spin_b;  ///< what an impulse of 1 N s adds to the spins
-    double drift = 0;     ///< rate by driven sides, m/s
-    double mass = 0;      ///< kg
-    double impulse = 0;   ///< in a sub-step, N s
-  };
-  /// A place where two bodies touch. Body `none` in the loading of it: the world, the last of the motions.
-  struct Point {
-    std::uint32_t a = none, b = none;
-    double friction = 0;
-    double gap = 0;  ///< m
-    Line normal, first, second;
-  };
-  /// The rest of it, which sweeps do not need.
-  struct PointBegin {
-    std::uint32_t row = 0;
-    bool is_at_rest = false;  ///< one side does not move
-    double restitution = 0;
-    double approach = 0;                            ///< at the begin, m/s
-    Vec3 arm_a, arm_b;                              ///< at the begin
-    Vec3 gap_a, gap_b;                              ///< from the centers to the places that have the gap, at the begin
-    Vec3 drift, drifted;                            ///< velocity of driven sides, m/s; their way since the begin, m
-    double gap = 0;                                 ///< at the begin, m
-    double sum = 0, sum_first = 0, sum_second = 0;  ///< impulses in the step, N s
-  };
   struct Grip {
     std::uint32_t body = none, item = 0;
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
   };
 
   void load_bodies(const Problem&, double h);
-  void load_points(Problem&, double h, double rate);
   void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
   void sweep(double h, const HeapSoftness&, int times);
-  void solve_point(Point&, double h, const HeapSoftness&);
-  void rebound(double least);
-  void refresh_points(double h);
-  void turn_lines(Point&, const Vec3& arm_a, const Vec3& arm_b) const;
-  void weigh(Point&) const;
   bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
-  bool has_turned(std::uint32_t body) const;
-  void give(const Point&, const Line&, double impulse);
-  double rate_of(const Point&, const Line&) const;
   double power_of(const Vec3& gravity) const;  ///< W
   void store(Problem&, double h, HeapReport&);
 
   HeapBodies found_;
   HeapTies ties_;
   std::vector<Motion> motions_;  // of the bodies, and of the world
-  std::vector<Point> points_;    // from above to below
-  std::vector<PointBegin> begins_;
-  std::vector<std::pair<double, std::uint32_t>> by_height_;
-  std::vector<Point> sorted_points_;
-  std::vector<PointBegin> sorted_begins_;
-  bool has_new_points_ = false;  // that carried nothing in the step before
+  HeapPoints points_;
   std::vector<Grip> grips_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };

@@ -11,11 +11,12 @@
 
 namespace iota::solver {
 
-/// All that a sweep needs of a body. Of what is driven, and of the world: zero.
+/// All that a sweep needs of a body. Of what is driven, and of the world: zero. Lanes gather it in this order, in fours.
 struct HeapMotion {
-  Vec3 velocity, spin;  ///< m/s, rad/s
-  double by_mass = 0;   ///< 1/kg
-  Mat3 by_inertia;      ///< about the center, now; along the line of a rod zero
+  Vec3 velocity;       ///< m/s
+  double by_mass = 0;  ///< 1/kg
+  Vec3 spin;           ///< rad/s
+  Mat3 by_inertia;     ///< about the center, now; along the line of a rod zero
 };
 
 /// A rigid body of a Heap: points that all have lengths between each other. Bodies may share points.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <type_traits>
 #include <utility>
 
@@ -29,12 +28,6 @@ std::size_t HeapTies::visit_rows(P& problem, Visit visit) {
     ++number;
   });
   return next;
-}
-
-HeapSoftness::HeapSoftness(double frequency, double h) {
-  constexpr double damping = 10;  // of the critical one
-  const double omega = 2 * std::numbers::pi * frequency, a1 = 2 * damping + h * omega, a2 = h * omega * a1;
-  rate = omega / a1, mass = a2 / (1 + a2), impulse = 1 / (1 + a2);
 }
 
 bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {

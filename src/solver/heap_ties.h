@@ -4,6 +4,7 @@
 #include "math/mat3.h"
 #include "solver/delassus_factor.h"
 #include "solver/heap_bodies.h"
+#include "solver/heap_softness.h"
 #include "solver/problem.h"
 
 #include <array>
@@ -12,14 +13,6 @@
 #include <vector>
 
 namespace iota::solver {
-
-/// How a row answers to what is open: by an impulse that closes it with a frequency and damping that no sub-step
-/// overshoots, or not at all.
-struct HeapSoftness {
-  double rate = 0, mass = 1, impulse = 0;
-  HeapSoftness() = default;
-  HeapSoftness(double frequency, double h);
-};
 
 /// The rows of a heap that are no contacts: joints, limits, motors, friction of joints, ropes and rods between bodies, resistance
 /// against rolling, nails, and the copies of points that bodies share. In a sweep each is solved alone, with impulses
