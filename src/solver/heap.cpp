@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -40,16 +41,34 @@ bool Heap::find_bodies(const Problem& problem) {
   ties_.for_each_pair(connect);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  find_least_cost();
   return true;
 }
 
+namespace {
+
+/// Places and lengths.
+double unknowns_of(const HeapBody& body) {
+  const double points = body.count;
+  return 3 * points + 0.5 * points * (points - 1);
+}
+
+}  // namespace
+
+// Each pair is in the front of one of its bodies, and fill only adds to them: the squares of n numbers whose sum is s are s^2/n at
+// least.
+void Heap::find_least_cost() {
+  double bodies = 0, fewest = std::numeric_limits<double>::infinity();
+  for (const Body& body : found_.all)
+    if (!body.is_driven) bodies += 1, fewest = std::min(fewest, unknowns_of(body));
+  const double fronts = bodies + static_cast<double>(pairs_.size());
+  least_cost_ = bodies > 0 ? fewest * fewest * fewest * fronts * fronts / bodies : 0;
+}
+
 // Eliminates bodies in the order of their degrees. A body costs its unknowns times the square of those of its front.
-double Heap::cost_of_factor() {
+double Heap::cost_of_factor() const {
   constexpr double most = 1e9;
-  const auto unknowns = [&](std::uint32_t body) {  // places and lengths
-    const double points = found_.all[body].count;
-    return 3 * points + 0.5 * points * (points - 1);
-  };
+  const auto unknowns = [&](std::uint32_t body) { return unknowns_of(found_.all[body]); };
   std::vector<std::vector<std::uint32_t>> neighbors(found_.all.size());
   for (const auto& [a, b] : pairs_) neighbors[a].push_back(b), neighbors[b].push_back(a);
   std::vector<std::vector<std::uint32_t>> by_degree(1);

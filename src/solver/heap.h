@@ -35,7 +35,9 @@ class Heap {
   bool find_bodies(const Problem&);
   bool has_joints() const { return !ties_.are_none(); }
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
-  double cost_of_factor();
+  double cost_of_factor() const;
+  /// At least, in no time.
+  double least_cost_of_factor() const { return least_cost_; }
   static constexpr int most_sub_steps = 8;  ///< see heap.cpp
   /// A (sub-)step of h seconds, at whose end targets have gone this fraction of their way.
   HeapReport advance(Problem&, double h, double from, double fraction, int sub_steps = most_sub_steps);
@@ -50,6 +52,7 @@ class Heap {
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
   };
 
+  void find_least_cost();
   void load_bodies(const Problem&, double h);
   void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);
@@ -64,6 +67,7 @@ class Heap {
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
   std::vector<Grip> grips_;
+  double least_cost_ = 0;  // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };
 

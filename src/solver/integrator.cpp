@@ -234,12 +234,17 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
     is_heap_ = heap_->find_bodies(problem);
     heap_cost_.reset();
   }
-  if (is_heap_ && !heap_cost_) heap_cost_ = heap_->cost_of_factor();
-  may_sweep_ = is_heap_ && (!heap_->has_joints() || fewest * *heap_cost_ > of_machine * budget);
+  may_sweep_ = false;
+  if (!is_heap_) return false;
+  cost = heap_->least_cost_of_factor();
+  if (!(fewest * cost > budget)) {
+    if (!heap_cost_) heap_cost_ = heap_->cost_of_factor();
+    cost = *heap_cost_;
+  }
+  may_sweep_ = !heap_->has_joints() || fewest * cost > of_machine * budget;
   if (!may_sweep_) return false;
   std::uint64_t& swept = problem.unsolved_steps;
   if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole
-  cost = *heap_cost_;
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = fewest * cost > settings_.contact_share * budget;
   const bool waits = swept > 0 && !is_due(swept);

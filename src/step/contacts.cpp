@@ -63,27 +63,25 @@ bool may_touch(const model::Model& model, const contact::Outlines& outlines, std
 
 }  // namespace
 
-void ContactFinder::Known::look(const model::Model& model, std::span<const std::uint32_t> bodies) {
-  items_.clear(), slots_.clear();
-  if (model.contacts.size() == 0) return;
-  const auto is_fixed = [&](std::uint32_t body) { return model.bodies[body].kind == BodyKind::static_; };
-  for (const std::uint32_t body : bodies)
-    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-      const auto& c = model.contacts[slot];
-      const bool is_turned = is_fixed(c.p) || (!is_fixed(c.q) && c.q < c.p);
-      items_.push_back({is_turned ? Pair{c.q, c.p} : Pair{c.p, c.q}, slot});
-    });
-  std::sort(items_.begin(), items_.end());
-  items_.erase(std::unique(items_.begin(), items_.end()), items_.end());
-  for (const auto& [pair, slot] : items_) slots_.push_back(slot);
-}
-
-std::span<const std::uint32_t> ContactFinder::Known::of(const Pair& pair) const {
-  const auto begin = std::lower_bound(items_.begin(), items_.end(), std::pair(pair, std::uint32_t{0}));
+std::span<const std::uint32_t> ContactFinder::Known::of(const model::Model& model, const Pair& pair) {
+  if (pair.first != body_) look(model, pair.first);
+  const auto begin = std::lower_bound(items_.begin(), items_.end(), std::pair(pair.second, std::uint32_t{0}));
   auto end = begin;
-  while (end != items_.end() && end->first == pair) ++end;
+  while (end != items_.end() && end->first == pair.second) ++end;
   return std::span(slots_).subspan(static_cast<std::size_t>(begin - items_.begin()),
                                    static_cast<std::size_t>(end - begin));
+}
+
+void ContactFinder::Known::look(const model::Model& model, std::uint32_t body) {
+  body_ = body;
+  items_.clear(), slots_.clear();
+  if (model.contacts.size() > 0)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+      const auto& c = model.contacts[slot];
+      items_.push_back({c.p == body ? c.q : c.p, slot});
+    });
+  std::sort(items_.begin(), items_.end());
+  for (const auto& [other, slot] : items_) slots_.push_back(slot);
 }
 
 double ContactFinder::Obstacle::distance(const Vec3& place) const {
@@ -313,7 +311,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, pair); });
-  known_.look(model, movers_);
+  known_.forget();
   for (const Pair& pair : pairs_) {
     if (is_sensor(model, pair)) {
       sense(model, outlines, pair);
@@ -322,7 +320,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     const Meeting meeting = meeting_of(model, outlines, pair);
     const Ahead ahead = look_ahead(model, outlines, pair, meeting);
     if (ahead.apart >= h) continue;
-    const bool is_touching = !(ahead.apart > 0) && touch(model, outlines, pair, meeting, known_.of(pair));
+    const bool is_touching = !(ahead.apart > 0) && touch(model, outlines, pair, meeting, known_.of(model, pair));
     if (!(ahead.part < h)) continue;
     if (!is_touching) ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
@@ -467,6 +465,14 @@ void ContactFinder::list_pairs_of(const model::Model& model, const contact::Outl
   for (const std::uint32_t body : bodies) is_here_[body] = 0;
 }
 
+void ContactFinder::list_contacts_of(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  contacts_.clear();
+  if (model.contacts.size() == 0) return;
+  for (const std::uint32_t body : bodies)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) { contacts_.push_back(slot); });
+  ingredient::sort_unique(contacts_);
+}
+
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,
                                                std::span<const std::uint32_t> bodies, double left, const Part& which) {
   const std::size_t most_parts = std::max<std::size_t>(2, most_in_parts / bodies.size());
@@ -481,16 +487,17 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
     }
   if (left - part < least * step_) part = left;  // the rest is round-off
   h_ = part, fall_ = part * norm(model.acting_gravity());
-  known_.look(model, bodies);
-  ingredient::Contacts::begin_part(model, known_.all(), which.is_first);
+  known_.forget();
+  list_contacts_of(model, bodies);
+  ingredient::Contacts::begin_part(model, contacts_, which.is_first);
   for (const auto& [pair, meeting, apart] : listed_) {
     if (!(apart < part)) continue;
-    const std::span<const std::uint32_t> former = known_.of(pair);
+    const std::span<const std::uint32_t> former = known_.of(model, pair);
     const bool is_calm = step_ * meeting.speed() < still * meeting.size;
     if (!which.of_sweeps || !(is_calm || which.is_first) || !ingredient::Contacts::keep(model, former))
       (void)touch(model, outlines, pair, meeting, former);
   }
-  ingredient::Contacts::end_part(model, known_.all());
+  ingredient::Contacts::end_part(model, contacts_);
   return part < left ? std::optional(part) : std::nullopt;
 }
 

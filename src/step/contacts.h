@@ -97,25 +97,31 @@ class ContactFinder {
   Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
   void list_pairs_of(const model::Model&, const contact::Outlines&, std::span<const std::uint32_t> bodies);
+  void list_contacts_of(const model::Model&, std::span<const std::uint32_t> bodies);
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
   bool is_any_extended_ = false;    ///< more than a particle
   double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s
   double h_ = 0, fall_ = 0;         ///< of the step or the rest of it, s; speed that gravity gives in this time, m/s
-  /// The contacts of some bodies by their pairs.
+  /// The contacts of pairs. Those of one body are looked at together: pairs are in order.
   class Known {
    public:
-    void look(const model::Model&, std::span<const std::uint32_t> bodies);
-    std::span<const std::uint32_t> of(const Pair&) const;
-    std::span<const std::uint32_t> all() const { return slots_; }
+    /// Before contacts other than those of the pairs that follow may have changed.
+    void forget() { body_ = none; }
+    std::span<const std::uint32_t> of(const model::Model&, const Pair&);
 
    private:
-    std::vector<std::pair<Pair, std::uint32_t>> items_;
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    void look(const model::Model&, std::uint32_t body);
+
+    std::uint32_t body_ = none;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> items_;  ///< the other body, and the contact
     std::vector<std::uint32_t> slots_;
   };
   // Scratch, kept for its capacity.
   Known known_;
+  std::vector<std::uint32_t> contacts_;  ///< of an island
   std::vector<std::uint32_t> obstacles_;
   std::vector<Obstacle> all_obstacles_;  ///< by body slot
   std::vector<Mover> all_movers_;        ///< by body slot
