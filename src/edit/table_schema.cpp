@@ -27,6 +27,7 @@ IOTA_FIELDS(model::Body, kind, rank, row_count, kind_before, first, last, count,
 IOTA_FIELDS(model::InertiaPair, body, next, p, q, inertia)
 IOTA_FIELDS(model::Solid, points, body, next, shape, half, center, principal)
 IOTA_FIELDS(model::Obstacle, position, orientation)
+IOTA_FIELDS(model::Stand, reach, places)
 IOTA_FIELDS(model::Twin, particle, next, part, mass)
 IOTA_FIELDS(model::Articulate, first, last, count, version, velocity_dirty, to_wake, slow_time, standing_steps,
             standing_gap, unsolved_steps)

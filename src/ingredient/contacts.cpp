@@ -294,12 +294,50 @@ void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Re
 
 }  // namespace
 
+namespace {
+
+/// Two bodies that touch in a step.
+class Meeting {
+ public:
+  Meeting(Model& model, std::uint32_t first, std::uint32_t second, const Contacts::Motion& motion)
+      : model_(model), first_(first), second_(second), motion_(motion) {}
+
+  bool is_eased() const { return is_on_its_own(model_, first_) && is_on_its_own(model_, second_); }
+  /// What a contact at this gap has of the materials, of the motion, and of the step before.
+  void renew(Contact& c, double gap) const {
+    c.friction = std::sqrt(one_.friction * other_.friction);
+    c.static_friction = std::sqrt(one_.largest_friction() * other_.largest_friction());
+    c.restitution = std::max(one_.restitution, other_.restitution);
+    c.drift = (c.p == second_ ? 1.0 : -1.0) * (one_.surface_velocity - other_.surface_velocity);
+    c.found_in = model_.step + 1;
+    const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
+    const double kept = norm(across);
+    c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
+    const double approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model_, c)));
+    c.approach = c.continues ? std::max(c.approach, approach) : approach;
+    if (c.depth < 0)
+      c.depth = std::max(std::min(0.0, gap), is_eased() ? c.depth * std::exp(-motion_.h / easing_time) : c.depth);
+  }
+  void resist_turning(std::span<const std::uint32_t> slots) const {
+    ingredient::resist_turning(model_, slots,
+                               {std::max(one_.rolling, other_.rolling), std::max(one_.spinning, other_.spinning)},
+                               motion_, first_);
+  }
+
+ private:
+  Model& model_;
+  std::uint32_t first_, second_;
+  const Contacts::Motion& motion_;
+  const Material &one_ = *model_.material(first_), &other_ = *model_.material(second_);
+};
+
+}  // namespace
+
 void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
                     std::span<const contact::Touch> touches, const Motion& motion) {
-  const Material &one = *model.material(first), &other = *model.material(second);
+  const Meeting meeting(model, first, second, motion);
   thread_local std::vector<std::uint32_t> taken;
   taken.clear();
-  const auto is_eased = [&] { return is_on_its_own(model, first) && is_on_its_own(model, second); };
   const auto [basis, other_basis] = motion.bases;
   Sides sides[2]{{model, first, second, basis, other_basis}, {model, second, first, other_basis, basis}};
   const bool both_move = has_points(model.bodies[first]) && has_points(model.bodies[second]);
@@ -318,7 +356,7 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (is_new && t.gap < -most && !((both_move || are_known(t, p)) && is_eased())) continue;
+    if (is_new && t.gap < -most && !((both_move || are_known(t, p)) && meeting.is_eased())) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,
@@ -329,23 +367,25 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const bool by_motion = is_new || std::exchange(c.is_off, 0);
     const bool has_changed = by_motion || !has_basis(c, model.bodies[p], model.bodies[q]);
     set_geometry(model, c, t, motion.spins[t.is_turned], motion.spins[!t.is_turned], motion.h, sides[t.is_turned]);
-    c.friction = std::sqrt(one.friction * other.friction);
-    c.static_friction = std::sqrt(one.largest_friction() * other.largest_friction());
-    c.restitution = std::max(one.restitution, other.restitution);
-    c.drift = (t.is_turned ? 1.0 : -1.0) * (one.surface_velocity - other.surface_velocity);
-    c.found_in = model.step + 1;
-    const Vec3 across = c.drag - dot(c.drag, c.normal) * c.normal;  // the plane may have turned
-    const double kept = norm(across);
-    c.drag = kept > 0 ? (norm(c.drag) / kept) * across : Vec3{};
-    const double approach = c.carries() ? 0 : std::max(0.0, -dot(c.normal, relative_velocity(model, c)));
-    c.approach = c.continues ? std::max(c.approach, approach) : approach;
-    if (c.depth < 0)
-      c.depth = std::max(std::min(0.0, t.gap), is_eased() ? c.depth * std::exp(-motion.h / easing_time) : c.depth);
+    meeting.renew(c, t.gap);
     if (has_changed) mark(model, c, by_motion);
     taken.push_back(slot);
   }
-  resist_turning(model, taken, {std::max(one.rolling, other.rolling), std::max(one.spinning, other.spinning)}, motion,
-                 first);
+  meeting.resist_turning(taken);
+}
+
+bool Contacts::renew(Model& model, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
+                     const Motion& motion) {
+  if (former.empty() ||
+      std::ranges::any_of(former, [&](std::uint32_t slot) { return model.contacts[slot].is_off != 0; }))
+    return false;
+  const Meeting meeting(model, first, second, motion);
+  for (const std::uint32_t slot : former) {
+    Contact& c = model.contacts[slot];
+    meeting.renew(c, c.depth < 0 ? gap(model, c) : 0);
+  }
+  meeting.resist_turning(former);
+  return true;
 }
 
 namespace {

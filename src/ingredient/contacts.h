@@ -94,11 +94,15 @@ class Contacts : public NoAnswers {
     double size;                          ///< of the smaller body, m
     Vec3 spins[2];                        ///< of both, rad/s
     double h;                             ///< of the step, s
-    const model::BasisWeights* bases[2];  ///< of both, where they move
+    const model::BasisWeights* bases[2];  ///< of both, where they are known
   };
   /// The contacts of two bodies for a step. Those that they had before, `former`, keep their forces.
   static void take(Model&, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
                    std::span<const contact::Touch>, const Motion&);
+  /// The same for bodies that are where they were found the last time: they touch at the same places. False, without a change,
+  /// if they have not touched.
+  static bool renew(Model&, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
+                    const Motion&);
   /// Two bodies that may meet on their way in this step are solved together from its begin.
   static void tie(Model&, std::uint32_t first, std::uint32_t second);
   /// Before and after the contacts of an island are taken for a part of a step. Those of these that are not taken have no rows

@@ -147,7 +147,7 @@ void Structure::remove_body(std::uint32_t body) {
   take_from_articulate(body);
   forget_body(body);
   more_rows.erase(body), body_damping.erase(body), radii.erase(body), obstacles.erase(body), materials.erase(body),
-      colors.erase(body);
+      colors.erase(body), stands.erase(body);
   bodies.destroy(body);
 }
 

@@ -136,6 +136,12 @@ struct Obstacle {
   Quaternion orientation;
 };
 
+/// Where a body was when its contacts were found anew: until it leaves that place they are those of the step before.
+struct Stand {
+  double reach = 0;            ///< of its outline then, m
+  std::array<Vec3, 3> places;  ///< of the first points of its basis
+};
+
 /// A particle that was absorbed when a hinge became rigid: restored, hinged, when its part leaves the body again.
 struct Twin {
   std::uint32_t particle = none;  ///< that absorbed it
@@ -184,6 +190,7 @@ class Structure {
   SideTable<Material> materials;        ///< of bodies that have one of their own ...
   Material usual_material;              ///< ... and of all others,
   std::uint8_t has_usual_material = 0;  ///< if there is one
+  SideTable<Stand> stands;              ///< of bodies near others
   Corrections corrections;              ///< of rings
   SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
   SlotTable<Solid, Id<"solid">> solids;
@@ -260,9 +267,9 @@ class Structure {
   /// Lists them anew by their flags, which are saved; the list is not.
   void list_flagged();
   void mark(std::uint32_t articulate) { mark(articulate, anything); }
-  /// A body was created or changed: viewers and outlines are told.
+  /// A body was created or changed: viewers and outlines are told, and its contacts are found anew.
   void note_body(std::uint32_t body, bool is_new = false) {
-    scene.bodies.note(body, is_new), changed_outlines.note(body, is_new);
+    scene.bodies.note(body, is_new), changed_outlines.note(body, is_new), stands.erase(body);
   }
   void mark_body(std::uint32_t body) { note_body(body), mark(bodies[body].articulate); }
   void mark_particle(std::uint32_t particle) { mark_body(particles[particle].body); }
@@ -536,7 +543,7 @@ void Structure::archive(Archive& ar) {
   table("radii", radii, bodies.slot_count()), value("usual_radius", usual_radius);
   table("colors", colors, bodies.slot_count());
   table("materials", materials, bodies.slot_count()), value("usual_material", usual_material);
-  value("has_usual_material", has_usual_material);
+  value("has_usual_material", has_usual_material), table("stands", stands, bodies.slot_count());
   table("corrections", corrections, rings.slot_count());
   value("structure_version", structure_version), value("spark_changes", spark_changes);
   table("particle_survivors", particle_survivors_), table("body_survivors", body_survivors_);

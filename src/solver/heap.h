@@ -67,7 +67,7 @@ class Heap {
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
   std::vector<Grip> grips_;
-  double least_cost_ = 0;  // of a factor
+  double least_cost_ = 0;                                       // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };
 

@@ -30,6 +30,8 @@ constexpr double near = 0.25;    ///< the way and the swing in a part in which b
 constexpr std::size_t most_in_parts = 2400;  ///< bodies in all parts of a step: larger islands take fewer
 constexpr double near_in_sweeps = 0.1, still = 0.02;
 constexpr double least = 1e-3;  ///< of the rest of a step: no part is shorter
+/// A body whose points have not gone further keeps its contacts. What lies in a heap goes about so far in a step.
+constexpr double standing = 1e-5;
 
 /// A body lies on the outermost ones of many points: the lowest one, and those that are farthest from the ones before.
 void keep_the_outermost(std::vector<contact::Touch>& touches, double size) {
@@ -320,7 +322,11 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     const Meeting meeting = meeting_of(model, outlines, pair);
     const Ahead ahead = look_ahead(model, outlines, pair, meeting);
     if (ahead.apart >= h) continue;
-    const bool is_touching = !(ahead.apart > 0) && touch(model, outlines, pair, meeting, known_.of(model, pair));
+    const auto touches = [&] {
+      const std::span<const std::uint32_t> former = known_.of(model, pair);
+      return renew(model, outlines, pair, meeting, former) || touch(model, outlines, pair, meeting, former);
+    };
+    const bool is_touching = !(ahead.apart > 0) && touches();
     if (!(ahead.part < h)) continue;
     if (!is_touching) ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
@@ -373,32 +379,64 @@ bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeti
   return is(meeting.first) || is(meeting.second);
 }
 
-bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting,
-                          std::span<const std::uint32_t> former) {
-  const auto [first, second] = pair;
-  const auto& [mover, other, size] = meeting;
+// What is edited has no stand any more.
+bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outlines, std::uint32_t slot) {
+  if (all_moved_.size() <= slot) all_moved_.resize(model.bodies.slot_count());
+  Moved& moved = all_moved_[slot];
+  if (std::exchange(moved.look, look_) == look_) return moved.is;
+  const model::Body& body = model.bodies[slot];
+  const model::Stand* const before = model.stands.find(slot);
+  model::Stand stand{.reach = outlines.reach(slot)};
+  const double most = standing * stand.reach;
+  moved.is = !before || before->reach != stand.reach;
+  const std::size_t count = body.kind == BodyKind::static_ ? 0 : std::min<std::size_t>(body.rank, stand.places.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    stand.places[k] = model.position(body.basis[k]);
+    moved.is = moved.is || !(norm(stand.places[k] - before->places[k]) <= most);
+  }
+  if (moved.is) model.stands.make(slot) = stand;
+  return moved.is;
+}
+
+// Nothing comes into reach of two bodies that stand: `within` is more than they go.
+bool ContactFinder::renew(model::Model& model, const contact::Outlines& outlines, const Pair& pair,
+                          const Meeting& meeting, std::span<const std::uint32_t> former) {
+  const bool has_first_moved = has_moved(model, outlines, pair.first),
+             has_second_moved = has_moved(model, outlines, pair.second);
+  if (has_first_moved || has_second_moved || !(h_ * meeting.speed() <= standing * meeting.size)) return false;
+  return ingredient::Contacts::renew(model, pair.first, pair.second, former, motion_in(model, meeting));
+}
+
+ingredient::Contacts::Motion ContactFinder::motion_in(const model::Model& model, const Meeting& meeting) const {
   // Only a body with three dimensions carries a spin.
   const auto spin = [&](Mover* of) {
     if (!of || model.bodies[of->body].rank != 4) return Vec3{};
     if (!of->spin) of->spin = model::body_angular_velocity(model, of->body);
     return *of->spin;
   };
+  return {meeting.size, {spin(meeting.first), spin(meeting.second)}, h_, {}};
+}
+
+bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting,
+                          std::span<const std::uint32_t> former) {
+  const auto [first, second] = pair;
+  const auto& [mover, other, size] = meeting;
   const auto basis = [&](Mover* of) -> const model::BasisWeights* {
     if (!of) return nullptr;
     if (!of->basis) of->basis.emplace(model, of->body);
     return &*of->basis;
   };
-  const Vec3 spins[2] = {spin(mover), spin(other)};
+  ingredient::Contacts::Motion motion = motion_in(model, meeting);
+  motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
   found_.clear();
   const contact::Outline& outline = placed(outlines, *mover);
   if (other) (void)placed(outlines, *other);
   const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
-  touches_.find(outline, (0.5 * h_) * spins[0], outlines.described(second), (0.5 * h_) * spins[1],
+  touches_.find(outline, (0.5 * h_) * motion.spins[0], outlines.described(second), (0.5 * h_) * motion.spins[1],
                 within(*mover, other), found_, way);
   keep_the_outermost(found_, size);
   if (found_.empty()) return false;
-  ingredient::Contacts::take(model, first, second, former, found_,
-                             {size, {spins[0], spins[1]}, h_, {basis(mover), basis(other)}});
+  ingredient::Contacts::take(model, first, second, former, found_, motion);
   return true;
 }
 
@@ -496,6 +534,9 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
     const bool is_calm = step_ * meeting.speed() < still * meeting.size;
     if (!which.of_sweeps || !(is_calm || which.is_first) || !ingredient::Contacts::keep(model, former))
       (void)touch(model, outlines, pair, meeting, former);
+    // They are found within the step, not where it begins.
+    model.stands.erase(pair.first);
+    if (meeting.second) model.stands.erase(pair.second);
   }
   ingredient::Contacts::end_part(model, contacts_);
   return part < left ? std::optional(part) : std::nullopt;

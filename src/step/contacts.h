@@ -84,6 +84,11 @@ class ContactFinder {
   Meeting meeting_of(const model::Model&, const contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.
   bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
+  /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
+  bool renew(model::Model&, const contact::Outlines&, const Pair&, const Meeting&,
+             std::span<const std::uint32_t> former);
+  bool has_moved(model::Model&, const contact::Outlines&, std::uint32_t body);
+  ingredient::Contacts::Motion motion_in(const model::Model&, const Meeting&) const;
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;
   /// The box that a body stays in for its stride.
@@ -125,6 +130,11 @@ class ContactFinder {
   std::vector<std::uint32_t> obstacles_;
   std::vector<Obstacle> all_obstacles_;  ///< by body slot
   std::vector<Mover> all_movers_;        ///< by body slot
+  struct Moved {
+    std::uint64_t look = 0;  ///< in which it was measured
+    bool is = true;
+  };
+  std::vector<Moved> all_moved_;  ///< by body slot
   std::uint64_t look_ = 0;
   std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
