@@ -37,6 +37,12 @@ struct Mat3 {
     return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
             m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
   }
+  Mat3 operator*(const Mat3& b) const {
+    Mat3 c;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) c.m[i][j] = m[i][0] * b.m[0][j] + m[i][1] * b.m[1][j] + m[i][2] * b.m[2][j];
+    return c;
+  }
 };
 
 /// Moment of inertia about the origin of a point mass at r: m (|r|^2 I - r r').

@@ -10,13 +10,6 @@ namespace iota::solver {
 
 namespace {
 
-Mat3 product(const Mat3& a, const Mat3& b) {
-  Mat3 c;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
-  return c;
-}
-
 /// c -= a b'
 void subtract_product(Mat3& c, const Mat3& a, const Mat3& b) {
   for (int i = 0; i < 3; ++i)
@@ -121,7 +114,7 @@ void DelassusFactor::factorize() {
     const std::uint32_t first = first_[k], last = first_[k + 1];
     column_.assign(below_.begin() + first, below_.begin() + last);
     for (std::uint32_t p = first; p < last; ++p) {
-      below_[p] = product(below_[p], pivots_[k]);
+      below_[p] = below_[p] * pivots_[k];
       subtract_product(pivots_[rows_[p]], below_[p], column_[p - first]);
     }
     for (std::uint32_t p = first; p < last; ++p)

@@ -18,16 +18,12 @@ namespace {
 constexpr int sweeps = 2;
 constexpr int first_sweeps = 8;  // where contacts begin
 
-Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
-
 }  // namespace
 
 bool Heap::find_bodies(const Problem& problem) {
-  bool is_heap = problem.has_used<ContactConstraint>();
-  problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
-    is_heap = is_heap && (std::is_same_v<F, GripForce> || pool.items.empty());
-  });
-  if (!is_heap || !found_.find(problem) || !ties_.find(problem, found_)) return false;
+  if (!problem.has_used<ContactConstraint>() || !found_.find(problem) || !ties_.find(problem, found_)) return false;
+  forces_.find(problem, found_);
+  if (forces_.count_between() > problem.items_of<ContactConstraint>().size()) return false;
   pairs_.clear();
   const auto connect = [&](std::uint32_t a, std::uint32_t b) {
     if (a != b && a != none && b != none && !found_.all[a].is_driven && !found_.all[b].is_driven)
@@ -38,7 +34,7 @@ bool Heap::find_bodies(const Problem& problem) {
     connect(found_.with(nodes.first(c.first_side > 0 ? c.first_side : c.count)),
             found_.with(nodes.subspan(c.first_side)));
   }
-  ties_.for_each_pair(connect);
+  ties_.for_each_pair(connect), forces_.for_each_pair(connect);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   find_least_cost();
@@ -183,21 +179,6 @@ void Heap::load_bodies(const Problem& problem, double h) {
     found_.all[found_.with(std::span(t.nodes).first(t.count))].turning += h * t.torque;
 }
 
-void Heap::load_grips(const Problem& problem) {
-  grips_.clear();
-  const std::span forces = problem.items_of<GripForce>();
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    const GripForce& force = forces[i];
-    Grip grip{.body = found_.with(std::span(force.arm.nodes).first(force.arm.count)),
-              .item = static_cast<std::uint32_t>(i)};
-    if (!is_free(grip.body)) continue;
-    grip.error = force.arm.value(problem.position.data());
-    grip.arm = grip.error + force.arm.origin - found_.all[grip.body].center;
-    grips_.push_back(grip);
-  }
-}
-
-// Held forces, and grips by the end-point rule.
 void Heap::push(double h, const Problem& problem, HeapReport& report) {
   for (std::size_t i = 0; i < found_.all.size(); ++i) {
     const Body& body = found_.all[i];
@@ -208,24 +189,6 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
     report.external_work += dot(gained, motion.velocity) / motion.by_mass + dot(body.turning, motion.spin);
     motion.velocity += 0.5 * body.gain, motion.spin += 0.5 * turned;
   }
-  const std::span forces = problem.items_of<GripForce>();
-  for (const Grip& grip : grips_) {
-    const Body& body = found_.all[grip.body];
-    Motion& motion = motions_[grip.body];
-    const GripForce& force = forces[grip.item];
-    const Vec3 arm = rotate(body.turn, grip.arm), error = grip.error + body.moved + arm - grip.arm;
-    const Vec3 velocity = motion.velocity + cross(motion.spin, arm);
-    const double resistance = h * (force.damping + h * force.stiffness);
-    Mat3 matrix;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 unit = unit_vector(k);
-      matrix.set_column(k,
-                        unit + resistance * (motion.by_mass * unit + cross(motion.by_inertia * cross(arm, unit), arm)));
-    }
-    const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
-    motion.velocity += motion.by_mass * impulse, motion.spin += motion.by_inertia * cross(arm, impulse);
-    report.external_work += 0.5 * dot(impulse, velocity + motion.velocity + cross(motion.spin, arm));
-  }
 }
 
 double Heap::power_of(const Vec3& gravity) const {
@@ -235,9 +198,10 @@ double Heap::power_of(const Vec3& gravity) const {
   return power;
 }
 
-void Heap::sweep(double h, const HeapSoftness& soft, int times) {
+void Heap::sweep(const Problem& problem, double h, const HeapSoftness& soft, int times) {
   for (int k = 0; k < times; ++k) {
     ties_.sweep(motions_, soft, h);
+    forces_.sweep(problem, motions_, h);
     points_.sweep(motions_, soft, h);
   }
 }
@@ -278,22 +242,25 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   load_bodies(problem, part);
   points_.load(problem, found_, motions_, part, (fraction - from) / h);
   ties_.begin(problem, found_, part);
-  load_grips(problem);
+  forces_.begin();
   const auto way_at = [&](int k) { return from + (fraction - from) * k / sub_steps; };
   ties_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
+  forces_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     points_.warm(motions_);
-    ties_.warm(motions_);
-    sweep(part, pushing, k == 0 && points_.are_new() ? first_sweeps : sweeps);
+    ties_.warm(motions_), forces_.warm(motions_);
+    sweep(problem, part, pushing, k == 0 && points_.are_new() ? first_sweeps : sweeps);
+    report.external_work += forces_.work(problem, motions_);
     move(part);
     report.lifted -= part * power_of(problem.gravity);
     points_.refresh(found_, motions_, part);
     ties_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
-    sweep(part, plain, sweeps);
+    sweep(problem, part, plain, sweeps);
     report.lifted += part * power_of(problem.gravity);
     points_.add_up();
     report.external_work += ties_.add_up();
+    forces_.refresh(problem, found_, motions_, part, way_at(k + 1), way_at(k + 2));
   }
   points_.rebound(motions_, h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())

@@ -3,6 +3,7 @@
 
 #include "math/mat3.h"
 #include "solver/heap_bodies.h"
+#include "solver/heap_forces.h"
 #include "solver/heap_points.h"
 #include "solver/heap_ties.h"
 #include "solver/problem.h"
@@ -31,9 +32,11 @@ struct HeapReport {
 /// linear in the number of contacts.
 class Heap {
  public:
-  /// After a change of structure: whether contacts, joints and other rows of two bodies connect rigid bodies, and no forces.
+  /// After a change of structure: whether contacts, joints and other rows of two bodies connect rigid bodies, and fewer
+  /// forces: nets and soft bodies stretch by sweeps.
   bool find_bodies(const Problem&);
   bool has_joints() const { return !ties_.are_none(); }
+  bool has_forces() const { return !forces_.are_none(); }
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor() const;
   /// At least, in no time.
@@ -47,26 +50,19 @@ class Heap {
   using Body = HeapBody;
   using Motion = HeapMotion;
 
-  struct Grip {
-    std::uint32_t body = none, item = 0;
-    Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
-  };
-
   void find_least_cost();
   void load_bodies(const Problem&, double h);
-  void load_grips(const Problem&);
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
-  void sweep(double h, const HeapSoftness&, int times);
-  bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
+  void sweep(const Problem&, double h, const HeapSoftness&, int times);
   double power_of(const Vec3& gravity) const;  ///< W
   void store(Problem&, double h, HeapReport&);
 
   HeapBodies found_;
   HeapTies ties_;
+  HeapForces forces_;
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
-  std::vector<Grip> grips_;
   double least_cost_ = 0;                                       // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };

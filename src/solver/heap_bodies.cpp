@@ -161,6 +161,23 @@ bool HeapBodies::share_masses(const Problem& problem) {
   return std::all_of(masses.begin(), masses.end(), [](double mass) { return mass > 0; });
 }
 
+void HeapBodies::find_places(const Problem& problem, double from, double to, std::vector<Vec3>& now,
+                             std::vector<Vec3>& next) const {
+  now = problem.position;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const HeapBody& body = all[i];
+    if (body.is_driven) continue;
+    for (std::uint32_t k = 0; k < body.count; ++k)
+      if (owner[body.nodes[k]] == i) now[body.nodes[k]] = body.center_now() + body.arm_now(k);
+  }
+  next = now;
+  for (const AffineConstraint& c : problem.items_of<AffineConstraint>()) {
+    if (c.count != 1 || !all[owner[c.nodes[0]]].is_driven) continue;
+    now[c.nodes[0]] = c.target_start + from * (c.target - c.target_start);
+    next[c.nodes[0]] = c.target_start + to * (c.target - c.target_start);
+  }
+}
+
 std::uint32_t HeapBodies::with(std::span<const std::uint32_t> nodes) const {
   const std::uint32_t first = owner[nodes[0]];
   if (copies.empty() || bodies_at_[nodes[0]].size() < 2) return first;

@@ -94,19 +94,7 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
 void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::span<const HeapMotion> motions, double h,
                        double from, double to) {
   if (ties_.empty()) return;
-  x_ = problem.position;
-  for (std::size_t i = 0; i < bodies.all.size(); ++i) {
-    const HeapBody& body = bodies.all[i];
-    if (body.is_driven) continue;
-    for (std::uint32_t k = 0; k < body.count; ++k)
-      if (bodies.owner[body.nodes[k]] == i) x_[body.nodes[k]] = body.center_now() + body.arm_now(k);
-  }
-  x_next_ = x_;
-  for (const AffineConstraint& c : problem.items_of<AffineConstraint>()) {
-    if (c.count != 1 || !bodies.all[bodies.owner[c.nodes[0]]].is_driven) continue;
-    x_[c.nodes[0]] = c.target_start + from * (c.target - c.target_start);
-    x_next_[c.nodes[0]] = c.target_start + to * (c.target - c.target_start);
-  }
+  bodies.find_places(problem, from, to, x_, x_next_);
   std::size_t next = visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
     const C& c = pool.items[tie.item];
     pool.value(tie.item, x_.data(), from, tie.value.data());

@@ -272,10 +272,10 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
       std::clamp(static_cast<int>(std::lround(Heap::most_sub_steps * share)), 1, Heap::most_sub_steps);
   const bool is_free = problem.is_isolated() && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   const std::optional<RigidMotion> free =
-      heap_->has_joints() && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
+      (heap_->has_joints() || heap_->has_forces()) && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
   const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
   track(problem, part.to);
-  // A joint that is open within the step has its forces at two places, and is closed at its end.
+  // A joint that is open within the step has its forces at two places, and is closed at its end. A spring has them where it was.
   if (free) keep_momenta(problem, {*free}, part.h);
   report.converged = report.converged && swept.are_joints_met;
   energy_.measure_change(problem, part.to, swept.external_work);

@@ -54,17 +54,9 @@ shape::Level smooth_at(const shape::Surface& surface, const Vec3& p) {
   return level;
 }
 
-Mat3 product(const Mat3& a, const Mat3& b) {
-  Mat3 c;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) c.m[i][j] += a.m[i][k] * b.m[k][j];
-  return c;
-}
-
 /// Derivative of the unit vector along v, where v changes by `change` of its argument.
 Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
-  return product(Mat3::diagonal(1 / size) + (-1 / size) * Mat3::outer(unit, unit), change);
+  return (Mat3::diagonal(1 / size) + (-1 / size) * Mat3::outer(unit, unit)) * change;
 }
 
 }  // namespace
@@ -103,9 +95,9 @@ SurfacePairConstraint::Nearest SurfacePairConstraint::find(const Vec3* e, const 
     nearest = {p, q, n, gap + surface_a->skin() + surface_b->skin(), place, b.gradient};
 
     const Mat3 dn = unit_derivative(n, a_size, a.hessian);
-    const Mat3 dm = unit_derivative(m, b_size, product(relative.turn, product(b.hessian, relative.turn.transposed())));
+    const Mat3 dm = unit_derivative(m, b_size, relative.turn * (b.hessian * relative.turn.transposed()));
     const Mat3 dq = Mat3::diagonal(1) + gap * dn;
-    const Mat3 dmp = product(dm, dq);
+    const Mat3 dmp = dm * dq;
     const Vec3 tangents[2] = {any_perpendicular(n), cross(n, any_perpendicular(n))};
     double system[4][5] = {{a.gradient.x, a.gradient.y, a.gradient.z, 0, -a.value}};
     const Vec3 bp = dq.transposed() * b_gradient;

@@ -15,7 +15,8 @@ struct VelocityForce {
   laws::VelocityPart part;
   Vec3 start;  ///< v0, m/s
 
-  void begin(const Vec3* velocities, double h) { start = arm.rate(velocities), part.begin(h); }
+  void begin(const Vec3* velocities, double h) { begin(arm.rate(velocities), h); }
+  void begin(const Vec3& rate, double h) { start = rate, part.begin(h); }
 
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
