@@ -44,13 +44,10 @@ Mat3 inverse_of(Mat3 a, const Vec3& least) {
 
 }  // namespace
 
-bool DelassusFactor::analyze(std::span<const Ends> ties, std::uint32_t body_count) {
+bool DelassusFactor::analyze(std::uint32_t n, std::span<const Incidence> incidences, std::uint32_t body_count) {
   constexpr std::size_t most_ties = 64;  // of a body
   std::vector<std::vector<std::uint32_t>> ties_of(body_count);
-  const auto n = static_cast<std::uint32_t>(ties.size());
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (const std::uint32_t body : ties[i])
-      if (body != none) ties_of[body].push_back(i);
+  for (const Incidence& incidence : incidences) ties_of[incidence.body].push_back(incidence.tie);
   std::vector<std::array<std::uint32_t, 2>> pairs;
   for (const auto& list : ties_of) {
     if (list.size() > most_ties) return false;

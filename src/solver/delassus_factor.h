@@ -15,11 +15,12 @@ namespace iota::solver {
 /// depend on earlier ones get no impulse.
 class DelassusFactor {
  public:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-  using Ends = std::array<std::uint32_t, 2>;  ///< the bodies of a tie; `none` moves nothing
-
+  /// A tie acts on a body.
+  struct Incidence {
+    std::uint32_t tie, body;
+  };
   /// After a change of structure. False if many ties share a body, so that the factor would be large.
-  bool analyze(std::span<const Ends> ties, std::uint32_t body_count);
+  bool analyze(std::uint32_t tie_count, std::span<const Incidence>, std::uint32_t body_count);
 
   /// couple(i, j): the matrix of the rows of tie i by those of tie j. Rows and columns that a tie does not have are zero.
   template <class Couple>

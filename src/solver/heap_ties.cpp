@@ -31,7 +31,7 @@ std::size_t HeapTies::visit_rows(P& problem, Visit visit) {
 }
 
 bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
-  ties_.clear();
+  ties_.clear(), sides_.clear();
   bool can_sweep = true;
   std::uint8_t number = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -42,34 +42,38 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
         if (!has_laws(pool, i)) continue;  // within a body
       Tie tie{.item = static_cast<std::uint32_t>(i), .pool = number, .rows = C::rows};
       tie.are_equations = !has_laws(pool, i);
+      tie.first_side = static_cast<std::uint32_t>(sides_.size());
       for (const bool are_shared : {false, true})  // a shared point may belong to a body that is there already
         for (const std::uint32_t node : pool.nodes_of(c)) {
           const std::uint32_t body = bodies.owner[node];
           if (bodies.all[body].is_driven || bodies.is_shared(node) != are_shared) continue;
-          if ((tie.a != none && bodies.have(tie.a, node)) || (tie.b != none && bodies.have(tie.b, node))) continue;
-          if (tie.a == none)
-            tie.a = body;
-          else if (tie.b == none)
-            tie.b = body;
-          else
-            can_sweep = false;
+          if (std::any_of(sides_.begin() + tie.first_side, sides_.end(),
+                          [&](const Side& side) { return bodies.have(side.body, node); }))
+            continue;
+          sides_.push_back({.body = body});
         }
+      tie.side_count = static_cast<std::uint32_t>(sides_.size()) - tie.first_side;
       if constexpr (ConeConstraint<C>) can_sweep = false;
-      if (tie.a == none) continue;
-      ties_.push_back(tie);
+      if (tie.side_count > 0) ties_.push_back(tie);
     }
     ++number;
   });
   if (!can_sweep) return false;
   for (std::uint32_t k = 0; k < bodies.copies.size(); ++k) {
     const HeapBodies::Copy& copy = bodies.copies[k];
-    ties_.push_back({.a = bodies.owner[copy.node], .b = copy.body, .item = k, .rows = 3});
+    ties_.push_back({.first_side = static_cast<std::uint32_t>(sides_.size()), .side_count = 2, .item = k, .rows = 3});
+    sides_.push_back({.body = bodies.owner[copy.node]}), sides_.push_back({.body = copy.body});
   }
   equations_.clear();
-  std::vector<DelassusFactor::Ends> ends;
-  for (std::uint32_t k = 0; k < ties_.size(); ++k)
-    if (ties_[k].are_equations) equations_.push_back(k), ends.push_back({ties_[k].a, ties_[k].b});
-  return factor_.analyze(ends, static_cast<std::uint32_t>(bodies.all.size()));
+  std::vector<DelassusFactor::Incidence> incidences;
+  for (std::uint32_t k = 0; k < ties_.size(); ++k) {
+    if (!ties_[k].are_equations) continue;
+    for (const Side& side : sides_of(ties_[k]))
+      incidences.push_back({static_cast<std::uint32_t>(equations_.size()), side.body});
+    equations_.push_back(k);
+  }
+  return factor_.analyze(static_cast<std::uint32_t>(equations_.size()), incidences,
+                         static_cast<std::uint32_t>(bodies.all.size()));
 }
 
 void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h) {
@@ -87,7 +91,7 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
   for (Tie& tie : ties_) {
     tie.sum = {};
     if (tie.pool != of_copies) continue;
-    tie.impulse = {}, tie.size = norm(bodies.all[tie.b].arms[bodies.copies[tie.item].place]);
+    tie.impulse = {}, tie.size = norm(bodies.all[sides_of(tie)[1].body].arms[bodies.copies[tie.item].place]);
   }
 }
 
@@ -104,33 +108,32 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
       pool.value(tie.item, x_next_.data(), to, later.data());
       for (int r = 0; r < C::rows; ++r) tie.drift[r] = (later[r] - tie.value[r]) / h;
     }
-    tie.way_a = tie.turn_a = tie.way_b = tie.turn_b = {};
+    const std::span<Side> sides = sides_of(tie);
+    for (Side& side : sides) side.way = side.turn = {};
     const Gradients<C> gradients(c, x_.data(), from);
     for (int i = 0; i < c.node_count(); ++i) {
       const std::uint32_t node = c.nodes[i];
-      const bool is_of_a = tie.a != none && bodies.have(tie.a, node);
-      if (!is_of_a && !(tie.b != none && bodies.have(tie.b, node))) continue;
+      const auto side = std::ranges::find_if(sides, [&](const Side& s) { return bodies.have(s.body, node); });
+      if (side == sides.end()) continue;
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
-      const Vec3 arm = x_[node] - bodies.all[is_of_a ? tie.a : tie.b].center_now();
-      for (int r = 0; r < C::rows; ++r) {
-        (is_of_a ? tie.way_a : tie.way_b)[r] += rows[r];
-        (is_of_a ? tie.turn_a : tie.turn_b)[r] += cross(arm, rows[r]);
-      }
+      const Vec3 arm = x_[node] - bodies.all[side->body].center_now();
+      for (int r = 0; r < C::rows; ++r) side->way[r] += rows[r], side->turn[r] += cross(arm, rows[r]);
     }
     weigh(tie, motions);
   });
   for (; next < ties_.size(); ++next) {
     Tie& tie = ties_[next];
     const HeapBodies::Copy& copy = bodies.copies[tie.item];
-    const HeapBody &a = bodies.all[tie.a], &b = bodies.all[tie.b];
+    Side &one = sides_of(tie)[0], &other = sides_of(tie)[1];
+    const HeapBody &a = bodies.all[one.body], &b = bodies.all[other.body];
     const Vec3 place = b.center_now() + b.arm_now(copy.place), off = x_[copy.node] - place;
     const Vec3 arm_a = x_[copy.node] - a.center_now(), arm_b = place - b.center_now();
     for (int r = 0; r < 3; ++r) {
       const Vec3 unit{r == 0 ? 1.0 : 0, r == 1 ? 1.0 : 0, r == 2 ? 1.0 : 0};
       tie.value[r] = dot(off, unit);
-      tie.way_a[r] = unit, tie.turn_a[r] = cross(arm_a, unit);
-      tie.way_b[r] = -1.0 * unit, tie.turn_b[r] = -1.0 * cross(arm_b, unit);
+      one.way[r] = unit, one.turn[r] = cross(arm_a, unit);
+      other.way[r] = -1.0 * unit, other.turn[r] = -1.0 * cross(arm_b, unit);
     }
     weigh(tie, motions);
   }
@@ -141,12 +144,10 @@ void HeapTies::weigh(Tie& tie, std::span<const HeapMotion> motions) const {
   for (int r = 0; r < tie.rows; ++r)
     for (int s = 0; s <= r; ++s) {
       double sum = 0;
-      const auto add = [&](std::uint32_t body, const auto& way, const auto& turn) {
-        if (body == none) return;
-        const HeapMotion& m = motions[body];
-        sum += m.by_mass * dot(way[r], way[s]) + dot(turn[r], m.by_inertia * turn[s]);
-      };
-      add(tie.a, tie.way_a, tie.turn_a), add(tie.b, tie.way_b, tie.turn_b);
+      for (const Side& side : sides_of(tie)) {
+        const HeapMotion& m = motions[side.body];
+        sum += m.by_mass * dot(side.way[r], side.way[s]) + dot(side.turn[r], m.by_inertia * side.turn[s]);
+      }
       matrix.m[r][s] = matrix.m[s][r] = sum;
     }
   for (int r = 0; r < tie.rows; ++r) tie.by_mass[r] = matrix.m[r][r];
@@ -160,21 +161,20 @@ void HeapTies::weigh(Tie& tie, std::span<const HeapMotion> motions) const {
   }
 }
 
-double HeapTies::rate_of(const Tie& tie, int r, std::span<const HeapMotion> motions) {
+double HeapTies::rate_of(const Tie& tie, int r, std::span<const HeapMotion> motions) const {
   double rate = tie.drift[r];
-  if (tie.a != none) rate += dot(tie.way_a[r], motions[tie.a].velocity) + dot(tie.turn_a[r], motions[tie.a].spin);
-  if (tie.b != none) rate += dot(tie.way_b[r], motions[tie.b].velocity) + dot(tie.turn_b[r], motions[tie.b].spin);
+  for (const Side& side : sides_of(tie))
+    rate += dot(side.way[r], motions[side.body].velocity) + dot(side.turn[r], motions[side.body].spin);
   return rate;
 }
 
 void HeapTies::give(Tie& tie, int r, double impulse, std::span<HeapMotion> motions) {
   const double before = tie.drives ? rate_of(tie, r, motions) : 0;
-  const auto to = [&](std::uint32_t body, const Vec3& way, const Vec3& turn) {
-    if (body == none) return;
-    motions[body].velocity += (impulse * motions[body].by_mass) * way;
-    motions[body].spin += motions[body].by_inertia * (impulse * turn);
-  };
-  to(tie.a, tie.way_a[r], tie.turn_a[r]), to(tie.b, tie.way_b[r], tie.turn_b[r]);
+  for (const Side& side : sides_of(tie)) {
+    HeapMotion& motion = motions[side.body];
+    motion.velocity += (impulse * motion.by_mass) * side.way[r];
+    motion.spin += motion.by_inertia * (impulse * side.turn[r]);
+  }
   if (tie.drives) work_ += impulse * (0.5 * (before + rate_of(tie, r, motions)) - tie.drift[r]);
 }
 
@@ -243,19 +243,15 @@ void HeapTies::factorize(std::span<const HeapMotion> motions) {
   factor_.factorize([&](std::uint32_t i, std::uint32_t j) {
     const Tie &one = ties_[equations_[i]], &two = ties_[equations_[j]];
     Mat3 block;
-    const auto add = [&](std::uint32_t body, const auto& way_one, const auto& turn_one, std::uint32_t other,
-                         const auto& way_two, const auto& turn_two) {
-      if (body == none || body != other) return;
-      const HeapMotion& m = motions[body];
-      for (int s = 0; s < two.rows; ++s) {
-        const Vec3 way = m.by_mass * way_two[s], turn = m.by_inertia * turn_two[s];
-        for (int r = 0; r < one.rows; ++r) block.m[r][s] += dot(way_one[r], way) + dot(turn_one[r], turn);
+    for (const Side& side : sides_of(one))
+      for (const Side& other : sides_of(two)) {
+        if (side.body != other.body) continue;
+        const HeapMotion& m = motions[side.body];
+        for (int s = 0; s < two.rows; ++s) {
+          const Vec3 way = m.by_mass * other.way[s], turn = m.by_inertia * other.turn[s];
+          for (int r = 0; r < one.rows; ++r) block.m[r][s] += dot(side.way[r], way) + dot(side.turn[r], turn);
+        }
       }
-    };
-    add(one.a, one.way_a, one.turn_a, two.a, two.way_a, two.turn_a);
-    add(one.a, one.way_a, one.turn_a, two.b, two.way_b, two.turn_b);
-    add(one.b, one.way_b, one.turn_b, two.a, two.way_a, two.turn_a);
-    add(one.b, one.way_b, one.turn_b, two.b, two.way_b, two.turn_b);
     return block;
   });
 }
@@ -272,12 +268,10 @@ void HeapTies::find_changes(std::span<const HeapMotion> motions, Rows rows) {
   for (std::size_t i = 0; i < equations_.size(); ++i) {
     const Tie& tie = ties_[equations_[i]];
     const double impulses[3] = {answers_[i].x, answers_[i].y, answers_[i].z};
-    for (int r = 0; r < tie.rows; ++r) {
-      if (tie.a != none)
-        changes_[tie.a].velocity -= impulses[r] * tie.way_a[r], changes_[tie.a].spin -= impulses[r] * tie.turn_a[r];
-      if (tie.b != none)
-        changes_[tie.b].velocity -= impulses[r] * tie.way_b[r], changes_[tie.b].spin -= impulses[r] * tie.turn_b[r];
-    }
+    for (const Side& side : sides_of(tie))
+      for (int r = 0; r < tie.rows; ++r)
+        changes_[side.body].velocity -= impulses[r] * side.way[r],
+            changes_[side.body].spin -= impulses[r] * side.turn[r];
   }
   for (std::size_t b = 0; b < motions.size(); ++b)
     changes_[b].velocity = motions[b].by_mass * changes_[b].velocity,

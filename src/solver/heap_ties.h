@@ -20,14 +20,16 @@ namespace iota::solver {
 /// these rows alone, so that joints are exact.
 class HeapTies {
  public:
-  /// After a change of structure. False if a row acts on more than two bodies that are free, or is a cone but no contact,
-  /// or if many equations act on one body.
+  /// After a change of structure. False if a row is a cone but no contact, or if many equations act on one body.
   bool find(const Problem&, const HeapBodies&);
   bool are_none() const { return ties_.empty(); }
-  /// visit(a, b): each pair of bodies that a tie connects; one of them may be HeapBodies::none.
+  /// visit(a, b): each pair of free bodies that a tie connects.
   template <class Visit>
   void for_each_pair(Visit visit) const {
-    for (const Tie& tie : ties_) visit(tie.a, tie.b);
+    for (const Tie& tie : ties_)
+      for (const Side& one : sides_of(tie))
+        for (const Side& other : sides_of(tie))
+          if (one.body < other.body) visit(one.body, other.body);
   }
 
   /// At the begin of a step in sub-steps of h seconds, with the impulses of the step before. All their places are those of the problem.
@@ -48,19 +50,23 @@ class HeapTies {
  private:
   static constexpr std::uint32_t none = HeapBodies::none;
   static constexpr std::uint8_t of_copies = 0xff;
+  /// A free body of a tie: the rate of each row by its velocity and spin, in a sub-step.
+  struct Side {
+    std::uint32_t body = none;
+    std::array<Vec3, 3> way, turn;
+  };
   struct Tie {
-    std::uint32_t a = none, b = none;
+    std::uint32_t first_side = 0, side_count = 0;
     std::uint32_t item = 0;  ///< in its pool; of a copy, its number
     std::uint8_t pool = of_copies, rows = 1;
     bool are_equations = true;  ///< of all its rows
     bool moves = false;         ///< its value depends on time
     bool drives = false;        ///< its impulses may do work
     // In a sub-step, each of the rows.
-    std::array<Vec3, 3> way_a, turn_a, way_b, turn_b;  ///< the rate of its value by the velocities and spins
-    std::array<double, 3> value{}, drift{};            ///< drift: rate of the value by targets alone
-    double size = 0;                                   ///< length of reference of the value, m
-    Mat3 mass;                                         ///< of equations: the inverse of what an impulse changes
-    std::array<double, 3> by_mass{};                   ///< of a row alone
+    std::array<double, 3> value{}, drift{};  ///< drift: rate of the value by targets alone
+    double size = 0;                         ///< length of reference of the value, m
+    Mat3 mass;                               ///< of equations: the inverse of what an impulse changes
+    std::array<double, 3> by_mass{};         ///< of a row alone
     std::array<double, 3> impulse{}, sum{};
     std::array<RowLaw, 3> law;
   };
@@ -68,16 +74,21 @@ class HeapTies {
   /// visit(tie, pool): each tie with a constraint. Returns how many they are.
   template <class P, class Visit>
   std::size_t visit_rows(P&, Visit);
+  std::span<const Side> sides_of(const Tie& tie) const {
+    return std::span(sides_).subspan(tie.first_side, tie.side_count);
+  }
+  std::span<Side> sides_of(const Tie& tie) { return std::span(sides_).subspan(tie.first_side, tie.side_count); }
   bool are_met() const;
   void factorize(std::span<const HeapMotion>);
   /// The changes of all bodies by impulses that take this from each row: rows(tie, r). Changes have no masses.
   template <class Rows>
   void find_changes(std::span<const HeapMotion>, Rows);
   void weigh(Tie&, std::span<const HeapMotion>) const;
-  static double rate_of(const Tie&, int row, std::span<const HeapMotion>);
+  double rate_of(const Tie&, int row, std::span<const HeapMotion>) const;
   void give(Tie&, int row, double impulse, std::span<HeapMotion>);
 
-  std::vector<Tie> ties_;  // by pools, copies last
+  std::vector<Tie> ties_;    // by pools, copies last
+  std::vector<Side> sides_;  // of the ties
   std::vector<Vec3> x_, x_next_;
   // The ties of equations, and the factor that projects onto them.
   std::vector<std::uint32_t> equations_;

@@ -270,7 +270,8 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const double share = settings_.part * part.h / step_length_;
   const int sub_steps =
       std::clamp(static_cast<int>(std::lround(Heap::most_sub_steps * share)), 1, Heap::most_sub_steps);
-  const bool is_free = problem.is_isolated() && problem.items_of<GripForce>().empty() && !problem.has_pushes();
+  const bool is_alone = problem.has_no_world();
+  const bool is_free = is_alone && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   const std::optional<RigidMotion> free =
       (heap_->has_joints() || heap_->has_forces()) && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
   const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
@@ -284,8 +285,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const double pushed = std::clamp(swept.lifted, 0.0, std::max(0.0, lifted));
   const double made = energy_.kinetic - before.kinetic + lifted - pushed - std::max(0.0, swept.external_work);
   if (made > 0)
-    (void)change_kinetic_energy(problem, made,
-                                problem.is_isolated() ? std::optional(rigid_motion_of(problem)) : std::nullopt);
+    (void)change_kinetic_energy(problem, made, is_alone ? std::optional(rigid_motion_of(problem)) : std::nullopt);
   report.external_work += swept.external_work;
   // Impacts and friction are not told apart from what the sub-steps lose.
   report.dissipated += std::exchange(energy_.missing, std::min(0.0, energy_.missing)) - energy_.missing;

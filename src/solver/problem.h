@@ -370,12 +370,11 @@ struct Problem {
 
   /// Whether no constraint that takes impulses is connected to the world, so that a projection keeps momentum.
   bool is_isolated() const {
-    bool internal = true;
-    for_each_constraint_pool([&](const auto& pool) {
-      for (std::size_t i = 0; i < pool.items.size(); ++i)
-        internal = internal && (pool.items[i].is_internal() || !pool.takes_impulses(i));
-    });
-    return internal;
+    return is_isolated([](const auto& pool, std::size_t i) { return pool.takes_impulses(i); });
+  }
+  /// Whether none is at all. Sweeps do not tell which rows take impulses.
+  bool has_no_world() const {
+    return is_isolated([](const auto&, std::size_t) { return true; });
   }
 
   /// v' M v / 2, where v(node) is the velocity of a node.
@@ -398,6 +397,17 @@ struct Problem {
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false, Rows = Rows::all) const;
 
  private:
+  /// takes_part(pool, i): whether a constraint counts.
+  template <class TakesPart>
+  bool is_isolated(TakesPart takes_part) const {
+    bool internal = true;
+    for_each_constraint_pool([&](const auto& pool) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        internal = internal && (pool.items[i].is_internal() || !takes_part(pool, i));
+    });
+    return internal;
+  }
+
   bool is_any_open(std::span<const std::uint32_t> nodes) const {
     return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return is_open(node); });
   }

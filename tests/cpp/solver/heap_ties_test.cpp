@@ -104,5 +104,46 @@ TEST(HeapTies, turn_what_a_motor_on_a_loose_stand_turns) {
   EXPECT_NEAR(system.bodies().angular_velocity(arm).z - system.bodies().angular_velocity(stand).z, 2, 0.02);
 }
 
+TEST(HeapTies, let_a_free_wheel_turn_on_a_stand_that_rests) {
+  System system = make_tied_world(true);
+  const BodyId stand = system.bodies().create(Box{{0.4, 0.4, 0.2}}, SolidOptions{.mass = 50, .position = {0, 0.2, 0}});
+  const Vec3 at{0, 0.2, 0.25};
+  const BodyId wheel = system.bodies().create(Sphere{0.1}, SolidOptions{.mass = 1, .position = at});
+  (void)system.joints().create(JointSpec{.a = wheel, .b = stand, .at = at, .axis = {0, 0, 1}});
+  system.bodies().set_angular_velocity(wheel, {0, 0, 40});
+  for (int i = 0; i < 120; ++i) {
+    EXPECT_EQ(system.step(1.0 / 60).approximate, 1);
+    EXPECT_LT(norm(system.bodies().velocity(stand)), 1e-3);
+  }
+  EXPECT_NEAR(system.bodies().angular_velocity(wheel).z, 40, 0.04);
+}
+
+TEST(HeapTies, keep_gears_of_four_bodies_in_mesh) {
+  System system = make_tied_world(true);
+  std::vector<BodyId> wheels;
+  std::vector<ConstraintId> axles;
+  for (int i = 0; i < 2; ++i) {
+    const Vec3 at{0.5 * i, 0.2, 0};
+    const BodyId stand = system.bodies().create(Box{{0.4, 0.4, 0.2}}, SolidOptions{.mass = 50, .position = at});
+    wheels.push_back(
+        system.bodies().create(Cylinder{0.1, 0.05}, SolidOptions{.mass = 1, .position = at + Vec3{0, 0, 0.2}}));
+    axles.push_back(system.joints().create(JointSpec{
+        .a = wheels[static_cast<std::size_t>(i)], .b = stand, .at = at + Vec3{0, 0, 0.2}, .axis = {0, 0, 1}}));
+  }
+  (void)system.joints().create(
+      CouplingSpec{.terms = {{.constraint = axles[0], .ratio = 1}, {.constraint = axles[1], .ratio = 2}}});
+  system.bodies().set_angular_velocity(wheels[0], {0, 0, 4}),
+      system.bodies().set_angular_velocity(wheels[1], {0, 0, -2});
+  int swept = 0;
+  for (int i = 0; i < 120; ++i) {
+    swept += static_cast<int>(system.step(1.0 / 60).approximate);
+    const double first = system.joints().state(axles[0]).coordinate[0],
+                 second = system.joints().state(axles[1]).coordinate[0];
+    EXPECT_NEAR(first + 2 * second, 0, 1e-8) << i;
+  }
+  EXPECT_EQ(swept, 120);
+  EXPECT_GT(std::abs(system.joints().state(axles[0]).coordinate[0]), 6);
+}
+
 }  // namespace
 }  // namespace iota
