@@ -38,6 +38,12 @@ bool Heap::find_bodies(const Problem& problem) {
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   find_least_cost();
+  constexpr double light = 1.0 / 500;
+  const std::vector<double> masses = found_.masses(problem);
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  ties_.for_each_body(
+      [&](std::uint32_t body) { least = std::min(least, masses[body]), most = std::max(most, masses[body]); });
+  has_light_joints_ = least < light * most;
   return true;
 }
 

@@ -36,6 +36,8 @@ class Heap {
   /// forces: nets and soft bodies stretch by sweeps.
   bool find_bodies(const Problem&);
   bool has_joints() const { return !ties_.are_none(); }
+  /// Whether a joint connects bodies of very different masses: sweeps do not hold what hangs on light links.
+  bool has_light_joints() const { return has_light_joints_; }
   bool has_forces() const { return !forces_.are_none(); }
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor() const;
@@ -63,6 +65,7 @@ class Heap {
   HeapForces forces_;
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
+  bool has_light_joints_ = false;
   double least_cost_ = 0;                                       // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };

@@ -154,11 +154,16 @@ bool HeapBodies::share_masses(const Problem& problem) {
       share = are_coupled ? share / sum : 1 / static_cast<double>(bodies.size());
     }
   }
+  const std::vector<double> of_all = masses(problem);
+  return std::all_of(of_all.begin(), of_all.end(), [](double mass) { return mass > 0; });
+}
+
+std::vector<double> HeapBodies::masses(const Problem& problem) const {
   std::vector<double> masses(all.size(), 0);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::uint32_t k = 0; k < all[i].count; ++k) masses[i] += all[i].shares[k] * problem.mass[all[i].nodes[k]];
   for (const Coupling& c : couplings) masses[c.body] += 2 * c.share * problem.mass_couplings[c.item].mass;
-  return std::all_of(masses.begin(), masses.end(), [](double mass) { return mass > 0; });
+  return masses;
 }
 
 void HeapBodies::find_places(const Problem& problem, double from, double to, std::vector<Vec3>& now,

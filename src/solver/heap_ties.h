@@ -32,6 +32,12 @@ class HeapTies {
           if (one.body < other.body) visit(one.body, other.body);
   }
 
+  /// visit(body): each that a tie moves, as often as there are ties.
+  template <class Visit>
+  void for_each_body(Visit visit) const {
+    for (const Side& side : sides_) visit(side.body);
+  }
+
   /// At the begin of a step in sub-steps of h seconds, with the impulses of the step before. All their places are those of the problem.
   void begin(const Problem&, const HeapBodies&, double h);
   /// At the places of the bodies, for a sub-step from and to these fractions of the step's way of targets.
