@@ -59,8 +59,8 @@ IOTA_FIELDS(ingredient::RodSpin, momentum, angle, drawn)
 IOTA_FIELDS(ingredient::Nail, position, position_before, multiplier)
 IOTA_FIELDS(ingredient::CosmeticBond, p, q, next, previous)
 IOTA_FIELDS(ingredient::AngleSpring, particles, next, previous, stiffness, damping, rest, lengths)
-IOTA_FIELDS(ingredient::Track, from, velocity_from, to, velocity_to, h, energy_from, energy_to, begin, length, points,
-            leader, is_pinned)
+IOTA_FIELDS(ingredient::Track, from, velocity_from, to, velocity_to, h, energy_from, energy_to, dissipated,
+            external_work, begin, length, points, leader, is_pinned)
 IOTA_FIELDS(ingredient::Bond, p, q, next, previous, law, active, implicit, muted, broken, parameters, break_force,
             held_force, script)
 IOTA_FIELDS(ingredient::Field, kind, number, group, parameter_count, active, replaces_gravity, function, parameters,

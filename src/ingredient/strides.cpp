@@ -22,6 +22,12 @@ std::vector<std::uint32_t> rings_of(const Model& model, std::span<const std::uin
   return rings;
 }
 
+Unused unused_of(const Model& model, const Track& track) {
+  if (!Strides::is_within(model, track)) return {};
+  const double share = 1 - static_cast<double>(model.step - track.begin) / track.length;
+  return {share * track.dissipated, share * track.external_work};
+}
+
 /// Adds kinetic energy, J, by scaling all velocities relative to their mean, or all of them where something is pinned.
 void add_kinetic_energy(Model& model, std::span<const std::uint32_t> bodies, double energy, bool is_pinned) {
   constexpr double least = 0.5, most = 1.1;  // of the energy: an interpolation misses far less
@@ -65,7 +71,12 @@ void Strides::validate(const Model& model, model::Audit& audit) {
 void Strides::forget_body(Model& model, std::uint32_t body) { model.strides.erase(body); }
 
 void Strides::ring_changed(Model& model, std::uint32_t ring) {
-  if (model.rings[ring].count == 0) model.tracks.erase(ring);
+  if (model.rings[ring].count > 0) return;
+  if (const Track* const track = find(model, ring)) {
+    const Unused unused = unused_of(model, *track);
+    model.dissipated -= unused.dissipated, model.external_work -= unused.external_work, model.lost -= unused.lost();
+  }
+  model.tracks.erase(ring);
 }
 
 void Strides::apply(Model& model, const SetStride& c) {
@@ -202,7 +213,7 @@ void Strides::drop_forces(Model& model, std::uint32_t body) {
 
 // Interpolated velocities of what turns have too little energy, by a^2/4 of it for a turn by a. An island that others have
 // joined is several former ones: each gets its own energy, unless a part of it is elsewhere.
-void Strides::abandon(Model& model, std::span<const std::uint32_t> bodies) {
+Unused Strides::abandon(Model& model, std::span<const std::uint32_t> bodies) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> members;  // leader, body
   for (const std::uint32_t body : bodies) {
     const std::uint32_t first = model.bodies[body].first;
@@ -227,8 +238,15 @@ void Strides::abandon(Model& model, std::span<const std::uint32_t> bodies) {
     const double energy = track->energy_from + share * (track->energy_to - track->energy_from);
     add_kinetic_energy(model, group, energy - calc_energies(model, group).total(), track->is_pinned != 0);
   }
-  for (const std::uint32_t ring : rings_of(model, bodies))
-    if (Track* const track = model.tracks.find(ring)) track->length = 0;
+  Unused sum;
+  for (const std::uint32_t ring : rings_of(model, bodies)) {
+    Track* const track = model.tracks.find(ring);
+    if (!track) continue;
+    const Unused unused = unused_of(model, *track);
+    sum.dissipated += unused.dissipated, sum.external_work += unused.external_work;
+    track->length = 0;
+  }
+  return sum;
 }
 
 void Strides::limit_energy(Model& model, std::span<const std::uint32_t> bodies, double limit, bool is_pinned) {

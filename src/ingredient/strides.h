@@ -15,6 +15,7 @@ struct Track {
   Vec3 from, velocity_from, to, velocity_to;
   double h = 0;                                ///< length of one step, s
   double energy_from = 0, energy_to = 0;       ///< of all bodies of the island, J
+  double dissipated = 0, external_work = 0;    ///< a ring's share of what was booked for the whole stride, J
   std::uint64_t begin = 0;                     ///< number of the step that solved it
   std::uint32_t length = 0;                    ///< steps; 0: there is no stride
   std::uint32_t points = 0;                    ///< rings of the island; 0: it was disturbed
@@ -24,6 +25,13 @@ struct Track {
   friend bool are_of_one_stride(const Track& a, const Track& b) {
     return a.begin == b.begin && a.length == b.length && a.points == b.points && a.leader == b.leader;
   }
+};
+
+/// Booked for steps of a stride that were not taken, J.
+struct Unused {
+  double dissipated = 0, external_work = 0;
+
+  double lost() const { return external_work - dissipated; }  ///< so much less was lost, as the balance stays
 };
 
 /// A command: how many steps the island of a body takes at once.
@@ -111,7 +119,8 @@ class Strides : public NoAnswers {
   /// Forces on a body that is not solved in this step have no effect.
   static void drop_forces(Model&, std::uint32_t body);
   /// Ends the strides of the bodies of an island here and now: their energy becomes a value between those at both ends.
-  static void abandon(Model&, std::span<const std::uint32_t> bodies);
+  /// Returns what the accounts have too much.
+  static Unused abandon(Model&, std::span<const std::uint32_t> bodies);
   /// Reduces the kinetic energy of bodies that have more energy than the limit, at the same momentum.
   static void limit_energy(Model&, std::span<const std::uint32_t> bodies, double limit, bool is_pinned);
 };

@@ -204,7 +204,8 @@ class Island {
 
   const solver::AdvanceReport& solve(model::Model&, double h, const Limits&);
   void begin_stride(model::Model&, double h, std::uint32_t steps, const Limits&);
-  void leave_stride(model::Model&);
+  ingredient::Unused leave_stride(model::Model&);
+  const solver::AdvanceReport& take_back(const ingredient::Unused&);
   template <class Visit>
   void for_each_ring(const model::Model& model, Visit visit) const {
     nodes_.for_each_ring(model, visit);

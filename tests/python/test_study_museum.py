@@ -81,9 +81,7 @@ def test_what_is_near_the_visitor_is_full_though_the_budget_is_far_too_small() -
             if apart < levels.reach:
                 assert each.thing.level.name == "full", each.name
     energy = walked.world.system.energy
-    assert (
-        walked.world.system.validate() == [] and energy.made < 1e-6 * energy.kinetic
-    )  # of what goes on: round-off of places
+    assert walked.world.system.validate() == [] and energy.made == 0
 
 
 def test_a_visitor_sets_going_what_hangs_still_and_lamps_tell_levels() -> None:

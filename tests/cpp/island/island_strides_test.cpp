@@ -162,6 +162,27 @@ TEST(IslandStrides, end_at_once_where_an_edit_a_hand_or_a_force_touches) {
   }
 }
 
+TEST(IslandStrides, book_the_steps_that_were_taken_alone_when_they_end_early) {
+  for (const bool is_destroyed : {true, false}) {
+    System system({.damping = 0.5});
+    const BodyId box = system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.velocity = {0, -9, 0}});
+    (void)system.step(dt);
+    system.bodies().set_stride(box, 16);
+    for (int i = 0; i < 20; ++i) (void)system.step(dt);
+    const Energy within = system.energy();
+    ASSERT_LT(within.lost, -0.02 * within.kinetic) << "no stride has just begun";
+    if (is_destroyed)
+      system.bodies().destroy(box);
+    else
+      system.bodies().set_velocity(box, system.bodies().velocity(box));
+    (void)system.step(dt);
+    const Energy after = system.energy();
+    EXPECT_GT(after.lost, -2e-3 * within.kinetic) << is_destroyed;
+    EXPECT_LT(after.dissipated, within.dissipated) << is_destroyed;
+    EXPECT_NEAR(after.balance(), 0, 1e-9 * within.kinetic) << is_destroyed;
+  }
+}
+
 TEST(IslandStrides, what_is_tied_together_takes_the_shortest_stride) {
   Swinging s(8);
   s.system.bodies().set_stride(s.chains[0].links[2], 2);
