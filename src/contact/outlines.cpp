@@ -22,13 +22,19 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
   // Births of sparks are edits of no outline.
   const std::uint32_t version = structure_.structure_version - structure_.spark_changes;
   is_edited_ = edits_ != structure_.edits || version_ != version;
+  // Otherwise an edit of one body takes as long as all of them have outlines: half a millisecond for 6000 frozen ones.
+  const bool knows_edited = version_ == version && !std::exchange(lacks_flags_, false);
   if (!is_edited_ && steps == steps_ && is_described() && !is_stale_) return tree_;
   steps_ = steps, edits_ = structure_.edits, version_ = version;
   describe_changed();
+  if (is_edited_ && knows_edited) expect_flagged();
   for (std::uint32_t body = 0; body < tree_.count(); ++body) {
     if (!tree_.has(body)) continue;
-    const BodyKind kind = structure_.is_frozen(body) ? BodyKind::resting : structure_.bodies[body].kind;
-    if (!is_edited_ && kind == kinds_[body] && is_still(kind)) continue;
+    const bool is_frozen = structure_.is_frozen(body);
+    const BodyKind kind = is_frozen ? BodyKind::resting : structure_.bodies[body].kind;
+    // An obstacle that was moved has been described anew.
+    const bool may_be_edited = is_edited_ && !(is_frozen && knows_edited) && !structure_.obstacles.has(body);
+    if (!may_be_edited && kind == kinds_[body] && is_still(kind)) continue;
     kinds_[body] = kind;
     place(body);
     if (kind == BodyKind::inactive)
@@ -39,6 +45,16 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
   tree_.update();
   is_stale_ = false;
   return tree_;
+}
+
+/// Edits may have moved these.
+void Outlines::expect_flagged() {
+  for (const std::uint32_t articulate : structure_.flagged()) {
+    if (!structure_.articulates.is_alive(articulate)) continue;
+    structure_.for_each_body_of(articulate, [&](std::uint32_t body) {
+      if (body < kinds_.size()) kinds_[body] = BodyKind::dynamic;
+    });
+  }
 }
 
 bool Outlines::is_described() const {

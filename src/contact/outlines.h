@@ -23,8 +23,11 @@ class Outlines {
   Outlines& operator=(const Outlines&) = delete;
 
   /// The outlines of now, after this number of steps. Describes the bodies that have changed since the last call, and
-  /// looks where those are that may have moved: all after an edit; after a step those that are not asleep or static.
+  /// looks where those are that may have moved: after an edit all but frozen ones that it has not flagged; after a step those that
+  /// are not asleep, frozen or static.
   const OutlineTree& refresh(std::uint64_t steps);
+  /// The structure's list of flagged articulates is about to be taken.
+  void lose_flags() { lacks_flags_ = lacks_flags_ || edits_ != structure_.edits; }
 
   /// @name Some bodies, without the tree
   ///@{
@@ -47,6 +50,7 @@ class Outlines {
   using FormKey = std::tuple<std::uint32_t, std::array<double, 4>, std::uint64_t>;
 
   void describe_changed();
+  void expect_flagged();
   bool is_described() const;
   void describe(std::uint32_t body);
   void measure(std::uint32_t body);
@@ -63,8 +67,9 @@ class Outlines {
   double usual_radius_ = 0;
   std::uint64_t steps_ = 0, edits_ = 0;
   std::uint32_t version_ = 0;
-  bool is_edited_ = true;  ///< since the last call
-  bool is_stale_ = true;   ///< the tree lacks a description
+  bool is_edited_ = true;     ///< since the last call
+  bool lacks_flags_ = false;  ///< of edits since the last call
+  bool is_stale_ = true;      ///< the tree lacks a description
 };
 
 }  // namespace iota::contact

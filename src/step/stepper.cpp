@@ -58,6 +58,7 @@ void Stepper::find_contacts(double h) {
 void Stepper::update_islands(double dt) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
+  outlines_.lose_flags();
   model.take_flagged(flagged_);
   dirty_.clear(), woken_.clear();
   for (const std::uint32_t slot : flagged_) {

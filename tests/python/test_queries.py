@@ -309,3 +309,28 @@ def test_a_world_of_another_simulator_says_that_it_cannot_be_asked() -> None:
 
     with pytest.raises(TypeError, match="simulator of its own"):
         iota.World(Nothing(), ground=None).queries.nearest((0, 0, 0))
+
+
+def test_what_is_frozen_or_fixed_is_met_where_an_edit_has_put_it_whatever_happened_in_between() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.usual_material = iota.Material()
+    frozen = [system.body(shape=iota.Sphere(0.5), position=(3 * k, 0, 0)) for k in range(3)]
+    fixed = system.obstacle(iota.Sphere(0.5), position=(9, 0, 0))
+    for body in frozen:
+        body.stride = 0
+    places = Places(system)
+
+    def found_at(x: float) -> iota.Body | None:
+        met = places.ray(iota.Vec3(x, 9, 0), iota.Vec3(0, -1, 0), 100.0, None)
+        return None if met is None else met[0]
+
+    for steps in (0, 1, 3):
+        for body, x in zip([*frozen, fixed], (0, 3, 6, 9), strict=True):
+            for to in (x + 100, x):
+                body.set_pose((to, 0, 0))
+                for _ in range(steps):
+                    system.step(1 / 120)
+                assert found_at(to) == body, (steps, x)
+                assert found_at(2 * x + 100 - to) is None, (steps, x)
+                if body in frozen:
+                    body.stride = 0
