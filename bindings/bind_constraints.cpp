@@ -463,6 +463,8 @@ void bind_handle(nb::module_& module) {
       .def_prop_ro("broken", read(&ConstraintState::broken), "By a load beyond break_force or break_torque.")
       .def_prop_ro("position", read(&ConstraintState::position), "Where it acts on a, m.")
       .def_prop_ro("axis", read(&ConstraintState::axis), "Unit vector, world frame; zero for kinds without one.")
+      .def_prop_ro("second_axis", read(&ConstraintState::second_axis),
+                   "The same, of b in a universal joint; zero for other kinds.")
       .def_prop_ro("force", read(&ConstraintState::force), "On a in the last step, N; the opposite acts on b.")
       .def_prop_ro("torque", read(&ConstraintState::torque), "On a about `position` in the last step, N m.")
       .def_prop_ro("gap", read(&ConstraintState::gap), "Largest violation after the last step, m.")
@@ -483,6 +485,21 @@ void bind_handle(nb::module_& module) {
           },
           nb::sig("def terms(self) -> list[tuple[JointCoordinate, float]]"),
           "Of a coupling: the coordinates of its sum, each with its ratio.")
+      .def_prop_ro(
+          "path",
+          [](const ConstraintHandle& self) {
+            const PathSpec spec = self.use().joints().path(self.id);
+            const bool smooth = spec.curve == CurveKind::spline;
+            nb::list points;
+            for (const Vec3& point : spec.points) points.append(nb::cast(point));
+            nb::dict given;
+            given["path"] = points, given["closed"] = spec.closed, given["smooth"] = smooth;
+            if (!smooth && spec.rounding >= 0) given["rounding"] = spec.rounding;
+            return given;
+          },
+          nb::sig("def path(self) -> dict[str, Any]"),
+          "Of `System.on_path`: its arguments path, closed, smooth and rounding, where the points are now. Raises\n"
+          "ValueError for other kinds.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
       .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
       .def_prop_ro(

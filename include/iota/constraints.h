@@ -119,6 +119,7 @@ struct ConstraintState {
   bool broken = false;  ///< by a load beyond its limits; setting it active again repairs it
   Vec3 position;        ///< where it acts on a, m
   Vec3 axis;            ///< unit vector, world frame; zero for kinds without one
+  Vec3 second_axis;     ///< the same, of b in a universal joint; otherwise zero
   Vec3 force, torque;   ///< by the constraint on a in the last step, N and N m (about `position`); b has the opposite
   double gap = 0;       ///< largest violation after the last step, m
   double length = 0;    ///< rod, rope, tackle, coupling: m, or rad

@@ -30,6 +30,8 @@ class Joints : public View {
   ConstraintState state(ConstraintId) const;
   std::vector<ParticleId> particles(ConstraintId) const;     ///< all particles of it, markers included
   std::vector<CoupledCoordinate> terms(ConstraintId) const;  ///< of a coupling or tackle; otherwise empty
+  /// How it was made, with the points where they are now. Throws std::invalid_argument for another kind.
+  PathSpec path(ConstraintId) const;
   /// True repairs a broken one, with the relative pose in which its bodies were joined.
   void set_active(ConstraintId, bool);
   /// Moves a coordinate to a value (rad, m), with the rest of the mechanism. If the joint is in no loop, everything

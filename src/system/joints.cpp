@@ -107,6 +107,9 @@ ConstraintState Joints::state(ConstraintId id) const {
   const ingredient::Reaction reaction = ingredient::calc_reaction(m, slot);
   state.position = reaction.position, state.force = reaction.force, state.torque = reaction.torque;
   state.axis = calc_axis(m, c);
+  if (ingredient::info(c.kind).cross)
+    state.second_axis =
+        (1 / c.scale[1]) * (position_of(m, c, ingredient::b_axis) - position_of(m, c, ingredient::b_origin));
   state.gap = is_in_force(m, c) ? c.gap : 0, state.length = c.length;
   for (const JointCoordinate which : joint_coordinates) {
     const auto i = static_cast<std::size_t>(which);
@@ -141,6 +144,26 @@ std::vector<CoupledCoordinate> Joints::terms(ConstraintId id) const {
     terms.push_back({m.constraints.id(term.joint), term.coordinate, term.ratio});
   });
   return terms;
+}
+
+PathSpec Joints::path(ConstraintId id) const {
+  const model::Model& m = core_.model;
+  const ingredient::Constraint& c = m.constraints[core_.slot(id)];
+  if (c.kind != ConstraintKind::path) throw std::invalid_argument("path: only a particle on a path has one");
+  PathSpec spec;
+  spec.particle = m.particles.id(c.particles[ingredient::a_origin]);
+  if (const std::uint32_t body = body_of_side(m, c, 1); body != model::none) spec.body = m.bodies.id(body);
+  spec.curve = c.curve.kind, spec.closed = c.curve.closed != 0, spec.rounding = c.curve.rounding;
+  spec.slide = c.options[static_cast<std::size_t>(JointCoordinate::slide)], spec.breaks = c.breaks;
+  using ingredient::b_axis, ingredient::b_origin, ingredient::b_side, ingredient::b_third;
+  const Vec3 origin = position_of(m, c, b_origin);
+  const auto direction = [&](int place) { return (1 / c.scale[1]) * (position_of(m, c, place) - origin); };
+  const Vec3 x = direction(b_side), y = direction(b_third), z = direction(b_axis);
+  for (std::uint32_t i = 0; i < c.curve.count; ++i) {
+    const Vec3& p = m.curve_points[c.curve.first + i];
+    spec.points.push_back(origin + p.x * x + p.y * y + p.z * z);
+  }
+  return spec;
 }
 
 std::vector<ConstraintId> Joints::ids() const { return core_.model.constraints.ids(); }

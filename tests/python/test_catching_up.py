@@ -143,7 +143,7 @@ def test_what_cannot_be_copied_goes_on_from_where_it_was() -> None:
     assert np.array_equal(place.places(), start) and lower.position.y == 30
     railed = Place(arm)
     bead = railed.root.attachment((1, 5, 0))
-    railed.system.on_path(bead, [(1, 5, 0), (0, 4, 0), (-1, 5, 0)])
+    railed.system.on_surface(bead, iota.HalfSpace((0, 0, 1)), at=(1, 5, 0))
     start = railed.places()
     bodies, ties = Ties(railed.system).around([railed.root])
     assert not catch_up(railed.system, bodies, 1.0, ties)
@@ -212,6 +212,39 @@ def bent_rods(world: iota.World) -> iota.Body:
     return points[0]
 
 
+def weights_over_pulleys(world: iota.World) -> iota.Body:
+    system = world.system
+    heavy, light = (
+        system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=mass, position=(x, 3, 0)) for x, mass in ((0, 1.1), (1, 1))
+    )
+    over = [system.body().particle((x, 6, 0)) for x in (0, 1)]
+    for pulley in over:
+        pulley.nail()
+    system.rope([heavy.attachment((0, 3.1, 0)), *over, light.attachment((1, 3.1, 0))])
+    return heavy
+
+
+def bead(world: iota.World) -> iota.Body:
+    made = world.system.body(shape=iota.Sphere(0.05), mass=0.5, position=(-1, 3, 0))
+    wire = [(x, 2 + x * x, 0) for x in (-1.5, -1, -0.5, 0, 0.5, 1, 1.5)]
+    world.system.on_path(made.attachment((-1, 3, 0)), wire)
+    return made
+
+
+def crossed(world: iota.World) -> iota.Body:
+    made = world.system.body(shape=iota.Box((1, 0.1, 0.1)), mass=2, position=(0.5, 4, 0))
+    made.angular_velocity = (0, 1, 0)
+    world.system.universal(made, at=(0, 4, 0), axis=(0, 0, 1), second_axis=(0, 1, 0))
+    return made
+
+
+def hung_on_a_wall(world: iota.World) -> iota.Body:
+    wall = world.system.body(kind="static", shape=iota.Box((0.1, 1, 1)), position=(0, 5, 0))
+    made = world.system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0.6, 4.5, 0))
+    world.system.rod(made.attachment((0.6, 4.5, 0)), wall.attachment((0, 5, 0)))
+    return made
+
+
 @pytest.mark.parametrize(
     ("make", "seconds", "off"),
     [
@@ -222,6 +255,10 @@ def bent_rods(world: iota.World) -> iota.Body:
         (bent_rods, 2, 0.15),
         (geared, 2, 0.03),
         (nut, 1.5, 0.02),
+        (weights_over_pulleys, 2, 0.05),
+        (bead, 3, 0.1),
+        (crossed, 1, 0.1),
+        (hung_on_a_wall, 3, 0.1),
     ],
 )
 def test_what_joints_and_springs_hold_has_gone_on_with_its_energy_and_phase(
@@ -288,7 +325,8 @@ def test_its_work_is_bounded() -> None:
     pieces = 1
     while not found.go_on(0.0):
         pieces += 1
-    assert pieces <= catching_up.STEPS + 3
+    of_copying = len(place.thing.bodies) // catching_up.AT_ONCE + 9
+    assert pieces <= catching_up.STEPS + of_copying
     assert catch_up(place.system, place.thing.bodies, 1e6), "as after a few seconds"
     assert math.isfinite(place.system.energy.total) and place.system.validate() == []
 
@@ -321,6 +359,16 @@ def test_what_was_moved_meanwhile_stays_there() -> None:
     assert found.go_on()
     assert not found.finish()
     assert place.root.position.y == pytest.approx(20)
+
+
+def test_what_ends_while_it_is_copied_is_left_alone() -> None:
+    place = Place(hung(crowd.ladder))
+    place.run(0.2)
+    found = CatchUp(place.system, place.thing.bodies, 2.0, (), Places(place.system))
+    assert not found.go_on(0.0)
+    place.thing.bodies[-1].destroy()
+    assert found.go_on(0.0) and not found.finish()
+    assert place.system.validate() == []
 
 
 def test_only_obstacles_near_it_are_copied_however_many_there_are() -> None:

@@ -5,6 +5,7 @@ import math
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import iota
@@ -442,3 +443,25 @@ def test_limits_and_ropes_that_move_bodies_at_once_are_noted() -> None:
     assert [note for note in notes if "its ends are 3 m apart" in note]
     assert len(notes) == 2
     assert system.step().warnings == []
+
+
+def test_a_universal_joint_tells_both_axes_and_a_path_where_it_is_now() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    shaft = system.body(shape=iota.Box((1, 0.1, 0.1)), position=(0.5, 0, 0))
+    cross = system.universal(shaft, at=(0, 0, 0), axis=(0, 0, 3), second_axis=(0, 2, 0))
+    assert np.allclose(cross.axis, (0, 0, 1)) and np.allclose(cross.second_axis, (0, 1, 0))
+    carrier = system.body(shape=iota.Box((1, 1, 1)), position=(5, 0, 0))
+    bead = system.body().particle((5, 2, 0))
+    points = [(4, 2, 0), (5, 2, 0), (6, 3, 0)]
+    wire = system.on_path(bead, points, carrier, rounding=0.1)
+    given = wire.path
+    assert np.allclose(given.pop("path"), points)
+    assert given == {"closed": False, "smooth": False, "rounding": 0.1}
+    carrier.set_pose((5, 4, 0), ("z", 90))
+    moved = [(5 - y, 4 + x - 5, z) for x, y, z in points]
+    assert np.allclose(wire.path["path"], moved)
+    other = iota.System()
+    again = other.on_path(other.body().particle(moved[0]), **wire.path)
+    assert again.slide.limits == pytest.approx(wire.slide.limits) and np.allclose(again.second_axis, 0)
+    with pytest.raises(ValueError, match="only a particle on a path has one"):
+        _ = cross.path

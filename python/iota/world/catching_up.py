@@ -19,6 +19,7 @@ STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass 
 WORK, MOST_STEPS = 1600, 400  # particles times steps of a copy that takes more steps, as a pendulum does
 GAIN = 1e-3  # of the kinetic energy, J: a copy with more has come into something
 MOST_DAMPING = 3.0  # 1/s: what swings is at rest at the end
+AT_ONCE = 4  # bodies that are copied in a piece
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
 
 
@@ -41,20 +42,22 @@ class CatchUp:
         self._system = system
         self._copy: _Copy | None = None
         self._places: list[Vec3] = []
+        self._parts: list[Body | Tie] = [*bodies, *ties]
         self._pieces: Iterator[None] = iter(())
         if seconds > 0 and _can_be_copied(system, bodies) and all(can_be_copied(tie) for tie in ties):
             self._places = _places_of(bodies)
             self._pieces = self._work(bodies, seconds, ties, places)
 
     def go_on(self, until: float = math.inf) -> bool:
-        """Does pieces of the work until a processor time, s, but at least one. Whether it is done."""
+        """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended."""
+        if not all(part.alive for part in self._parts):
+            self._pieces = iter(())
         return not any(time.process_time() > until for _ in self._pieces)
 
     def _work(self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places) -> Iterator[None]:
-        self._copy = copy = _Copy(self._system, bodies, ties)
-        yield
-        copy.copy_obstacles(places, seconds)
-        yield
+        self._copy = copy = _Copy(self._system, bodies)
+        yield from copy.copy_bodies(ties)
+        yield from copy.copy_obstacles(places, seconds)
         copy.move_as_before()
         points = sum(len(twin.particles) for twin in copy.twins)
         most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held else STEPS
@@ -92,17 +95,30 @@ def _can_be_copied(system: System, bodies: Sequence[Body]) -> bool:
 
 
 class _Copy:
-    def __init__(self, system: System, bodies: Sequence[Body], ties: Sequence[Tie]) -> None:
+    """An empty one at first; its functions that yield do so between pieces of their work."""
+
+    def __init__(self, system: System, bodies: Sequence[Body]) -> None:
         self.bodies = list(bodies)
         self.system = System(gravity=system.gravity, damping=system.damping, mode="energy_keeping")
         self.system.usual_material = system.usual_material
         self.twin_of: dict[Particle, Particle] = {}
+        self.twins: list[Body] = []
+        self.energy = 0.0
+        self.is_held = False
+
+    def copy_bodies(self, ties: Sequence[Tie]) -> Iterator[None]:
+        """Copies the bodies and what connects them."""
         needed = needed_particles(ties)
-        self.twins = [self._copy(body, needed) for body in self.bodies]
-        self._copy_hinges()
+        for body in self.bodies:
+            self.twins.append(self._copy(body, needed))
+            if len(self.twins) % AT_ONCE == 0:
+                yield
+        yield
+        yield from self._copy_hinges()
         twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
         copy_ties(ties, self.system, twin_bodies, self.twin_of)
         self.is_held = bool(ties) or any(p.is_nailed for p in self.twin_of)
+        yield
 
     def move_as_before(self) -> None:
         """The copy gets the velocities of the bodies. energy: J, then."""
@@ -141,11 +157,14 @@ class _Copy:
 
     def is_as_it_was(self, places: Sequence[Vec3]) -> bool:
         """Whether all of it is still there, at the same places."""
-        return all(body.alive for body in self.bodies) and _places_of(self.bodies) == places
+        is_whole = len(self.twins) == len(self.bodies) and all(body.alive for body in self.bodies)
+        return is_whole and _places_of(self.bodies) == places
 
-    def _copy_hinges(self) -> None:
+    def _copy_hinges(self) -> Iterator[None]:
         done: set[Particle] = set()
-        for own, twin in self.twin_of.items():
+        for count, (own, twin) in enumerate(self.twin_of.items()):
+            if count % (4 * AT_ONCE) == 0:
+                yield
             if own in done:
                 continue
             for mate in own.ring:
@@ -155,7 +174,7 @@ class _Copy:
             if own.is_nailed:
                 twin.nail()
 
-    def copy_obstacles(self, places: Places, seconds: float) -> None:
+    def copy_obstacles(self, places: Places, seconds: float) -> Iterator[None]:
         """Copies those near the way of the thing, which goes downwards at most as far as it falls."""
         time = min(seconds, STEPS * LONGEST)
         centers = np.array([list(body.center_of_mass) for body in self.bodies])
@@ -165,7 +184,12 @@ class _Copy:
         pull = 0.5 * np.array(list(self.system.gravity)) * time**2
         low, high = low + np.minimum(pull, 0), high + np.maximum(pull, 0)
         near = places.overlap(Box(high - low), Vec3(*(low + high) / 2), (0, 0, 0, 1), None)
-        for obstacle in [body for body in near if body.kind == "static" and body.solids][:MOST_OBSTACLES]:
+        yield
+        for count, obstacle in enumerate([body for body in near if body.kind == "static"][:MOST_OBSTACLES]):
+            if count % AT_ONCE == 0:
+                yield
+            if not (obstacle.alive and obstacle.solids):
+                continue
             solid = obstacle.solids[0]
             twin = self.system.obstacle(solid.shape, solid.position, solid.orientation)
             twin.material = obstacle.material

@@ -12,8 +12,9 @@ from iota._core import AngleSpring, Body, Bond, Constraint, JointCoordinate, Par
 Tie = Constraint | Bond | AngleSpring
 
 ANGLES, SLIDES = ("revolute", "planar", "cylindrical"), ("prismatic", "cylindrical")  # kinds of joints with an axis
-WITH_PLACE, PLAIN, BETWEEN_PARTICLES = ("ball", "weld"), ("orientation",), ("rod", "rope")
-SCREW, COUPLING = "screw", "coupling"  # the latter of coordinates of other joints, as gears are
+WITH_PLACE, PLAIN, BETWEEN_PARTICLES = ("ball", "weld"), ("orientation",), ("rod", "rope", "span")
+SCREW, UNIVERSAL, PATH = "screw", "universal", "path"
+COUPLINGS = ("coupling", "tackle")  # of coordinates of other joints: gears, and ropes over pulleys, which are one-sided
 LAWS = ("predefined", "expression")  # other ones are functions of the script
 
 
@@ -61,19 +62,21 @@ def can_be_copied(tie: Tie) -> bool:
         return tie.law.kind in LAWS
     if isinstance(tie, AngleSpring):
         return True
-    if tie.a.kind == "static" or (tie.kind in BETWEEN_PARTICLES and len(tie.particles) != 2):
-        return False
-    if tie.kind == COUPLING:
+    if tie.kind in COUPLINGS:
         return all(can_be_copied(coordinate.joint) for coordinate, _ in tie.terms)
-    return tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, *BETWEEN_PARTICLES, SCREW)
+    if tie.kind in BETWEEN_PARTICLES:
+        return True
+    return tie.a.kind != "static" and tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, SCREW, UNIVERSAL, PATH)
 
 
 def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
-    """The bodies of which copies of ties need copies."""
+    """Those of which copies of ties need copies."""
     found: set[Particle] = set()
     for tie in ties:
         if isinstance(tie, Constraint):
-            found.update(tie.particles if tie.kind in BETWEEN_PARTICLES else [])
+            found.update(
+                tie.particles if tie.kind in BETWEEN_PARTICLES else tie.particles[:1] if tie.kind == PATH else []
+            )
         else:
             found.update(tie.ends)
     return found
@@ -82,8 +85,9 @@ def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
 def copy_ties(
     ties: Iterable[Tie], system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]
 ) -> None:
-    """Makes the same ones of a system between copies of their bodies, at the same places; static bodies are the world there. They do not
-    break. Couplings are made last, of the copies of their joints."""
+    """Makes the same ones of a system between copies of their bodies, at the same places; static bodies are the world there, and nails
+    hold their particles. They do not break. Couplings are made last, of the copies of their joints."""
+    particle_of = _Ends(system, particle_of)
     joint_of: dict[Constraint, Constraint] = {}
     couplings: list[Constraint] = []
     for tie in ties:
@@ -95,28 +99,59 @@ def copy_ties(
                 p, q = (particle_of[end] for end in tie.ends)
                 law = tie.law.name if tie.law.kind == "predefined" else tie.law.text
                 system.bond(p, q, law, implicit=tie.implicit, **tie.parameters)
-        elif tie.kind == COUPLING:
+        elif tie.kind in COUPLINGS:
             couplings.append(tie)
         elif tie.active:
             joint_of[tie] = _copy_joint(tie, system, body_of, particle_of)
     for coupling in couplings:
         if coupling.active and all(coordinate.joint in joint_of for coordinate, _ in coupling.terms):
-            joint_of[coupling] = system.couple(
-                [(getattr(joint_of[each.joint], each.name), ratio) for each, ratio in coupling.terms]
-            )
+            joint_of[coupling] = _copy_coupling(coupling, system, joint_of)
     for tie, copy in joint_of.items():
         if any(tie.compliance):
             copy.compliance = tie.compliance
 
 
+class _Ends(dict[Particle, Particle]):
+    """Copies of particles. Those of static bodies are made when they are needed."""
+
+    def __init__(self, system: System, known: Mapping[Particle, Particle]) -> None:
+        super().__init__(known)
+        self._system = system
+
+    def __missing__(self, own: Particle) -> Particle:
+        self[own] = made = self._system.body().particle(own.position, mass=1.0)
+        made.nail()
+        return made
+
+
+def _copy_coupling(coupling: Constraint, system: System, joint_of: Mapping[Constraint, Constraint]) -> Constraint:
+    """Coordinates of the copies may count from elsewhere."""
+    terms, length = list[tuple[JointCoordinate, float]](), coupling.length
+    for own, ratio in coupling.terms:
+        copy: JointCoordinate = getattr(joint_of[own.joint], own.name)
+        terms.append((copy, ratio))
+        length += ratio * (copy.value - own.value)
+    is_rope = coupling.kind == "tackle"
+    return system.couple(terms, length=length if is_rope else None, one_sided=is_rope)
+
+
 def _copy_joint(
     joint: Constraint, system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]
 ) -> Constraint:
+    made: Constraint
     if joint.kind in BETWEEN_PARTICLES:
         p, q = (particle_of[end] for end in joint.particles)
-        made: Constraint = getattr(system, joint.kind)(p, q, joint.length)
+        if joint.kind == "span":
+            made = system.span(p, q)
+            _copy_coordinate(joint.slide, made.slide)
+        else:
+            made = getattr(system, joint.kind)(p, q, joint.length)
         return made
     a, b = body_of[joint.a], None if joint.b is None or joint.b.kind == "static" else body_of[joint.b]
+    if joint.kind == PATH:
+        made = system.on_path(particle_of[joint.particles[0]], body=b, **joint.path)
+        _copy_coordinate(joint.slide, made.slide)
+        return made
     make: Any = getattr(system, joint.kind)
     if joint.kind in PLAIN:
         made = make(a, b)
@@ -124,9 +159,12 @@ def _copy_joint(
         made = make(a, b, at=joint.position)
     elif joint.kind == SCREW:
         made = make(a, b, at=joint.position, axis=joint.axis, lead=2 * math.pi * joint.length)
+    elif joint.kind == UNIVERSAL:
+        made = make(a, b, at=joint.position, axis=joint.axis, second_axis=joint.second_axis)
+        _copy_coordinate(joint.second_angle, made.second_angle)
     else:
         made = make(a, b, at=joint.position, axis=joint.axis)
-    if joint.kind in (*ANGLES, SCREW):
+    if joint.kind in (*ANGLES, SCREW, UNIVERSAL):
         _copy_coordinate(joint.angle, made.angle)
     if joint.kind in (*SLIDES, SCREW):
         _copy_coordinate(joint.slide, made.slide)
@@ -134,11 +172,12 @@ def _copy_joint(
 
 
 def _copy_coordinate(own: JointCoordinate, copy: JointCoordinate) -> None:
-    """A new joint counts from the pose in which it is made."""
-    now = own.value
+    """A new joint counts from the pose in which it is made; spans and paths count from their ends."""
+    here = copy.value
+    now = own.value - here
     if own.limits is not None:
         low, high = own.limits
-        copy.limits = (min(low - now, 0.0), max(high - now, 0.0))
+        copy.limits = (min(low - now, here), max(high - now, here))
     if own.motor is not None:
         copy.motor = own.motor
     if own.servo is not None:
