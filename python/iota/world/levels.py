@@ -637,9 +637,13 @@ class Levels(Part):
         for row, thing in arrays.own:
             if row % arrays.slices == self._steps % arrays.slices:
                 self._ask(row, thing)
-        self._find_what_comes()
-        if self._ms > URGENT * self._budget or self._steps % (1 + len(self._things) // PER_DECISION) == 0:
+        is_urgent = self._ms > URGENT * self._budget
+        # Not both in one step, but for urgent ones: rare steps would have the worst of both.
+        every = max(1 + len(self._things) // PER_DECISION, 2 if self._coming else 1)
+        if is_urgent or self._steps % every == 0:
             self._decide()
+        if is_urgent or self._steps % every != 0:
+            self._find_what_comes()
 
     def _decide(self) -> None:
         assert self._budget is not None
@@ -1132,6 +1136,11 @@ def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
     return max(size, 1e-6), points[middle], extent
 
 
+def _lengths(vectors: Floats) -> Floats:
+    result: Floats = np.sqrt(np.einsum("...i,...i", vectors, vectors))
+    return result
+
+
 def _word_for(body: Body) -> str:
     """The word for its shape."""
     if body.solids:
@@ -1180,6 +1189,7 @@ class _Arrays:
                     level.share,
                     level.stride,
                 )
+        self.stride = np.array([thing.level.stride for thing in things], dtype=int)  # at its level
         self.near, self.is_far, self.is_near = (np.zeros(count, dtype=bool) for _ in range(3))
         self.significance, self.load, self.full_load = np.zeros(count), np.zeros(count), np.zeros(count)
         self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
@@ -1214,6 +1224,7 @@ class _Arrays:
         row = self._row.get(thing)
         if row is not None:
             self.level[row], self.changed[row] = thing.index, step
+            self.stride[row] = thing.level.stride
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
             self.touches[row] = self.runs[row] = False
 
@@ -1234,11 +1245,10 @@ class _Arrays:
 
     def come_into_sight(self, rows: slice, now: float) -> NDArray[np.intp]:
         """The frozen things that have. Notes those that are out of sight."""
-        indices = np.arange(*rows.indices(len(self.since)))
-        is_frozen = self.strides[indices, self.level[indices]] == 0
-        is_missed, is_far = np.isfinite(self.since[indices]), self.is_far[indices]
-        self.since[indices[is_frozen & is_far & ~is_missed]] = now
-        come: NDArray[np.intp] = indices[is_frozen & ~is_far & is_missed]
+        since = self.since[rows]  # a view
+        is_frozen, is_missed, is_far = self.stride[rows] == 0, np.isfinite(since), self.is_far[rows]
+        since[is_frozen & is_far & ~is_missed] = now
+        come: NDArray[np.intp] = rows.start + rows.step * np.nonzero(is_frozen & ~is_far & is_missed)[0]
         return come
 
     def missed(self, row: int, now: float) -> float:
@@ -1276,26 +1286,25 @@ class _Arrays:
         roots, middles = self._roots[part], self._middles[part]
         if roots is None or middles is None:
             return
-        places, speeds = middles.positions, np.linalg.norm(middles.velocities, axis=1)
+        places, speeds = middles.positions, _lengths(middles.velocities)
         work, steps = roots.work.T
         size = self.size[rows]
         load = np.where(steps > 0, work / np.maximum(steps, 1), 0.0)
         takes_each = steps == 1
         starts = self._starts[part]
         if len(load) > len(places):  # things of several articulates
-            of_roots = np.linalg.norm(roots.velocities, axis=1)
+            of_roots = _lengths(roots.velocities)
             speeds = np.maximum(speeds, np.maximum.reduceat(of_roots, starts))
             load, takes_each = np.add.reduceat(load, starts), np.logical_or.reduceat(takes_each, starts)
         self.load[rows] = load
-        level = self.level[rows]
-        at_full = (level == 0) & (load > 0)
+        at_full = (self.level[rows] == 0) & (load > 0)
         full = self.full_load[rows]
         self.full_load[rows] = np.where(at_full, np.where(full > 0, full + 0.3 * (load - full), load), full)
-        stride = np.take_along_axis(self.strides[rows], level[:, None], axis=1)[:, 0]
+        stride = self.stride[rows]
         self.touches[rows] = (stride > 1) & takes_each
         self.runs[rows] = (stride != 1) & takes_each
         if len(eyes):
-            distance = np.linalg.norm(places[:, None, :] - eyes[None, :, :], axis=2).min(axis=1)
+            distance = _lengths(places[:, None, :] - eyes[None, :, :]).min(axis=1)
             self.near[rows] = distance - self.extent[rows] <= NEAR * reach
             self.is_far[rows] = distance - self.extent[rows] > EARLY * sight
             self.is_near[rows] = distance - self.extent[rows] < LATE * sight
@@ -1304,7 +1313,7 @@ class _Arrays:
         else:
             seen = speeds + IDLE
             self.near[rows], self.is_far[rows], self.is_near[rows] = False, True, False
-        self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen)
+        self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen) if self.own else seen
 
     def share_now(self, rows: NDArray[np.intp]) -> Floats:
         """The share of the full cost at the present level; strides save nothing for what touches something."""

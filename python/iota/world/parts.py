@@ -18,7 +18,8 @@ class Part:
 
     def __setattr__(self, name: str, value: Any) -> None:
         """A misspelled attribute would change nothing."""
-        refuse_unknown(self, name)
+        if name[0] != "_":
+            refuse_unknown(self, name)
         super().__setattr__(name, value)
 
     if not TYPE_CHECKING:  # checkers would take any name
