@@ -75,6 +75,29 @@ def test_the_ladder_goes_on_by_itself_only_while_nobody_plays_with_the_cradle() 
     assert axle.angle.value == pytest.approx(0, abs=0.02)
 
 
+def test_a_ladder_that_nobody_is_near_waits_where_time_is_short_and_goes_on_for_who_comes() -> None:
+    world = lab.build()
+    (thing,) = world.levels.things
+    assert world.levels.budget_ms is not None
+    place = iota.Vec3(0, 1.6, 6)
+    world.levels.viewers = lambda: [place]
+    world.levels.budget_ms = 1e-6
+    while thing.level.name == "full" and world.system.time < 2:
+        world.step()
+    assert thing.level.name == "frozen"
+    for _ in range(240):
+        world.step()
+    (axle,) = [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
+    waits = axle.angle.value
+    place = lab.LADDER + (0, 0.2, 1)
+    for _ in range(480):
+        report = world.step()
+        assert report is not None and report.unconverged == 0
+    assert thing.level.name == "full"
+    assert abs(axle.angle.value - waits) > 1, "it has gone on"
+    assert world.system.validate() == []
+
+
 def test_a_hand_on_a_page_drags_a_ball_and_turns_the_cradle_on_its_desk(run_world: Runner) -> None:
     world = lab.build()
     balls = [body for body in world.system.bodies if isinstance(getattr(body.solids[0], "shape", None), iota.Sphere)]

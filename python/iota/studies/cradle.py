@@ -81,8 +81,6 @@ class Cradle:
         self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
         self.frame.name = "frame"
         self.balls = [self._hang(world.system, number, balls) for number in range(balls)]
-        for ball in self.balls:  # they meet by `collide`
-            ball.material = iota.Material(touches="nothing")
         self.mass = self.balls[0].mass
         self.groups = [Group(range(balls), 0, 0.0, 0.0)]
         present(world, self.balls, self.frame, looks.sphere(RADIUS, "steel"))
@@ -219,6 +217,7 @@ class Cradle:
         """A ball on two strings: it swings about the line between their upper ends."""
         top = self.at + UP * HEIGHT + (2 * RADIUS * (number - (balls - 1) / 2), 0, 0)
         ball = system.body(shape=iota.Sphere(RADIUS), density=STEEL, position=top - UP * STRING)
+        ball.material = iota.Material(touches="nothing")  # they meet by `collide`
         system.revolute(ball, self.frame, at=top, axis=(0, 0, 1))
         return ball
 

@@ -25,9 +25,12 @@ def build() -> iota.World:
     room.show(world)
     _laboratory.furnish(world)
     world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))
-    story = ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
+    blocks = ladder.Ladder(world, 7, LADDER)
+    story = ladder.add_actions(world, blocks)
     cradle.add_actions(world, cradle.Cradle(world, CRADLE), on_lift=story.touch)
     world.camera = VIEWS[0]
+    world.levels.manage(blocks.axle.a, levels=("full", "frozen"), name="ladder")
+    world.levels.budget_ms = 4.0  # the cradle costs little, and its script moves it in each step
 
     @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")
     def next_view() -> None:

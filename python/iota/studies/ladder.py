@@ -51,6 +51,7 @@ class Block:
     def __init__(self, world: iota.World, number: int, middle: iota.Vec3) -> None:
         system, down = world.system, 1 if number % 2 else -1  # neighbors begin with the same ends together
         self.body = system.body(shape=iota.Box((THICKNESS, LENGTH, WIDTH), 0.0008), density=WOOD, position=middle)
+        self.body.material = iota.Material(touches="nothing")  # blocks lie on each other
         self.ends = [self.body.particle(middle + (0, y * down * LENGTH / 2, 0), mass=0) for y in (1, -1)]
         self.middle = self.body.particle(middle, mass=0)
         self.beyond = [self.body.particle(end.position * 2 - middle, mass=0) for end in self.ends]
@@ -150,8 +151,6 @@ class Ladder:
     def __init__(self, world: iota.World, blocks: int = 7, top: iota.Vec3 = TOP) -> None:
         self.world, system = world, world.system
         self.blocks = [Block(world, number, top - (0, LENGTH * number, 0)) for number in range(blocks)]
-        for block in self.blocks:  # they lie on each other
-            block.body.material = iota.Material(touches="nothing")
         self.axle = system.revolute(self.blocks[0].body, at=top, axis=(0, 0, 1), limits=(0, math.pi))
         for block in self.blocks[1:]:  # two points far from all hinges keep it in the plane z = 0 of the axle
             for x in (-LENGTH, LENGTH):
@@ -230,9 +229,8 @@ def stand(world: iota.World, top: iota.Vec3 = TOP, floor: float = 0.0) -> None:
     """Its arm is the axle of the top block. floor: height of what it stands on, m."""
     x, y, z = top
     back = z - WIDTH
-    about_x = (0, 0.5**0.5, 0, 0.5**0.5)
     world.add_strut((x, y, back), (x, y, z + 0.7 * WIDTH), looks.cylinder(0.003, "steel"))
-    world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=about_x), (x, y, z + 0.7 * WIDTH))
+    world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=("y", 90)), (x, y, z + 0.7 * WIDTH))
     world.add_strut((x, floor + 0.015, back), (x, y + 0.03, back), looks.cylinder(0.006, "steel"))
     world.add_static(looks.box((0.26, 0.02, 0.16), "wood", 0.004), (x - 0.02, floor + 0.01, back + 0.04))
 
