@@ -225,7 +225,8 @@ class Scene:
         for _ in range(10):
             self.world.step()
         energy = self.system.energy
-        size = 2e-3 * (1 + self.largest)
+        # Of a stride that an edit ends, each step is booked as losing the same, which is not so where bodies begin to fall.
+        size = (5e-3 if self.was_edited else 2e-3) * (1 + self.largest)
         assert energy.lost >= -size, energy
         if not self.was_edited:
             assert energy.total <= self.start.total + size, energy
