@@ -161,7 +161,8 @@ export class Viewer {
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
     if (this.redraw_.isDue(seconds)) {
-      this.stage.drawReflections();
+      // Not before there is a world: until it has come, its colors are not known.
+      if (warming || this.shown_ !== "nothing" || this.presenting) this.stage.drawReflections();
       if (this.presenting || !this.renderer.shadowMap.enabled) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);

@@ -95,14 +95,18 @@ const patience = 5;
 
 export class Reflections {
   private readonly generator_: PMREMGenerator;
+  private readonly sky_: SkyColors;
   private readonly studio_ = new Scene();
   private readonly lamps_: readonly MeshBasicMaterial[];
   private readonly ground_ = { value: new Color() };
   private target_: WebGLRenderTarget | null = null;
-  private isOld_ = true;
+  /** All colors and lights of the picture, and of the newest one that was drawn. */
+  private wanted_ = "";
+  private drawn_ = "";
   private wait_ = 0;
 
   constructor(renderer: WebGLRenderer, colors: SkyColors) {
+    this.sky_ = colors;
     this.generator_ = new PMREMGenerator(renderer);
     this.studio_.add(new Mesh(new SphereGeometry(20, 32, 16), makeSurroundings(colors, this.ground_, renderer.toneMappingExposure)));
     this.lamps_ = softBoxes.map(({ size, at }) => {
@@ -114,18 +118,19 @@ export class Reflections {
     });
   }
 
-  /** `light`: of the soft boxes, times the usual. `ground`: radiance; null: there is none. */
+  /** `light`: of the soft boxes, times the usual. `ground`: radiance; null: there is none. Call it when colors of the sky change, too. */
   set(light: number, ground: Color | null): void {
     softBoxes.forEach(({ strength, tint }, index) => this.lamps_[index].color.set(tint).multiplyScalar(light * strength));
     if (ground === null) this.ground_.value.setRGB(-1, -1, -1);
     else this.ground_.value.copy(ground);
-    this.isOld_ = true;
+    const { horizon, zenith } = this.sky_;
+    this.wanted_ = [light, ...[this.ground_, horizon, zenith].flatMap(({ value }) => value.toArray())].join();
   }
 
-  /** Call it before each picture of the scene. */
+  /** Call it before each picture of the scene. Each drawing takes as long as several pictures. */
   update(scene: Scene): void {
-    if (--this.wait_ > 0 || !this.isOld_) return;
-    this.isOld_ = false;
+    if (--this.wait_ > 0 || this.wanted_ === this.drawn_) return;
+    this.drawn_ = this.wanted_;
     this.wait_ = patience;
     const before = this.target_;
     this.target_ = this.generator_.fromScene(this.studio_, 0.025);
