@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
+from waiting import PATIENCE
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -117,7 +118,9 @@ class PageClient:
         address = f"{parts.scheme.replace('http', 'ws')}://{parts.netloc}/ws?{parts.query}"
         origin = f"{parts.scheme}://{parts.netloc}"
         self._open = ExitStack()
-        self.socket = self._open.enter_context(connect(address, origin=origin, max_size=None, proxy=None, ssl=trust))
+        self.socket = self._open.enter_context(
+            connect(address, origin=origin, max_size=None, proxy=None, ssl=trust, open_timeout=PATIENCE)
+        )
         self.entities: dict[str, dict[int, dict[str, Any]]] = {kind: {} for kind in ENTITIES}
         self.told = self.pose_frames = 0
         self.places: dict[int, tuple[float, ...]] = {}
@@ -157,8 +160,8 @@ class PageClient:
     def send_bytes(self, data: bytes) -> None:
         self.socket.send(data)
 
-    def wait_for(self, condition: Callable[[], Any], seconds: float = 60.0) -> Any:
-        """Until a condition on what was received holds; its value. `seconds` is for machines that are busy."""
+    def wait_for(self, condition: Callable[[], Any], seconds: float = PATIENCE) -> Any:
+        """Until a condition on what was received holds; its value."""
         end = time.monotonic() + seconds
         with self._changed:
             while not (value := condition()):

@@ -7,13 +7,13 @@ import signal
 import subprocess
 import sys
 import textwrap
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from page_client import PageClient, decode
 from pages import listen_for_complaints, needs_browser, open_page
+from waiting import wait_until
 
 import iota
 from iota.film.stream import unpack
@@ -26,13 +26,6 @@ def read(file: Path) -> tuple[Told, bool]:
     """The messages of a recording by name, and whether it is complete."""
     messages, is_complete = unpack(file.read_bytes())
     return [(at, *decode(data)) for at, data in messages], is_complete
-
-
-def wait_for(check: Any) -> None:
-    end = time.monotonic() + 30
-    while not check():
-        assert time.monotonic() < end
-        time.sleep(0.02)
 
 
 def make_world() -> iota.World:
@@ -171,7 +164,7 @@ def test_an_older_file_stays_until_there_is_something_to_record(tmp_path: Path) 
     world = make_world()
     with world.pages.record(file):
         world.start(port=0)
-        wait_for(lambda: file.read_bytes() != b"an older one")
+        wait_until(lambda: file.read_bytes() != b"an older one")
     world.stop()
     assert read(file)[1] and [path for path in tmp_path.iterdir() if path.is_file()] == [file]
     make_world().pages.record(tmp_path / "SHOUTED.IOTA").stop()

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ import pytest
 from amount import TRIES_ALL
 from page_client import PageClient
 from pages import listen_for_complaints, needs_browser, open_page
+from waiting import PATIENCE, wait_until
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 
 from iota.journal.folder import BusyError
@@ -58,13 +59,6 @@ def rooms(tmp_path: Path) -> Iterator[Rooms]:
         yield rooms
 
 
-def wait_until(condition: Callable[[], object], seconds: float = 20) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 def ask(rooms: Rooms, path: str, method: str = "GET", token: str | None = None, **query: str) -> bytes:
     query["token"] = token or rooms.tokens[2]
     base = rooms.url.split("/?")[0]
@@ -89,7 +83,7 @@ def link(room: dict[str, Any], role: str = "host") -> str:
 
 def join(url: str, name: str = "") -> PageClient:
     """As a page does: again and again."""
-    end = time.monotonic() + 30
+    end = time.monotonic() + PATIENCE
     while True:
         try:
             return PageClient(url, name)

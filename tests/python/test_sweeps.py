@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from waiting import wait_until
 
 import iota
 from iota.cli import plot
@@ -80,8 +81,10 @@ def test_a_run_that_raises_or_dies_is_a_row_with_its_inputs_and_the_others_are_w
 
 
 SCRIPT = """
-import time
+import pathlib, time
 def run(n, kind):
+    while n > 15 and not pathlib.Path("goes_on").exists():
+        time.sleep(0.01)
     with open("calls", "a") as calls:
         calls.write(f"{n}{kind}\\n")
     time.sleep(0.02)
@@ -94,11 +97,10 @@ def test_a_killed_sweep_goes_on_with_no_result_missing_or_doubled(tmp_path: Path
     words = [sys.executable, "-m", "iota", "sweep", "squares.py", "--vary", "n=1..20", "--vary", "kind=a,b"]
     begun = subprocess.Popen([*words, "--processes", "2"], cwd=tmp_path)
     table = tmp_path / "squares.csv"
-    end = time.monotonic() + 30
-    while not (table.exists() and len(cells(table)) > 6) and time.monotonic() < end:
-        time.sleep(0.01)
+    wait_until(lambda: table.exists() and len(cells(table)) > 6)
     begun.kill()
     begun.wait()
+    (tmp_path / "goes_on").touch()
     time.sleep(0.1)  # its processes notice it
     done = len(cells(table)) - 1
     assert 5 < done < 40

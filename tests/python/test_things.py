@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from page_client import NOTHING, PageClient
+from waiting import wait_until
 
 import iota
 from iota import looks
@@ -419,10 +419,7 @@ def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> Non
         page.wait_for(lambda: len(heard) == 7)
         assert pointers == ["mouse", "left"]
     world.call(lambda: None)
-    for _ in range(200):
-        if len(heard) == 9:
-            break
-        time.sleep(0.02)
+    wait_until(lambda: len(heard) == 9)
     assert heard[7:] == [("end", None), "release"], "a page that leaves lets go"
 
 
@@ -452,10 +449,7 @@ def test_a_drag_ends_with_a_reason_when_the_body_is_taken_out_of_the_hand(
         assert heard[3] == ("end", third.slot, "reset")
         page.send("grab_start", hold=7, body=page.body(third.slot), local_point=(0, 0, 0), target=(2, 0, 0))
         page.wait_for(lambda: len(heard) == 5)
-    for _ in range(500):
-        if len(heard) == 6:
-            break
-        time.sleep(0.02)
+    wait_until(lambda: len(heard) == 6)
     assert heard[5] == ("end", third.slot, "left")
 
 
@@ -529,10 +523,7 @@ def test_keys_joins_and_frames_are_called_until_forgotten(run_world: Runner) -> 
         assert world.call(lambda: world.events.forget(pressed)) and not world.call(lambda: world.events.forget(print))
         page.send("key", key="k", down=True)
         number = page.id
-    for _ in range(200):
-        if len(heard) == 4:
-            break
-        time.sleep(0.02)
+    wait_until(lambda: len(heard) == 4)
     assert heard[3] == ("leave", number)
 
 

@@ -10,9 +10,11 @@ import re
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 import pytest
+from waiting import wait_until
 
 import iota
 from iota.terminal import TerminalView, outline
@@ -155,9 +157,8 @@ def test_keys_in_the_terminal_act_on_the_selected_body() -> None:
 
         def press() -> None:
             def until(condition: Callable[[], bool]) -> None:
-                end = time.monotonic() + 20
-                while not condition() and time.monotonic() < end:
-                    time.sleep(0.01)
+                with suppress(AssertionError):
+                    wait_until(condition)
                 answered.append(condition())
 
             until(lambda: len(places) > 2)

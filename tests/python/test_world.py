@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from page_client import NOTHING, PageClient, encode
+from waiting import wait_until
 
 import iota
 from iota._protocol import ActionTarget, ControlCommand, ControllerButton, Role
@@ -177,12 +178,9 @@ def test_reset_runs_timed_events_again_and_calls_the_script(run_world: Runner) -
     world.at(0.05)(lambda: calls.append("event"))
     world.on_reset(lambda: calls.append("reset"))
     run_world(world)
-    for _ in range(100):
-        time.sleep(0.02)
-        if calls.count("event") == 1 and "reset" not in calls:
-            world.call(world.reset)
-        if calls.count("event") == 2:
-            break
+    wait_until(lambda: calls == ["event"])
+    world.call(world.reset)
+    wait_until(lambda: len(calls) == 3)
     assert calls == ["event", "reset", "event"]
 
 
