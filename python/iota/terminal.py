@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Grip, Mesh, Shape, Solid, Vec3
-from iota.world.frames import axes_of
+from iota.frames import axes_of
 from iota.world.view import View
 from iota.world.world import World
 

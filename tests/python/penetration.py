@@ -11,7 +11,7 @@ import numpy as np
 
 import iota
 from iota import looks
-from iota.world.frames import axes_of, turn_from_x
+from iota.frames import axes_of, turn_from_x
 from iota.world.visuals import listed
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

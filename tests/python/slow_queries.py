@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, HalfSpace, Mesh, Vec3
-from iota.world.frames import axes_of
+from iota.frames import axes_of
 from iota.world.queries import Hit, Place
 from iota.world.world import World
 

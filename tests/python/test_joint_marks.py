@@ -12,7 +12,7 @@ import pytest
 from page_client import PageClient
 
 import iota
-from iota.world.frames import turned
+from iota.frames import turned
 
 Runner = Callable[[iota.World], str]
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import time
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,7 @@ def make_world() -> iota.World:
 def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_path: Path) -> None:
     file = tmp_path / "lesson.iota"
     world = make_world()
+    began = time.monotonic()
     with world.pages.record(file) as recording:
         url = world.start(port=0)
         with PageClient(url, name="Ada") as ada, PageClient(url, name="Max") as max_:
@@ -60,6 +62,7 @@ def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_pa
             world.users.notice("for all")
             max_.wait_for(lambda: max_.notices)
         world.call(lambda: None)
+    lasted = time.monotonic() - began
     assert recording.error is None
     world.stop()
     told, is_complete = read(file)
@@ -77,7 +80,7 @@ def test_a_recording_has_the_actions_of_two_users_and_plays_from_any_time(tmp_pa
     assert [values["title"] for _, name, values in told if name == "notice"] == ["for all"]
     assert [values["kind"] for _, name, values in told if name == "effect"].count("break") == 1
     times = [at for at, *_ in told]
-    assert times == sorted(times) and times[0] < 0.5
+    assert times == sorted(times) and times[0] >= 0 and times[-1] < lasted
     assert len(poses) / (times[-1] - times[0]) < 40, "some 30 a second"
 
 

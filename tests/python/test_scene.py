@@ -12,7 +12,7 @@ from shown import show
 import iota
 from iota import looks
 from iota._protocol import NO_COLOR, BodyKind, TieKind
-from iota.world.frames import into_frame, turn_from_x
+from iota.frames import into_frame, turn_from_x
 from iota.world.visuals import Visuals
 
 ROOT = Path(__file__).parents[2]

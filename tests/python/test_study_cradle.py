@@ -9,8 +9,8 @@ from conftest import Runner
 from page_client import PageClient
 
 import iota
+from iota.frames import turned
 from iota.studies import cradle
-from iota.world.frames import turned
 
 
 def build(left: int, right: int, balls: int = 5) -> tuple[iota.World, cradle.Cradle]:

@@ -9,8 +9,8 @@ import pytest
 from amount import TRIES_ALL, sampled
 
 import iota
+from iota.frames import turned
 from iota.studies import ladder
-from iota.world.frames import turned
 
 MINUTES = float(os.environ.get("IOTA_LADDER_MINUTES", sampled(60) / 60))  # tools/soak.py asks for ten
 

@@ -8,8 +8,8 @@ from shown import show
 
 import iota
 from iota._protocol import TieKind
+from iota.frames import turned
 from iota.studies import mechanisms
-from iota.world.frames import turned
 
 
 def by_kind(system: iota.System) -> dict[str, list[iota.Constraint]]:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import iota
+from iota.frames import axes_of
 from iota.studies import ragdolls
 from iota.studies._figure import Figure
-from iota.world.frames import axes_of
 
 FALLS = ragdolls.EACH * 12 + 0.8  # s, until all have left their hooks
 INNER = {"hand": "arm", "shank": "thigh"}

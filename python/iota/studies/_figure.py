@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import iota
-from iota.world.frames import Quaternion, one_after_another, turned
+from iota.frames import Quaternion, one_after_another, turned
 
 Place = tuple[float, float, float]
 Range = tuple[float, float]

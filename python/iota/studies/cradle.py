@@ -11,7 +11,7 @@ from typing import Literal
 
 import iota
 from iota import looks
-from iota.world.frames import turn_from_x
+from iota.frames import turn_from_x
 
 BALLS = 5
 RADIUS, STRING, SPREAD = 0.012, 0.13, 0.045  # of a ball; height and half the width of its two strings, m

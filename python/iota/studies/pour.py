@@ -9,7 +9,7 @@ import numpy as np
 
 import iota
 from iota import looks
-from iota.world.frames import Quaternion, one_after_another
+from iota.frames import Quaternion, one_after_another
 
 from ._story import Story
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import iota
 from iota import looks
-from iota.world.frames import into_frame, turned
+from iota.frames import into_frame, turned
 
 from ._figure import Figure, person
 from ._story import Story

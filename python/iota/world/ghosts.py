@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from iota._core import Body, Vec3
+from iota.frames import into_frame, relative_turn
 from iota.looks import Look, capsule
 from iota.world.drawings import Drawings
-from iota.world.frames import into_frame, relative_turn
 from iota.world.scene import Scene
 from iota.world.shown import Marker
 from iota.world.visuals import listed

@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from iota._core import Body, Material, Solid, System
+from iota.frames import axes_of
 from iota.simulator import Simulator
-from iota.world.frames import axes_of
 
 STANDING = 1e-3  # share of its height, by which a body that stands may miss the ground
 MATERIAL = Material(friction=0.6)  # of the ground, and of what can move, unless the script gives another one

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from iota._core import Body, Constraint, System, Vec3
+from iota.frames import into_frame
 from iota.world.clients import Clients
 from iota.world.event import Event
 from iota.world.events import Events
-from iota.world.frames import into_frame
 
 SCREEN = ("mouse", "touch")  # names of pointers without depth
 SAMPLES = 48  # of a way, before it is refined

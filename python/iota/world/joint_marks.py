@@ -8,9 +8,9 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 from iota._core import Body, Constraint, JointCoordinate, System, Vec3
+from iota.frames import into_frame
 from iota.world.drawings import Drawings
 from iota.world.events import Events
-from iota.world.frames import into_frame
 from iota.world.many import Segments
 
 AXIS, STOPS, POINTER = "#3f7fd0", "#d0402b", "#f2a324"

@@ -10,9 +10,9 @@ from typing import Any, Literal
 
 from iota._core import Body, HalfSpace, Shape, System, Vec3
 from iota.arguments import SHORT
+from iota.frames import one_after_another, turn_from_x, turned
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import SimulatedBody
-from iota.world.frames import one_after_another, turn_from_x, turned
 from iota.world.ground import MATERIAL
 from iota.world.parts import Part
 from iota.world.things import Rotation, unit_quaternion, vector

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from iota._core import Vec3
+from iota.frames import into_frame, relative_turn
 from iota.simulator import SimulatedBody, Simulator
-from iota.world.frames import into_frame, relative_turn
 
 
 def describe(simulator: Simulator) -> list[tuple[Any, ...]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Particle, System
 from iota.arguments import SHORT
-from iota.world.frames import one_after_another
+from iota.frames import one_after_another
 
 Floats = NDArray[np.float64]
 SAME = 1e-6  # of the mass

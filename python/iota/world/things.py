@@ -17,9 +17,9 @@ from iota._core import Body, Bond, Particle, Room, Vec3
 from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
 from iota.arguments import SHORT, refuse_reading, refuse_unknown
 from iota.colors import color_number
+from iota.frames import into_frame
 from iota.simulator import SimulatedBody, SimulatedParticle
 from iota.textures import Texture
-from iota.world.frames import into_frame
 from iota.world.images import Images
 from iota.world.records import encode
 
