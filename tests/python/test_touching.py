@@ -71,7 +71,7 @@ class Meeting:
         return distance(*poses)
 
 
-@pytest.mark.parametrize("kinds", itertools.combinations_with_replacement(KINDS, 2), ids="-".join)
+@pytest.mark.parametrize("kinds", list(itertools.combinations_with_replacement(KINDS, 2)), ids="-".join)
 def test_bodies_act_on_each_other_where_they_touch_and_along_their_normal(kinds: tuple[str, str]) -> None:
     for seed in range(3):
         meeting = Meeting(kinds, seed)
