@@ -57,13 +57,14 @@ void Island::clear() {
   problem_.clear();
   solver_name_ = {}, solver_.reset(), integrator_->set_external(nullptr);
   idle_ = to_wake_ = is_still_ = has_stepped_ = is_frozen_ = false;
-  book_epoch_ = 0, last_ = {}, stride_ = 0, solved_steps_ = 1, work_ = 0;
+  first_body_ = none, book_epoch_ = 0, last_ = {}, stride_ = 0, solved_steps_ = 1, work_ = 0;
 }
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring, const KeptOrders& orders) {
   clear();
   nodes_.build(model, articulates, node_of_ring);
+  find_first_body();
   idle_ = has_no_free_body(model);
   problem_.add_nodes(nodes_.size());
   std::uint8_t owner = 0;
@@ -239,13 +240,18 @@ bool Island::meets_pinned(const Model& model) const {
 }
 
 // The order of bodies depends on which islands have met; a restored one has another.
-std::uint32_t Island::keeper(const Model& model) const {
-  return model.bodies[*std::min_element(nodes_.bodies.begin(), nodes_.bodies.end())].articulate;
+void Island::find_first_body() {
+  const auto first = std::min_element(nodes_.bodies.begin(), nodes_.bodies.end());
+  first_body_ = first == nodes_.bodies.end() ? none : *first;
 }
 
-model::Articulate& Island::articulate(Model& model) const { return model.articulates[keeper(model)]; }
+model::Articulate& Island::articulate(Model& model) const {
+  return model.articulates[model.bodies[first_body_].articulate];
+}
 
-const model::Articulate& Island::articulate(const Model& model) const { return model.articulates[keeper(model)]; }
+const model::Articulate& Island::articulate(const Model& model) const {
+  return model.articulates[model.bodies[first_body_].articulate];
+}
 
 void Island::try_step(const Model& model, double h, const Limits& limits) {
   if (tried_ != Tried::nothing) integrator_->take_back();

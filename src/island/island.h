@@ -216,8 +216,9 @@ class Island {
   /// Falls asleep once it has been slow for long enough, if sleep is on.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&);
   void look_whether_still(const model::Model&);
-  /// The articulate of its body with the lowest slot: it has the island's state between steps.
-  std::uint32_t keeper(const model::Model&) const;
+  /// Call it if its list of bodies has changed.
+  void find_first_body();
+  /// The articulate of its first body: it has the island's state between steps.
   model::Articulate& articulate(model::Model&) const;
   const model::Articulate& articulate(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
@@ -228,8 +229,9 @@ class Island {
   solver::Problem problem_;
   std::unique_ptr<solver::Integrator> integrator_;  // a pointer, so that users of the header do not include it
   std::array<char, 32> solver_name_{};
-  std::unique_ptr<Solver> solver_;  // replaces the integrator's own solver
-  bool idle_ = false;               // no body of it can move by itself: there is nothing to solve
+  std::unique_ptr<Solver> solver_;          // replaces the integrator's own solver
+  std::uint32_t first_body_ = model::none;  // with the lowest slot
+  bool idle_ = false;                       // no body of it can move by itself: there is nothing to solve
   bool to_wake_ = false;
   bool is_still_ = false;
   ingredient::Book still_book_;

@@ -56,6 +56,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     std::erase_if(nodes_.bodies,
                   [&](std::uint32_t body) { return std::binary_search(change.left.begin(), change.left.end(), body); });
   nodes_.bodies.insert(nodes_.bodies.end(), change.joined.begin(), change.joined.end());
+  find_first_body();
   auto& [changed, leaving, around, order] = lists_at_hand;
   changed.clear();
   find_changed_nodes(model, change, node_of_ring, changed);
