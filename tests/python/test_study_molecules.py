@@ -159,3 +159,24 @@ def test_the_soft_molecule_settles_longer_than_the_rigid_one() -> None:
     bonded = {frozenset(bond.ends) for bond in system.bonds if bond.law.name == "spring"}
     pairs = [pair for pair in combinations(system.particles, 2) if frozenset(pair) not in bonded]
     assert min(abs(p.position - q.position) for p, q in pairs) > 0.9 * soft_molecule.ROOM
+
+
+def test_the_outline_beside_the_soft_molecule_is_the_rigid_one_at_rest() -> None:
+    system = molecule.build(repeat=False).system
+    settle(system)
+    # It may turn about the vertical through the nail.
+    assert soft_molecule.at_rest()[:, 1] == pytest.approx(system.positions[:, 1], abs=1e-4)
+
+
+def test_the_soft_molecule_is_pushed_by_itself_when_it_is_calm_and_makes_no_energy(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    world = soft_molecule.build()
+    energies = []  # J, before a step
+    while world.system.time < 41:
+        energies.append(world.system.energy.kinetic)
+        world.step()
+    pushes = [step * world.dt for step in np.flatnonzero(np.diff(energies) > 1e-3) if step * world.dt > 7]
+    assert 1 <= len(pushes) <= 5
+    assert all(abs(push / 8 - round(push / 8)) < 0.01 for push in pushes)
+    assert "gained energy" not in capsys.readouterr().err
