@@ -51,6 +51,14 @@ describe("where a user stands at first", () => {
     expect([1e-9, 0.5, 1.5, 4, 15, 1e3].map(fitScale)).toEqual([1e-9 / 2, 0.25, 1, 1, 1, 1e3 / 2]);
   });
 
+  it("is farther from a wide thing, but not much farther than the camera of the script", () => {
+    const away = (toShow: number) => {
+      const { head } = stand({ scale: 1, ground: 0, eye: [0, 1, 2], target: [0, 1, 0], toShow }, new Matrix4().setPosition(0, 1.6, 0));
+      return head.z;
+    };
+    expect([0, 1.2, 2.2, 9].map(away)).toEqual([1.5, 1.5, 2.2, 2.6].map((z) => expect.closeTo(z, 9) as number));
+  });
+
   it("has the thing at eye height where there is no ground", () => {
     const { head } = stand({ scale: 1, ground: null, eye: [0, 1, 3], target: [0, 1, 0] }, new Matrix4().setPosition(0, 1.2, 0));
     expect(head.y).toBeCloseTo(1.15);

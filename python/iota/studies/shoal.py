@@ -203,4 +203,4 @@ def present(world: iota.World) -> None:
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.drawings.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
-    world.camera = iota.Camera(position=(0, 2.4, 9.4), target=(0, 2.9, 0))
+    world.camera = iota.Camera(position=(0.6, 2.5, 10.3), target=(0.6, 3.0, 0))

@@ -4,7 +4,7 @@
 // not follow single things that go away. A camera that the user has moved is not changed.
 
 import { MathUtils } from "three";
-import { addOutermost, fitView, shareOutside, standBack, dropOutside, viewAxes, type FittedView, type Frame } from "../navigate/framing.ts";
+import { addOutermost, distanceToShow, fitView, shareOutside, standBack, dropOutside, viewAxes, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import type { LinkState } from "../net/connection.ts";
 import { BodyKind } from "../protocol/generated.ts";
@@ -114,6 +114,14 @@ export class Framing implements FramePart, PageListener {
     const view = fitView(this.setting_, yaw, Math.max(pitch, 0.05), this.calcFrame_(1));
     if (view !== null) this.navigation_.goTo(view);
     this.viewer_.invalidate();
+  }
+
+  /** How far from the middle of the first view, on the level, all that moves is within a view of this tangent to both sides, m. */
+  stepToShow(side: number): number {
+    this.setting_.clear();
+    for (const item of this.members_) this.addItem_(item, this.setting_);
+    this.dropUnseen_(this.setting_);
+    return distanceToShow(this.setting_, { ...this.navigation_.home, pitch: 0 }, { side, up: Infinity, down: Infinity });
   }
 
   // --- PageListener

@@ -392,16 +392,27 @@ export class Headset implements PageListener, FramePart {
   /** Before the scene, at a scale. */
   private place_(scale: number): void {
     this.toPlace_ = false;
-    const { world, navigation, viewer: { rig, room } } = this.page_;
+    const { world, navigation, framing, viewer: { rig, room } } = this.page_;
     room.scale.setScalar(scale);
     const { pivot, distance, yaw, pitch } = navigation.home;
     const flat = distance * Math.cos(pitch);
     const eye = [pivot[0] + flat * Math.sin(yaw), pivot[1] + distance * Math.sin(pitch), pivot[2] + flat * Math.cos(yaw)] as const;
     const { ground } = world;
-    standBefore({ scale, eye: [...eye], target: [...pivot], ground }, this.headLocal_.elements, this.raised_, rig);
+    const toShow = framing.stepToShow(0.9 * this.calcSide_());
+    standBefore({ scale, eye: [...eye], target: [...pivot], ground, toShow }, this.headLocal_.elements, this.raised_, rig);
     this.locomotion.lift = ground === null ? this.raised_ : (rig.position.y - ground) / scale;
     this.panel.snap();
     this.moved_();
+  }
+
+  /** Tangent of the angle that at least one eye sees to the left, or to the right if that is less. */
+  private calcSide_(): number {
+    let [left, right] = [0, 0];
+    for (const { projectionMatrix: { elements } } of this.page_.viewer.renderer.xr.getCamera().cameras) {
+      left = Math.max(left, (1 - elements[8]) / elements[0]);
+      right = Math.max(right, (1 + elements[8]) / elements[0]);
+    }
+    return Math.min(left, right) || Infinity;
   }
 
   /** After a jump of the rig: updates everything that depends on it within the frame. */

@@ -10,6 +10,8 @@ export interface Standing {
   readonly eye: Readonly<Vec3>;
   readonly target: Readonly<Vec3>;
   readonly ground: number | null;
+  /** From where on the level all that moves is in the headset's view, m from the target; 0: from anywhere. */
+  readonly toShow?: number;
 }
 
 /** The used part of a rig; three's Object3D has it. */
@@ -22,6 +24,8 @@ export interface Rig {
 const nearest = 0.9;
 /** A step is shorter than a camera's distance, as a headset has a wider view than a screen. */
 const ofCamera = 0.75;
+/** A wide scene is seen from farther away, up to so many distances of the camera. */
+const widestStep = 1.3;
 /** Without a ground in reach, eyes are this far above the scene's center, m. */
 const eyesAbove = 0.15;
 /** A small scene whose center is farther above the ground is out of reach from there, m of the user's. */
@@ -54,7 +58,7 @@ export function tableScale(distance: number): number {
  * low scene is brought up to the eyes: then the ground is above the user's floor, as a table is.
  */
 export function standBefore(settings: Standing, head: ArrayLike<number>, raised: number, rig: Rig): void {
-  const { eye, target, scale, ground } = settings;
+  const { eye, target, scale, ground, toShow = 0 } = settings;
   let awayX = eye[0] - target[0];
   let awayZ = eye[2] - target[2];
   const far = Math.hypot(awayX, awayZ);
@@ -65,7 +69,7 @@ export function standBefore(settings: Standing, head: ArrayLike<number>, raised:
     awayX = 0;
     awayZ = 1;
   }
-  const step = Math.max(ofCamera * far, scale * nearest);
+  const step = Math.max(ofCamera * far, Math.min(toShow, widestStep * far), scale * nearest);
   // The head looks along -z of its own frame; turned about y by `yaw`, -z points to (-sin yaw, -cos yaw).
   const facing = Math.atan2(awayX, awayZ);
   const flat = Math.hypot(head[8], head[10]);
