@@ -80,6 +80,37 @@ def test_a_click_places_the_chosen_thing_where_the_ray_meets_the_middle_or_the_g
     run(world, 1.0)
 
 
+def test_a_shape_seen_through_is_where_a_click_will_place_the_chosen_thing(world: iota.World) -> None:
+    (frame,) = (thing for thing in world.drawings.things if isinstance(thing, iota.world.Frame))
+    ghosts = [thing for thing in world.drawings.things if getattr(thing, "on", None) is frame]
+    (listener,) = world._state.listeners.of("pointer", None)
+
+    def shown(what: str, origin: tuple[float, ...], direction: tuple[float, ...], pointer: str = "mouse") -> Any:
+        widget(world, "place").value = what
+        event = iota.Event(
+            world.system, "pointer", origin=iota.Vec3(*origin), direction=iota.Vec3(*direction), pointer=pointer
+        )
+        listener.hook.function(event)
+        visible = [ghost for ghost in ghosts if ghost.visible]
+        assert len(visible) <= 1
+        return frame.at if visible else None
+
+    assert len(ghosts) == len(playground.PLACE)
+    for number, what in enumerate(playground.PLACE):
+        way = (0.4 + 0.2 * number, -0.05, -1)
+        at = shown(what, (0, 1.5, 4), way)
+        assert at is not None
+        click(world, what, (0, 1.5, 4), way)
+        center = world.system.bodies[-1].center_of_mass
+        assert abs(center.x - at.x) < 1e-9 and center.y <= at.y + 1e-9
+    assert shown("nothing", (0, 1.5, 4), (0, 0, -1)) is None
+    assert shown("box", (0, 1.5, 4), (0, 0, -1)) is not None
+    assert shown("box", (0, 1, 4), (0, 1, 0)) is None, "in the sky"
+    box = world.system.bodies[0]
+    assert shown("box", (box.center_of_mass.x, box.center_of_mass.y, 4), (0, 0, -1)) is None, "a click takes what is there"
+    assert shown("box", (0, 1.5, 4), (0, 0, -1), "touch 1") is None
+
+
 def test_nails_ties_and_combining_act_and_are_undone(world: iota.World) -> None:
     system = world.system
     ball = playground.PLACE["ball"](world, iota.Vec3(2, 1.5, 0))

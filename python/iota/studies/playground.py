@@ -19,6 +19,7 @@ BALL, BOX = iota.Sphere(0.1), iota.Box((0.24, 0.16, 0.2), 0.015)
 ROD = 0.018  # m, radius of rods
 WOOD = 600.0  # kg/m^3
 MOST = 400  # bodies
+TOP = 2.02  # m, where the chain hangs from the beam
 NAME = re.compile(r"[\w-]+")  # of a file, without its ending
 
 
@@ -77,8 +78,8 @@ def start(world: iota.World) -> None:
     for kind, look in TIES.items():
         world.draw_ties(kind, look)
     with world.system.edit():
-        top_link = chain(world, iota.Vec3(-0.7, 2.0, 0), links=7)
-        box = PLACE["box"](world, iota.Vec3(-0.7, 2.0 - 0.8 - 0.08, 0))
+        top_link = chain(world, iota.Vec3(-0.7, TOP, 0), links=7)
+        box = PLACE["box"](world, iota.Vec3(-0.7, TOP - 0.8 - 0.08, 0))
         end = min((p for body in top_link.articulate for p in body.particles), key=lambda p: p.position.y)
         end.combine(box.attachment(end.position))
         hook = particle(world, iota.Vec3(0.6, 2.0, 0)).particles[0]
@@ -88,9 +89,21 @@ def start(world: iota.World) -> None:
         box.velocity = (0.8, 0, 0.3)
 
 
+# Shapes that show what a click will place, and the turn and place of each.
+GHOSTS: dict[str, tuple[looks.Look, tuple[str, float], float]] = {
+    "particle": (looks.sphere(0.05), ("z", 0), 0.0),
+    "rod": (looks.capsule(ROD, length=0.5), ("z", 0), 0.0),
+    "chain": (looks.capsule(ROD, length=0.8), ("z", 90), -0.4),
+    "box": (looks.Look(BOX), ("z", 0), 0.0),
+    "ball": (looks.Look(BALL), ("z", 0), 0.0),
+}
+GHOST = "#2f9d92a0"
+
+
 def placing(world: iota.World) -> None:
     """A click on nothing places what is chosen: on the ground, or in the upright plane through the middle, what is nearer."""
-    what = world.controls.choice("place", ["nothing", *PLACE], help="a click beside all things places one")
+    what = world.controls.choice("place", ["nothing", *PLACE], "box", help="a click beside all things places one")
+    foresee(world, what)
 
     def place(event: iota.Event) -> None:
         if what.value == "nothing" or event.origin is None or event.direction is None:
@@ -106,6 +119,33 @@ def placing(world: iota.World) -> None:
             PLACE[what.value](world, at)
 
     world.on_click("nothing")(place)
+
+
+def foresee(world: iota.World, what: iota.world.Choice) -> None:
+    """A shape seen through is where a click of the mouse, or of a hand, will place what is chosen."""
+    frame = world.drawings.frame()
+    ghosts = {
+        name: world.drawings.shape(look, (0, shift, 0), turn, on=frame, color=GHOST)
+        for name, (look, turn, shift) in GHOSTS.items()
+    }
+
+    def show(at: iota.Vec3 | None) -> None:
+        if at is not None:
+            frame.at = at
+        for name, ghost in ghosts.items():
+            ghost.visible = at is not None and name == what.value
+
+    show(None)
+    what.on_change(lambda: show(None))
+
+    @world.on_pointer
+    def follow(event: iota.Event) -> None:
+        if event.pointer.startswith("touch") or event.origin is None or event.direction is None:
+            return
+        # Over a body a click selects that, and a press takes it.
+        things = [body for body in world.system.bodies if body.kind != "static"]
+        is_free = what.value in ghosts and world.queries.ray(event.origin, event.direction, bodies=things) is None
+        show(aim(event.origin, event.direction) if is_free else None)
 
 
 def aim(origin: iota.Vec3, direction: iota.Vec3) -> iota.Vec3 | None:
