@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import struct
 import time
 from pathlib import Path
 from typing import Any
@@ -157,6 +158,47 @@ def test_a_short_buffer_of_gltf_is_refused_with_its_number(tmp_path: Path) -> No
     assert "buffer 0 cannot be read" in refusal(write(tmp_path, "a.gltf", json.dumps(head)))
 
 
+def test_values_of_gltf_beyond_their_part_of_a_buffer_are_refused_with_their_number(tmp_path: Path) -> None:
+    accessor = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}
+    for change, reason in (
+        ({"count": 4}, "accessor 0 has 4 values, which end at byte 48 of a part of 36"),
+        ({"byteOffset": 4}, "accessor 0 has 3 values, which end at byte 40 of a part of 36"),
+        ({"bufferView": 7}, "accessor 0 is in buffer view 7; there are 0..0"),
+        ({"sparse": {"count": 1}}, "accessor 0 is sparse, which is not read; export it without"),
+        ({"type": "VEC7"}, "is not glTF: KeyError: 'VEC7'"),
+    ):
+        path = write(tmp_path, "a.gltf", json.dumps(triangle_gltf(accessors=[accessor | change])))
+        assert refusal(path) == f"{path}: {reason}"
+
+
+def tetrahedron_stl(size: float = 1.0) -> bytes:
+    corners = size * np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], "<f4")
+    rows = b"".join(
+        struct.pack("<12fH", 0, 0, 0, *corners[list(face)].ravel(), 0)
+        for face in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+    )
+    return b"made by a program".ljust(80) + struct.pack("<I", 4) + rows
+
+
+def test_bytes_after_the_triangles_of_a_binary_stl_file_are_told_and_half_files_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.stl"
+    path.write_bytes(tetrahedron_stl() + b"COLOR=1")
+    assert "7 bytes after its last triangle are left out" in told(path)
+    assert shapelib.load(path).counts["volume"] == pytest.approx(1 / 6)
+    for data in (tetrahedron_stl()[:-1], tetrahedron_stl() + bytes(5000)):
+        path.write_bytes(data)
+        assert "it is truncated or not an STL file" in refusal(path)
+
+
+def test_a_solid_that_was_hardly_made_in_meters_is_told_with_its_size(tmp_path: Path) -> None:
+    path = tmp_path / "part.stl"
+    path.write_bytes(tetrahedron_stl(120.0))
+    assert "it is 120 m large; if its unit is not the meter, give scale, as in scale=0.001" in told(path)
+    assert "large" not in told(path, scale=0.001)
+    path.write_bytes(tetrahedron_stl(5.0))
+    assert "large" not in told(path)
+
+
 def test_a_corner_counted_backwards_beyond_the_first_is_told_as_it_is_written(tmp_path: Path) -> None:
     path = write(tmp_path, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9\n")
     assert refusal(path) == f"{path}, line 4: a face uses vertex -9, counted backwards; there are 3 vertices before it"
@@ -284,6 +326,18 @@ def test_joints_of_other_namespaces_and_links_without_inertia_are_told(tmp_path:
     assert "ball (<drake:joint>, line 5)" in notes
     assert "1 link has no <inertial>, and 1e-06 kg each: tool" in notes
     assert "2 <sensor> are left out" in notes and "1 <drake:note> is left out" in notes
+
+
+def test_a_joint_without_the_limits_that_its_type_needs_is_told(tmp_path: Path) -> None:
+    inertia = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    links = "".join(f'<link name="{name}">{inertia}</link>' for name in "ab")
+    ends = '<parent link="a"/><child link="b"/>'
+    for kind, notes in (
+        ("revolute", "the joint j has no limits, which its type revolute needs: it moves freely"),
+        ("continuous", ""),
+    ):
+        text = f'<robot name="r">{links}<joint name="j" type="{kind}">{ends}</joint></robot>'
+        assert told(write(tmp_path, "r.urdf", text)) == notes
 
 
 def test_a_missing_include_is_told_with_the_file_and_line_that_names_it(tmp_path: Path) -> None:

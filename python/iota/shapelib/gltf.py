@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 MOST_ROUGH = 0.6  # of metal that shines
 MOST_PIXELS = 1 << 26  # of all images of a file: 256 MiB on the graphics card
+# Bytes of a number, by its type; numbers of a value. A matrix of bytes has gaps and is no part of a mesh.
+SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 WHOLE = {"b": 127, "B": 255, "h": 32767, "H": 65535}  # 1 in coordinates of whole numbers
 
 
@@ -54,6 +57,7 @@ def read_gltf(path: PathLike, read_mesh: Callable[[bytes, str], Any]) -> list[Pa
     try:
         _check_tree(head.get("nodes", []), path)
         _check_buffers(head, binary, path)
+        _check_accessors(head, path)
         materials = _Materials(head, binary, path)
         bare = _without_materials(head)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -132,6 +136,24 @@ def _check_buffers(head: dict[str, Any], binary: bytes | None, path: PathLike) -
         end, size = int(view.get("byteOffset", 0)) + int(view["byteLength"]), sizes[view["buffer"]]
         if end > size:
             raise FileError(path, f"buffer view {at} ends at byte {end} of buffer {view['buffer']}, which has {size}")
+
+
+def _check_accessors(head: dict[str, Any], path: PathLike) -> None:
+    """Raises FileError for values that lie beyond the end of their part of a buffer, or are given as differences."""
+    views = head.get("bufferViews", [])
+    for at, accessor in enumerate(head.get("accessors", [])):
+        if "sparse" in accessor:
+            raise FileError(path, f"accessor {at} is sparse, which is not read; export it without")
+        view = accessor.get("bufferView")
+        if view is None:
+            continue
+        if not 0 <= view < len(views):
+            raise FileError(path, f"accessor {at} is in buffer view {view}; there are 0..{len(views) - 1}")
+        count, size = int(accessor["count"]), SIZES[accessor["componentType"]] * NUMBERS[accessor["type"]]
+        stride = int(views[view].get("byteStride", size))
+        end = int(accessor.get("byteOffset", 0)) + (stride * (count - 1) + size if count > 0 else 0)
+        if end > (has := int(views[view]["byteLength"])):
+            raise FileError(path, f"accessor {at} has {count} values, which end at byte {end} of a part of {has}")
 
 
 def _left_out(head: dict[str, Any]) -> list[str]:

@@ -25,6 +25,7 @@ from iota.shapelib.surface_files import READERS, read_surface
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+WIDE, NARROW = 100.0, 1e-3  # m: files have numbers without a unit, and such solids are hardly made in meters
 MOST_EDGES = 100_000
 LIGHTEST, HEAVIEST = 1e-30, 1e15  # kg, of a body
 
@@ -85,6 +86,10 @@ def polyhedron(
     if named:
         structure.counts["groups"] = len(named)
     surface.vertices *= scale
+    if _is_file(source) and scale == 1:
+        size = float(np.ptp(surface.vertices, axis=0).max())
+        if size > WIDE or size < NARROW:
+            structure.notes.append(f"it is {size:.3g} m large; if its unit is not the meter, give scale, as in scale=0.001")
     if kind == "rigid":
         _make_solid(structure, surface, source, density, mass, look)
         _center(structure, at)

@@ -160,6 +160,9 @@ OBJ_WORDS = frozenset(
 )
 
 
+MOST_AFTER = 1024
+"""Bytes that a program may have written after the triangles of a binary STL file."""
+
 # --- STL --------------------------------------------------------------------------------------------------------------
 
 
@@ -175,6 +178,11 @@ def _read_stl(path: PathLike) -> Surface:
             raise FileError(
                 path, f"has {len(data)} bytes: neither a text STL, which begins with solid, nor a binary one"
             )
+        more = len(data) - 84 - 50 * count
+        if count > 0 and 0 < more <= MOST_AFTER:
+            surface = _from_binary_stl(data, count, path)
+            surface.notes.append(f"{more} bytes after its last triangle are left out")
+            return surface
         raise FileError(
             path,
             f"{count} triangles need {84 + 50 * count} bytes, it has {len(data)}: it is truncated or not an STL file",

@@ -339,6 +339,8 @@ def _joint(joint: Element, frame: Frame, initial: float, notes: list[str]) -> Li
             notes.append(
                 f"the limits of {name}, {lower} to {upper}, exclude its initial pose or leave no range: left out"
             )
+    elif kind in ("revolute", "prismatic") and joint.first("mimic") is None:
+        notes.append(f"the joint {name} has no limits, which its type {kind} needs: it moves freely")
     dynamics = joint.first("dynamics")
     if dynamics is not None:
         damping, friction = dynamics.number("damping", 0.0), dynamics.number("friction", 0.0)

@@ -13,6 +13,7 @@ import iota
 from iota import looks
 from iota.saving import replacing
 from iota.studies._scene import BEAM, CAMERA, FRAME, TIES, Scene
+from iota.world.widgets import Choice
 
 COLORS = ((0.85, 0.3, 0.2), (0.2, 0.5, 0.6), (0.9, 0.65, 0.15), (0.35, 0.55, 0.3))
 BALL, BOX = iota.Sphere(0.1), iota.Box((0.24, 0.16, 0.2), 0.015)
@@ -121,7 +122,7 @@ def placing(world: iota.World) -> None:
     world.on_click("nothing")(place)
 
 
-def foresee(world: iota.World, what: iota.world.Choice) -> None:
+def foresee(world: iota.World, what: Choice) -> None:
     """A shape seen through is where a click of the mouse, or of a hand, will place what is chosen."""
     frame = world.drawings.frame()
     ghosts = {

@@ -58,7 +58,8 @@ def at_rest() -> np.ndarray:
     points = shapelib.molecule(FILE, "rigid", scale=SCALE).points
     arms = points.position - points.position[1]
     down = np.average(arms, axis=0, weights=points.mass)
-    return arms @ _turn(down / np.linalg.norm(down), np.array([0.0, -1.0, 0.0])).T + np.asarray(NAIL)
+    places: np.ndarray = arms @ _turn(down / np.linalg.norm(down), np.array([0.0, -1.0, 0.0])).T + np.asarray(NAIL)
+    return places
 
 
 def _turn(start: np.ndarray, end: np.ndarray) -> np.ndarray:
