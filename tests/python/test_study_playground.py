@@ -107,7 +107,9 @@ def test_a_shape_seen_through_is_where_a_click_will_place_the_chosen_thing(world
     assert shown("box", (0, 1.5, 4), (0, 0, -1)) is not None
     assert shown("box", (0, 1, 4), (0, 1, 0)) is None, "in the sky"
     box = world.system.bodies[0]
-    assert shown("box", (box.center_of_mass.x, box.center_of_mass.y, 4), (0, 0, -1)) is None, "a click takes what is there"
+    assert shown("box", (box.center_of_mass.x, box.center_of_mass.y, 4), (0, 0, -1)) is None, (
+        "a click takes what is there"
+    )
     assert shown("box", (0, 1.5, 4), (0, 0, -1), "touch 1") is None
 
 

@@ -89,7 +89,9 @@ def polyhedron(
     if _is_file(source) and scale == 1:
         size = float(np.ptp(surface.vertices, axis=0).max())
         if size > WIDE or size < NARROW:
-            structure.notes.append(f"it is {size:.3g} m large; if its unit is not the meter, give scale, as in scale=0.001")
+            structure.notes.append(
+                f"it is {size:.3g} m large; if its unit is not the meter, give scale, as in scale=0.001"
+            )
     if kind == "rigid":
         _make_solid(structure, surface, source, density, mass, look)
         _center(structure, at)

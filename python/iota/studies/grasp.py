@@ -32,7 +32,7 @@ def build() -> iota.World:
 def make_world() -> iota.World:
     world = iota.World(iota.System(), title="grasp: two grippers hand over a bar of 20 cm", dt=1 / 240, ground=0.0)
     world.stage("room")
-    world.camera = iota.Camera(position=(0.22, 0.8, 1.6), target=(0, 0.42, 0))
+    world.camera = iota.Camera(position=(0.24, 0.84, 1.8), target=(0, 0.43, 0))
     return world
 
 

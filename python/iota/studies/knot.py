@@ -10,6 +10,7 @@ import numpy as np
 
 import iota
 from iota import looks
+from iota.world.things import Frame
 
 from ._story import Story
 
@@ -17,6 +18,7 @@ RODS, ROD, ROPE = 100, 0.024, 0.008  # number, length and radius, m
 MASS, FRICTION = 0.004, 0.4  # of a rod, kg
 START = -1.5  # of the rope on the table, m
 RING, WIRE, STEEL = 0.03, 0.01, 7800.0  # radii, m; kg/m^3
+SKIN = "#dba67e"
 THREADED = 0.2  # of the rope in the ring, m
 DAMPING = 1.0  # of the rods, 1/s
 STEP = 1 / 360  # s: rods that are this light under tension turn fast
@@ -50,15 +52,17 @@ def make_world() -> iota.World:
 
 @dataclass
 class Hand:
-    """A grip on an end or a rod, and where it goes."""
+    """A grip on an end or a rod, where it goes, and where it is, m."""
 
     grip: iota.Grip
     way: Way
+    at: Sequence[float]
 
     def follow(self, time: float) -> None:
         """time: since the tying began, s."""
         times, places = zip(*self.way, strict=True)
-        self.grip.move([np.interp(time, times, along) for along in zip(*places, strict=True)])
+        self.at = [float(np.interp(time, times, along)) for along in zip(*places, strict=True)]
+        self.grip.move(self.at)
 
 
 class Knot:
@@ -86,6 +90,7 @@ class Knot:
         self.ring.material = iota.Material(friction=0.3)
         world.draw(self.ring, looks.solid("steel", "#dfe3e8"))
         self.hands: dict[str, Hand] = {}
+        self.seen = {name: glove(world) for name in ("free", "other")}
         self.begun = 0.0  # s
         self.story = Story(world, wait=6.0, first=1.0, on_stop=self.release)
         self.story.at(0.0)(self.tie)
@@ -93,7 +98,9 @@ class Knot:
         self.story.action("tie", key="k", help="two hands tie the knot")(self.tie)
         world.action("begin anew", key="c", help="the rope lies as at the start", on="world")(world.reset)
         world.on_step(self.follow)
+        world.on_step(self.show)
         world.on_reset(self.hands.clear)
+        world.on_reset(self.show)
 
     def tie(self) -> None:
         """Begins."""
@@ -121,11 +128,19 @@ class Knot:
         for hand in self.hands.values():
             hand.follow(now)
 
+    def show(self) -> None:
+        """Hands that hold are seen where they are."""
+        for name, frame in self.seen.items():
+            hand = self.hands.get(name)
+            frame.visible = hand is not None and hand.grip.alive
+            if hand is not None and hand.grip.alive:
+                frame.at = hand.at
+
     def _take(self, name: str, rod: iota.Body, end: int, way: Way) -> None:
         """end: -1, 0, 1: the first one, the middle, the last one."""
         at = rod.position if end == 0 else rod.particles[max(end, 0)].position
         grip = self.system.grip(rod, (end * ROD / 2, 0, 0), target=at, frequency=6, max_acceleration=4000)
-        self.hands[name] = Hand(grip, [(self.system.time - self.begun, tuple(at)), *way])
+        self.hands[name] = Hand(grip, [(self.system.time - self.begun, tuple(at)), *way], tuple(at))
 
     def _drop(self, name: str) -> None:
         hand = self.hands.pop(name, None)
@@ -136,6 +151,17 @@ class Knot:
         """Both hands let go."""
         for name in list(self.hands):
             self._drop(name)
+
+
+def glove(world: iota.World) -> Frame:
+    """A palm above two fingers that meet at the frame's origin; hidden."""
+    frame = world.drawings.frame()
+    frame.visible = False
+    world.drawings.shape(looks.Look(iota.Ellipsoid((0.07, 0.055, 0.05)), "rubber", SKIN), (0, 0.075, 0), on=frame)
+    for side in (-1, 1):
+        finger = looks.capsule(0.011, "rubber", length=0.05, color=SKIN)
+        world.drawings.shape(finger, (0.014 * side, 0.036, 0), ("z", 90 - 22 * side), on=frame)
+    return frame
 
 
 def evened(places: np.ndarray) -> np.ndarray:

@@ -56,7 +56,7 @@ def present(world: iota.World) -> None:
         for place in (end, on_peg(x, AT - 0.025)):  # a chain that swings would walk off
             world.add_strut(tuple(place), tuple(place + (0, TIP, 0)), brass).material = FRICTION
     world.stage("room")
-    world.camera = iota.Camera(position=(0.7, 1.2, 1.75), target=(0.02, 0.78, 0))
+    world.camera = iota.Camera(position=(0.74, 1.24, 1.9), target=(0.02, 0.8, 0))
 
 
 class Links:
