@@ -247,7 +247,8 @@ unknown forces) with one of three and one of four (four and six), solved one aft
 
 Solved as one dense matrix, six blocks would cost far more than three and four. Here each block adds the same: the factorization follows the tree
 of articulates in O(n), so parting a ladder gains nothing: the simulator takes as long for seven blocks in two ladders as for six in one,
-or a little longer. What remains of a step is the script: looking at each pair, and about two restructurings for each flip.
+or a little longer. What remains of a step is the script: looking at each pair, and restructurings: a pair of flat faces
+locks and parts again some thirty times a second while the ladder swings.
 """
 
 

@@ -99,6 +99,21 @@ def test_a_table_program_calculates_nothing_of_an_answer_and_a_row_is_one_line(h
     assert len(hall.file.read_text().splitlines()) == 2
 
 
+def test_a_visitor_hears_that_an_answer_was_cut(hall: Hall) -> None:
+    hall.come(1)
+    told: list[str] = []
+    hall.world._state.notices.show = lambda client, level, title, text, *rest: told.append(text)
+    for count, words in (
+        (survey.LONGEST, ""),
+        (survey.LONGEST + 1, f" Of {MOTION!r} the first {survey.LONGEST} characters."),
+    ):
+        hall.come(count)
+        hall.give(count, survey.AGREE, 1)
+        hall.give(count, MOTION, text="z" * count)
+        hall.give(count, "send my answers")
+        assert told[-1] == "Your answers are kept." + words
+
+
 def test_another_run_adds_rows_and_other_questions_are_refused(hall: Hall) -> None:
     again = Hall(hall.file)
     for each in (hall, again):

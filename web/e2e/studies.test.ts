@@ -555,12 +555,10 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.letGo();
   },
   "soft-molecule": async (study) => {
-    const body = await study.drag([some, 0], (body) => body < 8);  // a carbon atom
+    await study.drag([some, 0], (body) => body < 8);  // a carbon atom
     await study.letGo();
     await study.knows("it hangs quietly", ({ kinetic }) => kinetic < 3e-3);
-    // Not in the hand, which stops it before Python tells of it.
-    await study.tab.page.evaluate((id) => iota.select(id), body);
-    await study.does("n", "what is selected is nudged", (now, before) => now.kinetic > before.kinetic + 4e-3);
+    await study.does("n", "it is pushed", (now, before) => now.kinetic > before.kinetic + 4e-3);
   },
   stack: async (study) => {
     await study.drag([some, -some]);
@@ -640,8 +638,8 @@ describe("the study", () => {
       await studies[name](study);
       if (runsAll || takenByAll.includes(name)) {
         await study.dragByFinger();
-        // The keys have led to another view of the laboratory.
-        await study.dragInHeadset(index % 2 === 1, name !== "lab");
+        // The keys have led to another view of the laboratory, and one hall of the museum is seen at a time.
+        await study.dragInHeadset(index % 2 === 1, name !== "lab" && name !== "museum");
       }
       expect(tab.complaints).toEqual([]);
       expect(server.output).not.toMatch(/Traceback|Error/);

@@ -16,6 +16,7 @@ WOOD = 650.0  # kg/m^3
 TOP = iota.Vec3(0, 0.55, 0)  # the axle through the top block
 TORQUE, SPEED = 0.25, 6.0  # N m, rad/s: with which the top block is turned
 STICK = 1e-6  # N m: a smaller moment does not part two faces
+OPENED = 0.2  # rad, from folded: the ribbons between two faces are seen
 PATIENCE = 8.0  # s without a touch until the story begins
 # Ribbons are elastic: their pull keeps a pair straight. It grows from 0 over a few mm, and is a little more than what balances the
 # weight below, which hangs from a face and so a block's thickness away from the hinge.
@@ -87,6 +88,12 @@ class Pair:
         self._join(hinge)
         self.move_ribbons()
 
+    def follow_ribbons(self) -> None:
+        """Shows the ribbons where they are after a flip, once the pair has opened a little: blocks that are folded flat rock on their
+        faces and flip to and fro, and ribbons would flash."""
+        if self.shown != self.hinge and (self.locked or 0 < self.angle < math.pi - OPENED):
+            self.show_ribbons()
+
     @property
     def sense(self) -> int:
         """The sense of rotation about z with which the lower block opens: -1 at ends 0, 1 at ends 1."""
@@ -103,7 +110,7 @@ class Pair:
         self._join(self.hinge ^ 1)
         self.upper.corners[self.hinge].separate(self.lower.corners[self.hinge])
         self.hinge ^= 1
-        self.move_ribbons()
+        self.pull_ribbons()
 
     def lock(self) -> None:
         """Thesis, Algorithm 6: hinged points combined once more make one body. They are made straight first, so
@@ -133,13 +140,20 @@ class Pair:
     def move_ribbons(self) -> None:
         """Outer ones run from end 0 above to end 1 below, inner ones from end 1 to end 0, so a flip moves them to the other block.
         They pull at the end with the hinge."""
+        self.show_ribbons()
+        self.pull_ribbons()
+
+    def pull_ribbons(self) -> None:
+        for end, band in enumerate(self.bands):
+            band.active = end == self.hinge & 1
+
+    def show_ribbons(self) -> None:
+        self.shown = self.hinge
         first, second = (self.upper, self.lower) if self.hinge & 1 else (self.lower, self.upper)
         for kind in RIBBONS:
             for block, shown in ((first, kind == "outer"), (second, kind == "inner")):
                 for strip in block.strips[self.hinge >> 1][kind]:
                     strip.visible = shown
-        for end, band in enumerate(self.bands):
-            band.active = end == self.hinge & 1
 
     def _join(self, corner: int) -> None:
         self.upper.corners[corner].combine(self.lower.corners[corner])
@@ -203,6 +217,7 @@ class Ladder:
                 pair.flip()
             elif angle < 0:
                 pair.lock()
+            pair.follow_ribbons()
 
     def unlock(self, pair: Pair) -> None:
         """Thesis, Algorithm 7: every block of their body is its own again, and the other pairs of it are locked anew."""

@@ -119,6 +119,10 @@ class Survey(Part):
         value = field.value.strip()[:LONGEST]
         return "" if isinstance(field, Choice) and value == NO_ANSWER else value
 
+    @staticmethod
+    def _is_cut(field: Widget) -> bool:
+        return isinstance(field, TextField) and len(field.value.strip()) > LONGEST
+
     def _hide(self, client: int) -> None:
         for widget in self._forms.pop(client, ()):
             self._moved.discard(widget)
@@ -156,7 +160,9 @@ class Survey(Part):
             return
         self._answers.append(given)
         self._hide(event.client)
-        event.notice("Thank you", "Your answers are kept.")
+        cut = [text for text, field in zip(self._questions, fields, strict=True) if self._is_cut(field)]
+        told = "".join(f" Of {text!r} the first {LONGEST} characters." for text in cut)
+        event.notice("Thank you", f"Your answers are kept.{told}")
         if self._hook is not None:
             arguments = (event,) if self._hook.takes_event else ()
             self._guard.call(f"on_answer ({self._hook.name})", self._hook.function, *arguments)

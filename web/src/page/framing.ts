@@ -116,10 +116,10 @@ export class Framing implements FramePart, PageListener {
     this.viewer_.invalidate();
   }
 
-  /** How far from the middle of the first view, on the level, all that moves is within a view of this tangent to both sides, m. */
+  /** How far from the middle of the first view, on the level, all bodies that move are within a view of this tangent to both sides, m. */
   stepToShow(side: number): number {
     this.setting_.clear();
-    for (const item of this.members_) this.addItem_(item, this.setting_);
+    for (const item of this.members_) if (item.slot >= 0) this.addItem_(item, this.setting_);
     this.dropUnseen_(this.setting_);
     return distanceToShow(this.setting_, { ...this.navigation_.home, pitch: 0 }, { side, up: Infinity, down: Infinity });
   }

@@ -142,8 +142,15 @@ export class Panel implements FramePart {
 
 type Send = (value: number, text?: string) => void;
 
+/** A label of more characters is a question: its control is below it, as wide as the panel. */
+const longestName = 28;
+
+function isQuestion({ label }: WidgetEntity): boolean {
+  return label.length > longestName;
+}
+
 function labeled(widget: WidgetEntity, ...parts: readonly HTMLElement[]): HTMLElement {
-  const label = make("label", "control");
+  const label = make("label", isQuestion(widget) ? "control question" : "control");
   label.append(make("span", "name", widget.label), ...parts);
   return label;
 }
@@ -212,9 +219,11 @@ function makeChoice(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
   } };
 }
 
+/** A line; for a question, whose answer may be long, some lines. */
 function makeText(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
-  const input = make("input");
-  input.type = "text";
+  const input = make(isQuestion(widget) ? "textarea" : "input");
+  if (input instanceof HTMLInputElement) input.type = "text";
+  else input.rows = 3;
   input.maxLength = 1000;
   input.addEventListener("change", () => send(0, input.value));
   return { element: labeled(widget, input), show: ({ text, enabled }) => {
