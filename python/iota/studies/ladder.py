@@ -15,8 +15,8 @@ LENGTH, THICKNESS, WIDTH = 0.06, 0.01, 0.04  # of a block, m
 WOOD = 650.0  # kg/m^3
 TOP = iota.Vec3(0, 0.55, 0)  # the axle through the top block
 TORQUE, SPEED = 0.25, 6.0  # N m, rad/s: with which the top block is turned
-STICK = 1e-6  # N m: a smaller moment does not part two faces
-OPENED = 0.2  # rad, from folded: the ribbons between two faces are seen
+# N m: a smaller moment does not part two faces; rad, from folded: the ribbons between two faces are seen.
+STICK, OPENED = 1e-6, 0.2
 PATIENCE = 8.0  # s without a touch until the story begins
 # Ribbons are elastic: their pull keeps a pair straight. It grows from 0 over a few mm, and is a little more than what balances the
 # weight below, which hangs from a face and so a block's thickness away from the hinge.
@@ -88,12 +88,6 @@ class Pair:
         self._join(hinge)
         self.move_ribbons()
 
-    def follow_ribbons(self) -> None:
-        """Shows the ribbons where they are after a flip, once the pair has opened a little: blocks that are folded flat rock on their
-        faces and flip to and fro, and ribbons would flash."""
-        if self.shown != self.hinge and (self.locked or 0 < self.angle < math.pi - OPENED):
-            self.show_ribbons()
-
     @property
     def sense(self) -> int:
         """The sense of rotation about z with which the lower block opens: -1 at ends 0, 1 at ends 1."""
@@ -110,7 +104,8 @@ class Pair:
         self._join(self.hinge ^ 1)
         self.upper.corners[self.hinge].separate(self.lower.corners[self.hinge])
         self.hinge ^= 1
-        self.pull_ribbons()
+        for band in self.bands:
+            band.active = not band.active
 
     def lock(self) -> None:
         """Thesis, Algorithm 6: hinged points combined once more make one body. They are made straight first, so
@@ -118,10 +113,6 @@ class Pair:
         p, q = self.upper.beyond[self.hinge & 1], self.lower.middle
         p.combine(q)
         p.separate(q)
-        self.make_rigid()
-
-    def make_rigid(self) -> None:
-        """Makes one body of two blocks that cannot turn any more."""
         self._join(self.hinge)
         self.locked = True
 
@@ -140,20 +131,14 @@ class Pair:
     def move_ribbons(self) -> None:
         """Outer ones run from end 0 above to end 1 below, inner ones from end 1 to end 0, so a flip moves them to the other block.
         They pull at the end with the hinge."""
-        self.show_ribbons()
-        self.pull_ribbons()
-
-    def pull_ribbons(self) -> None:
-        for end, band in enumerate(self.bands):
-            band.active = end == self.hinge & 1
-
-    def show_ribbons(self) -> None:
         self.shown = self.hinge
         first, second = (self.upper, self.lower) if self.hinge & 1 else (self.lower, self.upper)
         for kind in RIBBONS:
             for block, shown in ((first, kind == "outer"), (second, kind == "inner")):
                 for strip in block.strips[self.hinge >> 1][kind]:
                     strip.visible = shown
+        for end, band in enumerate(self.bands):
+            band.active = end == self.hinge & 1
 
     def _join(self, corner: int) -> None:
         self.upper.corners[corner].combine(self.lower.corners[corner])
@@ -217,7 +202,9 @@ class Ladder:
                 pair.flip()
             elif angle < 0:
                 pair.lock()
-            pair.follow_ribbons()
+            # Blocks that are folded flat rock on their faces and flip to and fro: ribbons would flash.
+            if pair.shown != pair.hinge and (pair.locked or 0 < pair.angle < math.pi - OPENED):
+                pair.move_ribbons()
 
     def unlock(self, pair: Pair) -> None:
         """Thesis, Algorithm 7: every block of their body is its own again, and the other pairs of it are locked anew."""
@@ -237,7 +224,7 @@ class Ladder:
         pair.locked = False
         for each in locked:
             if each.locked:
-                each.make_rigid()
+                each._join(each.hinge)
 
 
 def stand(world: iota.World, top: iota.Vec3 = TOP, floor: float = 0.0) -> None:
@@ -251,12 +238,7 @@ def stand(world: iota.World, top: iota.Vec3 = TOP, floor: float = 0.0) -> None:
 
 
 def present(world: iota.World) -> None:
-    """A stand, and a rule with a mark every 10 cm."""
+    """A stand in a room."""
     stand(world)
-    x, _, z = TOP
-    back = z - WIDTH
-    world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
-    for mark in range(1, 5):
-        world.add_static(looks.box((0.025, 0.0015, 0.0036), "rubber"), (x - 0.1, 0.02 + 0.1 * mark, back))
     world.stage("room")
     world.camera = iota.Camera(position=(0.56, 0.44, 0.69), target=(0, 0.285, 0))
