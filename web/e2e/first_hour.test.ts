@@ -34,7 +34,7 @@ it.each(scripts.filter((name) => runsAll || some.includes(name)).flatMap((name) 
       await tab.eyeAtRest();
       const [all, moving] = [await drawn(tab), await drawn(tab, ["body", "tie"])];
       const what = JSON.stringify({ all, moving });
-      expect(Math.max(all.wide, all.high), what).toBeGreaterThan(0.2);
+      expect(Math.max(all.wide, all.high), what).toBeGreaterThan(0.4);
       expect(moving.share, `what moves is seen; ${what}`).toBeGreaterThan(2e-4);
       expect(moving.cut, what).toBe(false);
       const [labels, sizes] = await tab.page.evaluate(() => {
