@@ -7,6 +7,7 @@
 #include <iota/reports.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace iota::edit {
 
@@ -74,11 +75,14 @@ void Batch::note_coordinates(const model::Model& model, std::uint32_t joint) {
 void Batch::forget_coordinates(std::uint32_t joint) { coordinates_.erase(joint); }
 
 void Batch::count_coordinates(model::Model& model) const {
+  std::vector<std::uint32_t> joints;
   for (const auto& [slot, noted] : coordinates_) {
     if (!model.constraints.contains(noted.joint)) continue;
     model.constraints[slot].coordinate = noted.values;
     ingredient::refresh_coordinates(model, slot);
+    joints.push_back(slot);
   }
+  ingredient::count_turns(model, joints);
 }
 
 RestructureReport Batch::finish(const model::Model& model) {

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 namespace iota::ingredient {
 
@@ -38,6 +40,93 @@ void refresh_coordinates(Model& model, std::uint32_t slot) {
       row.value(places.position.data(), 1, &value);
     });
     c.coordinate[static_cast<std::size_t>(which)] = value;
+  }
+}
+
+namespace {
+
+/// Angles of one sum of coordinates that may be counted anew.
+struct TurnsOfSum {
+  struct Angle {
+    double* value = nullptr;
+    double ratio = 0;
+  };
+  std::vector<Angle> angles;
+  double off = 0, size = 0;  ///< the sum minus what it should be, and what counts as little of it
+
+  void add(double ratio, double value, double scale) {
+    off += ratio * value, size = std::max(size, std::abs(ratio) * scale);
+  }
+  /// Turns one angle, or two as far as they need it. Not at all where that does not meet the sum.
+  void meet() {
+    constexpr double met = 1e-6, turn = 2 * std::numbers::pi;
+    constexpr int most_turns = 64;
+    if (!(std::abs(off) > met * size)) return;
+    for (int of_second = 0; of_second <= most_turns; ++of_second)
+      for (Angle& first : angles) {
+        for (const Angle& second : angles) {
+          if ((&second == &first) != (of_second == 0)) continue;
+          for (const int m : {of_second, -of_second}) {
+            const double rest = off + m * turn * second.ratio, n = std::round(-rest / (turn * first.ratio));
+            if (!(std::abs(rest + n * turn * first.ratio) <= met * size)) continue;
+            *first.value += n * turn, *second.value += m * turn;
+            return;
+          }
+        }
+      }
+  }
+};
+
+/// The place of a particle on its path: from the last one only the nearest along the path is found.
+void find_on_path(Model& model, std::uint32_t slot) {
+  constexpr double on_path = 1e-6;
+  constexpr int parts = 32;
+  double& place = model.constraints[slot].coordinate[static_cast<std::size_t>(JointCoordinate::slide)];
+  const double last = place, part = model.constraints[slot].length / parts;
+  double best = last, least = calc_violation(model, slot).relative;
+  for (int k = 1; k <= parts && least > on_path; ++k)
+    for (const int way : {1, -1}) {
+      place = last + way * k * part;
+      refresh_coordinates(model, slot);
+      const double off = calc_violation(model, slot).relative;
+      if (off < least) least = off, best = place;
+    }
+  place = best;
+}
+
+}  // namespace
+
+void count_turns(Model& model, std::span<const std::uint32_t> joints) {
+  std::vector<std::uint32_t> open(joints.begin(), joints.end()), couplings;
+  const auto is_angle = [](JointCoordinate which) { return which != JointCoordinate::slide; };
+  const auto value_of = [&](std::uint32_t joint, JointCoordinate which) -> double& {
+    return model.constraints[joint].coordinate[static_cast<std::size_t>(which)];
+  };
+  const auto scale_of = [&](std::uint32_t joint, JointCoordinate which) {
+    const auto& scale = model.constraints[joint].scale;
+    return is_angle(which) ? 1 : std::max(scale[0], scale[1]);
+  };
+  for (const std::uint32_t slot : joints) {
+    const Constraint& c = model.constraints[slot];
+    if (c.kind == ConstraintKind::path) find_on_path(model, slot);
+    for_each_coupling_of(model, c, [&](std::uint32_t coupling) { couplings.push_back(coupling); });
+    if (!info(c.kind).screw || c.length == 0) continue;
+    TurnsOfSum sum{.angles = {{&value_of(slot, JointCoordinate::angle), c.length}}};
+    sum.add(c.length, value_of(slot, JointCoordinate::angle), 1);
+    sum.add(-1, value_of(slot, JointCoordinate::slide), scale_of(slot, JointCoordinate::slide));
+    sum.meet();
+    std::erase(open, slot);  // its slide tells its turns
+  }
+  sort_unique(couplings);
+  for (const std::uint32_t coupling : couplings) {
+    if (info(model.constraints[coupling].kind).sign != 0) continue;  // a tackle, of lengths
+    TurnsOfSum sum{.angles = {}, .off = -model.constraints[coupling].length};
+    for_each_term(model, model.constraints[coupling], [&](const CoupledTerm& term) {
+      sum.add(term.ratio, value_of(term.joint, term.coordinate), scale_of(term.joint, term.coordinate));
+      if (is_angle(term.coordinate) && std::erase(open, term.joint) > 0)  // once counted, it stays so
+        sum.angles.push_back({&value_of(term.joint, term.coordinate), term.ratio});
+    });
+    sum.meet();
   }
 }
 

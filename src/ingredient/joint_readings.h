@@ -5,12 +5,18 @@
 #include "ingredient/model.h"
 
 #include <cstdint>
+#include <span>
 #include <utility>
 
 namespace iota::ingredient {
 
 /// Updates the model's coordinates of a joint from the present places.
 void refresh_coordinates(model::Model&, std::uint32_t joint);
+
+/// After bodies of these joints were set to other places: counts as many turns of their angles that screws and couplings are
+/// met, if any number does that, and seeks places on the whole of their paths. Places tell angles but for turns; a wheel and its
+/// rack that were set back together agree about them.
+void count_turns(model::Model&, std::span<const std::uint32_t> joints);
 
 /// Finds the state from which the rows of a new joint start: the nearest points of its two surfaces.
 void start_rows(model::Model&, std::uint32_t joint);

@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 import math
+import random
+from typing import Any
 
+import numpy as np
 import pytest
+from amount import sampled
 
 import iota
 
@@ -149,3 +153,56 @@ def test_friction_stops_a_wheel_where_it_must_in_the_accurate_mode() -> None:
     assert joint.angle.value == pytest.approx(0.5 * inertia * 9 / 0.05, rel=1e-8)
     assert abs(joint.angle.speed) < 1e-9
     assert system.energy.dissipated == pytest.approx(0.5 * inertia * 9, rel=1e-8)
+
+
+def joined(system: iota.System, kind: str, dice: random.Random) -> list[iota.Body]:
+    """Two boxes that a joint or a coupling joins, one of them turned at random."""
+    a, b = (system.body(shape=iota.Box((0.3, 0.2, 0.1)), mass=1, position=(x, 0, 0)) for x in (0, 0.5))
+    speed = dice.uniform(-60, 60)
+    if kind in ("gear", "rack"):
+        wheel = system.revolute(a, at=(0, 0, 0), axis=(0, 0, 1))
+        if kind == "gear":
+            other = system.revolute(b, at=(0.5, 0, 0), axis=(0, 0, 1)).angle
+            system.couple([(wheel.angle, dice.choice((0.5, -2, 1.3))), (other, -1)])
+        else:
+            other = system.prismatic(b, at=(0.5, 0, 0), axis=(1, 0, 0)).slide
+            system.couple([(wheel.angle, 0.05), (other, -1)])
+        a.angular_velocity = (0, 0, speed)
+        return [a, b]
+    at: dict[str, Any] = {"at": (0.25, 0, 0), "axis": (0, 1, 0)}
+    a.angular_velocity = (0, speed, 0)
+    if kind == "prismatic":
+        a.velocity = (0, speed / 30, 0)
+        system.prismatic(a, b, **at)
+    if kind == "screw":
+        system.screw(a, b, lead=0.1, **at)
+    if kind == "cylindrical":
+        a.velocity = (0, speed / 30, 0)
+        system.cylindrical(a, b, **at)
+    if kind == "path":
+        ring = [(0.2 * math.cos(k), 0, 0.2 * math.sin(k)) for k in np.linspace(0, 2 * math.pi, 17)]
+        system.on_path(a.attachment((0.15, 0, 0)), ring, b)
+    if kind == "hinge":
+        system.revolute(a, b, **at)
+    return [a, b]
+
+
+@pytest.mark.parametrize("kind", ["hinge", "prismatic", "cylindrical", "screw", "path", "gear", "rack"])
+def test_what_is_set_back_in_one_edit_stays_where_it_was_put(kind: str) -> None:
+    for seed in range(sampled(200)):
+        dice = random.Random(seed)
+        system = iota.System(gravity=(0, 0, 0))
+        bodies = joined(system, kind, dice)
+        system.step(1 / 60, dice.randint(1, 30))
+        poses = [(body.position, body.orientation) for body in bodies]
+        system.step(1 / 60, dice.randint(1, 60))
+        with system.edit():
+            for k in dice.sample(range(2), 2):
+                bodies[k].set_pose(*poses[k])
+        for body in bodies:
+            body.velocity = body.angular_velocity = (0, 0, 0)
+        system.step(1 / 60)
+        for body, (position, orientation) in zip(bodies, poses, strict=True):
+            assert body.position == pytest.approx(position, abs=1e-6), f"seed {seed}"
+            turned = abs(np.dot(body.orientation, orientation))
+            assert turned == pytest.approx(1, abs=1e-9), f"seed {seed}: a coupling turned it"
