@@ -68,6 +68,11 @@ OF_BODY = MOVING | {
     "label": "world.label(text, at=body)",
     "joints": "system.constraints",
     "add_particle": "body.particle(...)",
+    "rope": "system.rope(p, q), of particles or attachments",
+    "rod": "system.rod(p, q), of particles or attachments",
+    "spring": "system.bond(p, q, 'spring', stiffness=...), of particles or attachments",
+    "attach": "system.weld(a, b), or body.attachment(position)",
+    "hinge": "system.revolute(a, b, at=..., axis=...)",
 }
 OF_PARTICLE = MOVING | {
     "fixed": "particle.nail()",
@@ -76,6 +81,11 @@ OF_PARTICLE = MOVING | {
     "join": "p.combine(q)",
     "size": "radius",
     "bonds": "system.bonds",
+    "attach": "p.combine(q)",
+    "hinge": "p.combine(q), or system.revolute(a, b, at=..., axis=...) of bodies",
+    "rope": "system.rope(p, q)",
+    "rod": "system.rod(p, q)",
+    "spring": "system.bond(p, q, 'spring', stiffness=...)",
 }
 SOLIDS = ("box", "cube", "sphere", "cylinder", "capsule", "cone", "mesh", "torus")
 OF_SYSTEM = {

@@ -101,17 +101,18 @@ void wake(Editor& e, std::uint32_t constraint) {
   if (rests) constraint_changed(e, constraint);
 }
 
-/// Bodies jump where a new stop or rope asks for it.
+/// Bodies jump where a new stop, rope or rod asks for it.
 void note_jump(model::Model& model, std::uint32_t slot) {
   constexpr double far = 1e-6;  // relative
   const ingredient::Constraint& c = model.constraints[slot];
   const char* const kind = ingredient::info(c.kind).name;
-  if (c.kind == ConstraintKind::rope) {
+  if (c.kind == ConstraintKind::rope || c.kind == ConstraintKind::rod) {
     const double distance =
         norm(position_of(model, c, ingredient::a_origin) - position_of(model, c, ingredient::b_origin));
-    if (distance > (1 + far) * c.length)
+    const bool is_short = distance > (1 + far) * c.length;
+    if (is_short || (c.kind == ConstraintKind::rod && distance < (1 - far) * c.length))
       model.notes.push_back(text(kind, " ", slot, " is ", c.length, " m long and its ends are ", distance,
-                                 " m apart: the next step moves them together"));
+                                 " m apart: the next step moves them ", is_short ? "together" : "apart"));
   }
   for (const JointCoordinate which : joint_coordinates) {
     const CoordinateOptions& o = c.options[static_cast<std::size_t>(which)];
@@ -252,6 +253,10 @@ ConstraintId apply(Editor& e, const CreateCoupling& c) {
                                        " are too thin to have its ", name_of(term.coordinate),
                                        "; give them a massive particle off their line"));
     require_number("ratio", term.ratio);
+    for (const CoupledCoordinate* other = c.spec.terms.data(); other != &term; ++other)
+      if (other->constraint == term.constraint && other->coordinate == term.coordinate)
+        throw std::invalid_argument(text(name, ": names the ", name_of(term.coordinate), " of ",
+                                         ingredient::info(kind).name, " ", joint, " twice; add up its ratios"));
     if (term.ratio == 0) throw std::invalid_argument("a ratio of zero leaves its coordinate out; leave it out");
   }
   if (!std::isnan(c.spec.length)) require_number("length", c.spec.length);

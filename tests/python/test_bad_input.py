@@ -181,3 +181,18 @@ def test_a_callback_that_is_registered_twice_for_the_same_events_is_refused() ->
     world.on_click(ball)(Game().hit)
     assert world.events.forget(game.hit) and not world.events.forget(game.hit)
     world.on_click(ball)(game.hit)
+
+
+def test_a_coordinate_is_once_in_a_coupling() -> None:
+    system = iota.System()
+    hinge = system.revolute(system.body(shape=iota.Box((1, 1, 1))), at=(0, 0, 0), axis=(0, 0, 1))
+    with pytest.raises(ValueError, match="names the angle of revolute 0 twice; add up its ratios"):
+        system.couple([(hinge.angle, 1), (hinge.angle, -1)])
+
+
+@pytest.mark.parametrize(("length", "way"), [(0.5, "together"), (5.0, "apart")])
+def test_a_rod_that_moves_its_ends_in_the_next_step_says_so(length: float, way: str) -> None:
+    system = iota.System()
+    p, q = system.body().particle((0, 0, 0)), system.body().particle((3, 0, 0))
+    system.rod(p, q, length)
+    assert any(w.endswith(f"the next step moves them {way}") for w in system.step(1 / 60).warnings)
