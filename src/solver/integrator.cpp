@@ -23,17 +23,6 @@ constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<
                            std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
                            std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
 
-/// Two to four points, each at a fixed distance from each other, and nothing else that holds them or turns them.
-bool is_free_body(const Problem& problem) {
-  const std::size_t n = problem.size();
-  if (n < 2 || n > 4 || !problem.items_of<GyroscopicForce>().empty() || !problem.items_of<VelocityForce>().empty())
-    return false;
-  std::size_t rows = 0, rods = 0;
-  problem.for_each_acting(
-      [&]<class C>(const ConstraintPool<C>&, std::size_t) { ++rows, rods += std::is_same_v<C, DistanceConstraint>; });
-  return rods == rows && rods == n * (n - 1) / 2;
-}
-
 int most_iterations(double budget, double cost) {
   const double most = budget / std::max(cost, 1.0);
   return most < 1e6 ? static_cast<int>(most) : std::numeric_limits<int>::max();
@@ -177,7 +166,6 @@ void Integrator::find_holds(Problem& problem, const Vec3* x) {
     has_curved_rows_ = has_curved_rows_ || is_curved<C>;
     holds_.add(pool.items[i]);
   });
-  is_free_body_ = is_free_body(problem);
   if (acting_version_ != problem.acting_version()) may_be_in_pieces_ = true;
   acting_version_ = problem.acting_version();
 }
@@ -346,7 +334,8 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   else if (is_mid_point)
     project_velocities_after_step(problem, stage, report);
   const bool keeps_momenta = !keeps_offsets_ || restore_momenta(problem);
-  if (!is_mid_point || keeps_offsets_) remove_made_energy(problem, energy.total_before);
+  // What a taut net stores in the compliance of its rows is no part of the world's energy: returned, it would come from nowhere.
+  if (!is_mid_point || keeps_offsets_ || energy.returned > 0) remove_made_energy(problem, energy.total_before);
   if (!keeps_momenta || (keeps_offsets_ && has_taken_off(energy))) {
     report.external_work = before.external_work, report.dissipated = before.dissipated;
     move_rigidly_instead(problem, part, report);

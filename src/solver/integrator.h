@@ -165,6 +165,7 @@ class Integrator {
   void find_holds_of_pieces(const Problem&);
   RigidMotion rigid_motion_of_piece(const Problem&, std::uint32_t piece) const;
   void scale_motions_of_pieces(Problem&, double missing);
+  void remove_from_pieces(Problem&, double energy);
   void keep_correction(const Problem&);
 
   double advance_explicitly(Problem&, double h, AdvanceReport&);
@@ -214,7 +215,6 @@ class Integrator {
   bool has_curved_rows_ = false;      ///< that act, whose energy the mid-point rule does not keep
   bool drives_rows_ = false;          ///< a target moves, or a row has a rate
   bool is_conservative_ = true;       ///< no external work
-  bool is_free_body_ = false;         ///< one rigid thing that nothing holds
   std::uint64_t acting_version_ = 0;  ///< of the problem, when these were found
   bool keeps_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();

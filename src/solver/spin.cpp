@@ -54,6 +54,30 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
 }
 
+/// Two to four points, each at a fixed distance from each other, and nothing else that holds or turns them.
+void Spin::find_rigid_pieces(const Problem& problem) {
+  constexpr std::uint32_t most_nodes = 4;
+  counts_.assign(pieces_.parts.size(), {});
+  for (const std::uint32_t part : pieces_.part_of) ++counts_[part].nodes;
+  for (Part& part : pieces_.parts) part.is_rigid = part.holds.are_none();
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+    const std::uint32_t part = pieces_.part_of[pool.nodes_of(pool.items[i]).front()];
+    if constexpr (std::is_same_v<C, DistanceConstraint>)
+      ++counts_[part].rods;
+    else
+      pieces_.parts[part].is_rigid = false;
+  });
+  const auto drop = [&](const auto& forces) {
+    for (const auto& f : forces) pieces_.of(f.arm.nodes[0]).is_rigid = false;
+  };
+  drop(problem.items_of<GyroscopicForce>()), drop(problem.items_of<VelocityForce>());
+  for (std::size_t k = 0; k < counts_.size(); ++k) {
+    const auto [n, rods] = counts_[k];
+    Part& part = pieces_.parts[k];
+    part.is_rigid = part.is_rigid && n >= 2 && n <= most_nodes && 2 * rods == n * (n - 1);
+  }
+}
+
 /// Whether the rows may leave a single body one or two motions. Pieces of one member do not count: they get back everything.
 bool Spin::find_members(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
@@ -264,10 +288,11 @@ Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
   return inertia > 0 ? (dot(angular, gravity) / inertia) * gravity : Vec3{};
 }
 
-bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
-                     bool is_rigid) {
+bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, double h, const Holds& all,
+                     double most_gain) {
   begin(problem);
   find_parts(problem, Connection::rows, all, pieces_);
+  find_rigid_pieces(problem);
   const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
   const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
   are_members_due_ = find_members(problem) && find_losses(problem, displacement, h, members_);
@@ -284,7 +309,7 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
           Part& piece = pieces_.of(points.front());
           piece.lost += given, piece.given += given;
         });
-  if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, is_rigid ? Rest::gives_all : Rest::gives, pieces_);
+  if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, Rest::gives, pieces_);
   if (are_clusters_due) {
     for (std::uint32_t i = 0; i < problem.size(); ++i)
       clusters_.of(i).lost += std::exchange(pieces_.of(i).given, Vec3{});
@@ -355,16 +380,18 @@ double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion,
   constexpr double little = 1e-9;  // a straight chain that begins to turn needs just all of the rest
   const double share = largest_share(first, second, most_gain + (1 + little) * rest);
   const double gain = share * (first + share * second), excess = gain - most_gain;
-  const double factor = rest_of_motion == Rest::gives_all ? 0
-                        : excess > 0 ? std::sqrt(std::max(0.0, 1 - excess / std::max(rest, 1e-300)))
-                                     : 1;
+  const double factor = excess > 0 ? std::sqrt(std::max(0.0, 1 - excess / std::max(rest, 1e-300))) : 1;
   for (std::uint32_t i = 0; i < problem.size(); ++i) {
     const Part& part = parts.of(i);
     if (!part.is_due) continue;
     const Vec3 place = problem.position[i] - part.center;
     const Vec3 shared = part.velocity() + cross(part.velocity_change, place);
-    problem.velocity[i] =
-        shared + (gives(part) ? factor : 1) * (problem.velocity[i] - shared) + share * cross(part.turn, place);
+    problem.velocity[i] = shared +
+                          (part.is_rigid && rest_of_motion == Rest::gives ? 0
+                           : gives(part)                                  ? factor
+                                                                          : 1) *
+                              (problem.velocity[i] - shared) +
+                          share * cross(part.turn, place);
   }
   for (Part& part : parts.parts)
     if (part.is_due) part.given += share * (part.inertia * part.turn);

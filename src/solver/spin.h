@@ -36,9 +36,8 @@ class Spin {
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
   /// along the line at the start. Members and wheels get theirs first, then pieces and clusters the remainder. Velocities are those after
   /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
-  /// from the rest of its motion, and others do without. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
-  bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
-                 bool is_rigid);
+  /// from the rest of its motion, and others do without. Returns whether velocities have changed.
+  bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain);
 
   /// The end-point rule turns a body by atan(h w) where its velocity, with what `give_back` has returned, says h w: turns
   /// positions and velocities of the same pieces, members and wheels by the rest, each about an axis that no row and no
@@ -62,6 +61,7 @@ class Spin {
   struct Part {  // a piece, a cluster or a member
     Holds holds;
     bool is_kept = false;                  ///< nothing holds it, or a single point at rest
+    bool is_rigid = false;                 ///< a free body alone, whose motion has no rest
     bool is_due = false;                   ///< it has lost something
     Vec3 center;                           ///< of mass, or that point, m
     double mass = 0, kinetic = 0;          ///< of the motion relative to the center
@@ -91,6 +91,7 @@ class Spin {
     Mat3 by_inertia;  ///< inverse of the member's inertia, 1/(kg m^2)
   };
   void begin(const Problem&);
+  void find_rigid_pieces(const Problem&);
   void find_parts(const Problem&, Connection, const Holds& all, Parts&);
   bool find_members(const Problem&);
   void find_supports(const Problem&);
@@ -100,7 +101,7 @@ class Spin {
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, double h, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);
-  enum class Rest : std::uint8_t { gives, gives_all, is_kept };
+  enum class Rest : std::uint8_t { gives, is_kept };
   static double turn_parts(Problem&, double most_gain, Rest, Parts&);
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
   void find_pushed(const Problem&);
@@ -118,6 +119,10 @@ class Spin {
   std::vector<std::uint8_t> is_pushed_;  // each node, by a force
   // Whether the latest `give_back` found any.
   bool are_members_due_ = false, are_wheels_due_ = false;
+  struct Count {
+    std::uint32_t nodes = 0, rods = 0;
+  };
+  std::vector<Count> counts_;  // of each piece
   DisjointSets room_for_pieces_;
   std::vector<TurningBody> turning_bodies_;
 };
