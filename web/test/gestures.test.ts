@@ -127,6 +127,20 @@ describe("the gesture pipeline", () => {
     expect(gestures.grabs).toHaveLength(1);
   });
 
+  it("lets go when a closed hand is not seen any more, and takes again what it meets when it comes back", () => {
+    pointer.pressed = true;
+    gestures.update(pointer);
+    pointer.active = false;
+    gestures.updateAll();
+    expect(log.take()).toContain("1 ends");
+    expect(gestures.grabs).toHaveLength(0);
+    gestures.updateAll();
+    expect(log.take()).toEqual([]);
+    pointer.active = true;
+    gestures.updateAll();
+    expect(log.take()).toContain("mouse takes 0 as 2");
+  });
+
   it("says when a press met nothing, and does not grab a body that comes by later", () => {
     aim(0, 1);
     pointer.pressed = true;
