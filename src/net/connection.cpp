@@ -350,7 +350,9 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     if (const auto reason = refuse_by_host(request)) return refuse(*reason);
     if (must_redirect_) return send_to_https();
     if (!target) return send_text(http::status::bad_request, "malformed target");
-    if ((parser_->content_length() && *parser_->content_length() > 0) || parser_->chunked()) {
+    // An encoding that we do not know might hide a body from us that a proxy in front sees.
+    if ((parser_->content_length() && *parser_->content_length() > 0) ||
+        request.count(http::field::transfer_encoding) > 0) {
       must_close_ = true;  // the body is not read
       return send_text(http::status::bad_request, "no request here has a body");
     }

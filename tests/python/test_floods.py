@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A page that floods a world, reads nothing of it, or speaks WebSocket wrongly, harms no other page; see the table in docs/network.md."""
+"""A page that floods a world, reads nothing of it, or speaks WebSocket wrongly, harms no other page; see docs/attacks.md."""
 
 from __future__ import annotations
 
@@ -235,3 +235,62 @@ def test_frames_in_thousands_of_parts_have_no_effect(served: Served) -> None:
             raw.sendall(parts)
         step = other.last["poses"]["step"]
         other.wait_for(lambda: other.last["poses"]["step"] > step + 20)
+
+
+REQUESTS = {
+    "with a chunk": ("GET / HTTP/1.1", "Transfer-Encoding: chunked", "0\r\n\r\n", 400),
+    "with an encoding of nobody": ("GET / HTTP/1.1", "Transfer-Encoding: xchunked", "0\r\n\r\n", 400),
+    "with a length and a chunk": ("GET / HTTP/1.1", "Content-Length: 6\r\nTransfer-Encoding: chunked", "0\r\n\r\nX", 400),
+    "with two lengths": ("GET / HTTP/1.1", "Content-Length: 0\r\nContent-Length: 26", "", 400),
+    "with another one as its body": ("GET /none HTTP/1.1", "Content-Length: 26", "GET /healthz HTTP/1.1\r\n\r\n", 400),
+    "with a length below zero": ("GET / HTTP/1.1", "Content-Length: -1", "", 400),
+    "with a length of 20 digits": ("GET / HTTP/1.1", "Content-Length: 99999999999999999999", "", 400),
+    "with a second host": ("GET / HTTP/1.1", "Host: evil.example", "", 403),
+    "with a space before the colon": ("GET / HTTP/1.1", "X : a", "", 400),
+    "with a zero byte": ("GET / HTTP/1.1", "X: a\0b", "", 400),
+    "with 5000 headers": ("GET / HTTP/1.1", "\r\n".join(f"X{n}: y" for n in range(5000)), "", 431),
+    "of HTTP/2": ("PRI * HTTP/2.0", "X: a", "SM\r\n\r\n", 400),
+    "for another server": ("GET http://evil.example/ HTTP/1.1", "X: a", "", 400),
+    "for a path of 15 000 letters": (f"GET /{'a' * 15000} HTTP/1.1", "X: a", "", 404),
+} | {
+    f"to {method}": (f"{method} / HTTP/1.1", "X: a", "", 405)
+    for method in ("POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "CONNECT", "PROPFIND", "get")
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REQUESTS)
+def test_a_wrong_request_gets_one_refusal_and_nothing_of_what_it_hides(served: Served, name: str) -> None:
+    """A proxy in front may read such a request in another way, and then take the answer to a hidden one for that to another client."""
+    line, header, body, status = REQUESTS[name]
+    parts = urlsplit(served.url)
+    with socket.create_connection((parts.hostname, parts.port), timeout=20) as raw:
+        raw.sendall(f"{line}\r\nHost: {parts.netloc}\r\nConnection: close\r\n{header}\r\n\r\n{body}".encode())
+        answer = b""
+        with suppress(ConnectionError):
+            while received := raw.recv(65536):
+                answer += received
+    assert answer.startswith(f"HTTP/1.1 {status} ".encode())
+    assert answer.count(b"\r\n\r\n") == 1, "one answer"
+
+
+def test_pages_that_come_and_go_hurry_nobody_and_are_told_of_at_most_once_a_frame(served: Served) -> None:
+    """Each join and each leave was a message to all others before: 3600 a second."""
+    hello = frame(
+        encode("hello", magic=CONSTANTS["protocol_magic"], version=SCHEMA["version"], world="", role=0, name="x")
+    )
+    with PageClient(served.url) as other:
+        step, told, began = other.last["poses"]["step"], other.messages["clients"], time.monotonic()
+        came = 0
+        while time.monotonic() < began + SECONDS:
+            with ExitStack() as passing:
+                for _ in range(10):
+                    raw, _ = passing.enter_context(websocket(served.url))
+                    raw.sendall(hello)
+                    came += 1
+        seconds = time.monotonic() - began
+        other.wait_for(lambda: len(other.last["clients"]["clients"]) == 1)
+        print(
+            f"{came / seconds:.0f} pages a second came and went; {(other.messages['clients'] - told) / seconds:.0f} lists"
+        )
+        assert other.messages["clients"] - told < 61 * (seconds + 1)
+        assert other.last["poses"]["step"] > step and not other.closed.is_set()

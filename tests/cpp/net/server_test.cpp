@@ -266,6 +266,7 @@ TEST_F(ServerTest, answers_odd_requests_with_the_right_status) {
   EXPECT_EQ(status("GET", "/ws"), 426U);
   EXPECT_EQ(test::http_request(server_->port(), "GET", "/", {{"Host", "evil.example"}}).status, 403U);
   EXPECT_EQ(test::http_request(server_->port(), "GET", "/", {{"Content-Length", "5"}}).status, 400U);
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/", {{"Transfer-Encoding", "xchunked"}}).status, 400U);
 }
 
 TEST_F(ServerTest, survives_requests_that_are_not_http) {
