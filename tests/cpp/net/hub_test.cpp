@@ -529,6 +529,18 @@ TEST_F(HubTest, gives_pictures_before_other_input_which_stays_in_order) {
   EXPECT_EQ(std::get<protocol::Key>(rest[0].what).key, "a");
 }
 
+TEST_F(HubTest, has_room_again_for_each_picture_that_was_taken) {
+  Link link;
+  const std::uint32_t client = join(link);
+  (void)hub.ask_picture(client, 1);
+  hub.deliver();
+  for (int part = 0; part < 20'000; ++part) {  // together more than may wait
+    receive(client, protocol::Picture{.request = 1, .is_last = false, .data = {1}});
+    ASSERT_EQ(hub.take_pictures().size(), 1u) << part;
+  }
+  EXPECT_EQ(link.dropped, "");
+}
+
 TEST_F(HubTest, drops_a_client_that_sends_more_than_the_script_takes_and_only_it) {
   Link flood, calm;
   const std::uint32_t client = join(flood), other = join(calm);
