@@ -546,6 +546,16 @@ def test_import_reports_an_error_in_one_line(
     assert list(tmp_path.iterdir()) == [broken]
 
 
+def test_names_in_a_file_do_not_steer_the_terminal(refused: Callable[..., str], tmp_path: Path) -> None:
+    red, shown = "\x1b[31mred\x1b]0;title\x07\u202e", r"\x1b[31mred\x1b]0;title\x07\u202e"
+    water = tmp_path / "water.xyz"
+    water.write_text(f"3\n{red}\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")
+    assert run("import", water).stdout.splitlines()[0] == shown
+    water.write_text(f"3\nwater\n{red} 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")
+    assert "\x1b" not in refused("import", water)
+    assert "\x1b" not in refused("run", red)
+
+
 def test_profile_shows_the_times_of_the_parts_of_a_step(tmp_path: Path) -> None:
     path = tmp_path / "slow.py"
     path.write_text(

@@ -783,15 +783,24 @@ def test_a_snapshot_of_another_version_is_told_and_put_aside(make: Make, tmp_pat
 def test_info_tells_of_a_journal(make: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     kept = make(lambda kept: kept.world.controls.slider("gravity", 0, 20, 9.81))
     kept.world.keep_state("score", 3)
+    kept.world.keep_state("title", "\x1b[31m")
     kept.steps(12)
     kept.end()
     capsys.readouterr()
     assert main(["info", str(tmp_path / "kept")]) == 0
     told = capsys.readouterr().out
-    for text in ("the world 'kept'", "0.10 s", "it runs, or was killed", "gravity", "score = 3", "5 in the latest"):
+    for text in (
+        "the world 'kept'",
+        "0.10 s",
+        r"title = \x1b[31m",
+        "it runs, or was killed",
+        "gravity",
+        "score = 3",
+        "5 in the latest",
+    ):
         assert text in told, text
     assert main(["info", str(tmp_path / "kept"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["state"] == {"score": 3}
+    assert json.loads(capsys.readouterr().out)["state"] == {"score": 3, "title": "\x1b[31m"}
     assert main(["info", str(tmp_path / "none")]) == 1
     assert capsys.readouterr().err.startswith("iota: there is no journal in ")
 

@@ -11,6 +11,7 @@ import iota
 from iota.cli.failure import Failure
 from iota.cli.run import can_show_a_page
 from iota.saving import replacing
+from iota.world.callbacks import plain
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -31,11 +32,11 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps({"title": found.title, "counts": found.counts, "notes": found.notes}))
     else:
-        print(found.title)
+        print(plain(found.title))
         for what, count in found.counts.items():
-            print(f"  {what}: {f'{count:.6g}' if isinstance(count, float) else count}")
+            print(plain(f"  {what}: {f'{count:.6g}' if isinstance(count, float) else count}"))
         for note in found.notes:
-            print(f"  note: {note}")
+            print(plain(f"  note: {note}"))
     if arguments.save:
         save(found, arguments.save)
     if arguments.show:

@@ -12,6 +12,7 @@ from iota._core import System
 from iota.cli.failure import Failure
 from iota.journal.folder import Folder
 from iota.journal.reader import Found, JournalError, find_all
+from iota.world.callbacks import plain
 
 
 def info(arguments: argparse.Namespace) -> None:
@@ -23,7 +24,7 @@ def info(arguments: argparse.Namespace) -> None:
     print(f"{arguments.directory}: the world {told['title']!r}, kept by iota {told['iota']}, begun {told['written']}")
     for name in ("time", "end", "bodies", "people", "controls", "state", "undo", "files", "damage"):
         if told[name]:
-            print(f"  {name + ':':10}{text_of(told[name])}")
+            print(plain(f"  {name + ':':10}{text_of(told[name])}"))
 
 
 def read(directory: Path) -> list[Found]:

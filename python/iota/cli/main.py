@@ -31,6 +31,7 @@ from iota.cli import (
     watch,
 )
 from iota.cli.failure import Failure
+from iota.world.callbacks import plain
 
 MOST_LINKS = 1_000_000  # some GB
 
@@ -303,7 +304,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         parsed.function(parsed)
     except Failure as failure:
-        print(f"iota: {failure}", file=sys.stderr)
+        print(plain(f"iota: {failure}"), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("iota: interrupted", file=sys.stderr)

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import traceback
+import unicodedata
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -120,8 +121,16 @@ def print_on_terminal(text: str, is_error: bool = True) -> None:
     as well."""
     with suppress(OSError, ValueError, AttributeError):  # disk full or broken pipe, closed, none (a service, pythonw)
         out = sys.stderr if is_error else sys.stdout
-        out.write(text)
+        out.write(plain(text))
         out.flush()
+
+
+def plain(text: str) -> str:
+    """The text with its control characters spelled out, but for lines and tabs: names in files and of people may hold some that steer a
+    terminal."""
+    return "".join(
+        c if c in "\n\t" or unicodedata.category(c)[0] != "C" else c.encode("unicode_escape").decode() for c in text
+    )
 
 
 def is_terminal() -> bool:
