@@ -55,6 +55,14 @@ def test_a_comment_of_the_product_does_not_begin_with_a_word_that_leaves_its_sub
     assert not found, "\n".join(found)
 
 
+def test_the_page_takes_no_text_for_markup_or_code() -> None:
+    """Names and titles come from other people."""
+    wrong = re.compile(r"\b(innerHTML|outerHTML|insertAdjacentHTML|srcdoc|document\.write|eval|new Function)\b")
+    sources = [path for path in files() if path.is_relative_to(ROOT / "web" / "src") and path.suffix == ".ts"]
+    assert len(sources) > 50
+    assert not [f"{path.name}: {match[0]}" for path in sources if (match := wrong.search(path.read_text()))]
+
+
 def test_every_python_requirement_is_pinned() -> None:
     for path in (ROOT / "tools").glob("requirements-*.txt"):
         for line in path.read_text().splitlines():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What one person with many connections cannot do to a world; see the table in docs/network.md."""
+"""What one person with many connections cannot do to a world; see docs/attacks.md."""
 
 from __future__ import annotations
 
