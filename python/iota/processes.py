@@ -4,9 +4,18 @@
 from __future__ import annotations
 
 import subprocess
+from typing import Protocol
 
 
-def wait_or_kill(process: subprocess.Popen[bytes], seconds: float) -> None:
+class Child(Protocol):
+    """As `subprocess.Popen`."""
+
+    def wait(self, timeout: float | None = None) -> int: ...
+
+    def kill(self) -> None: ...
+
+
+def wait_or_kill(process: Child, seconds: float) -> None:
     """After a process was asked to end: one that hangs is killed."""
     try:
         process.wait(seconds)

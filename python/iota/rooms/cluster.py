@@ -22,6 +22,7 @@ from iota.arguments import SHORT
 from iota.journal.folder import Folder
 from iota.machines import NAMESPACE, ray_at
 from iota.rooms.folder import RoomFolder, Settings, Told
+from iota.rooms.nursery import Nursery
 from iota.rooms.process import CARD, HostOptions, RoomProcess
 
 LOOK = 0.05  # s, between two looks of an actor at its process
@@ -73,7 +74,9 @@ class Keeper:
 
         self._host = ray.util.get_node_ip_address()
         folder = RoomFolder(Path(path))
-        self._room = RoomProcess(folder, folder.read(), replace(options, host="0.0.0.0" if options.lan else self._host))
+        self._nursery = Nursery()  # a room that was killed comes back without loading the package
+        options = replace(options, host="0.0.0.0" if options.lan else self._host)
+        self._room = RoomProcess(folder, folder.read(), options, self._nursery)
         self._lock = threading.Lock()
         self._is_over = False
         self._thread = threading.Thread(target=self._run, name="iota-keeper", daemon=True)
@@ -97,6 +100,7 @@ class Keeper:
         with self._lock:
             self._is_over = True
             self._room.end()
+            self._nursery.close()
 
     def _run(self) -> None:
         is_wanted = True  # it is made for a visitor, or made again by Ray after its machine has died

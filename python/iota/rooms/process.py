@@ -11,7 +11,6 @@ import os
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections import deque
 from contextlib import suppress
@@ -22,6 +21,7 @@ from iota import studies
 from iota._core import Room as Card
 from iota.processes import wait_or_kill
 from iota.rooms.folder import RoomFolder, Settings, Told, owner, try_lock, write_owner
+from iota.rooms.nursery import Nursery, Nursling
 from iota.rooms.room import RoomOptions
 from iota.world import Server
 from iota.world.lan import Lan
@@ -59,8 +59,8 @@ class HostOptions:
 class RoomProcess:
     """trouble: why it does not run, in one line; empty if it could."""
 
-    def __init__(self, folder: RoomFolder, settings: Settings, options: HostOptions) -> None:
-        self.folder, self.settings, self._options = folder, settings, options
+    def __init__(self, folder: RoomFolder, settings: Settings, options: HostOptions, nursery: Nursery) -> None:
+        self.folder, self.settings, self._options, self._nursery = folder, settings, options, nursery
         self.told: Told | None = None
         self.trouble = ""
         self.restarts = 0
@@ -69,7 +69,7 @@ class RoomProcess:
         self._told_at = self._began = 0.0
         self._listener: socket.socket | None = None
         self._listen_at = 0.0
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: subprocess.Popen[bytes] | Nursling | None = None
         self._last_process: int | None = None  # that was started here
         self._adopted: int | None = None  # the number of a process of an earlier `iota rooms`
         self._own_end = -1  # of the pipe that ends the process with this one
@@ -173,6 +173,7 @@ class RoomProcess:
         """A process that hangs is killed."""
         self.ask_to_end()
         end = time.monotonic() + PATIENCE
+        self._adopt_lost()
         if self._process is not None:
             wait_or_kill(self._process, PATIENCE)
             self._process = None
@@ -196,6 +197,10 @@ class RoomProcess:
         self._adopted = owner(self.folder.lock)
         self._began = time.monotonic()
 
+    def _adopt_lost(self) -> None:
+        if isinstance(self._process, Nursling) and self._process.is_lost:
+            self._adopted, self._process = self._process.pid, None
+
     def _is_locked(self) -> bool:
         with suppress(OSError):
             handle = try_lock(self.folder.lock)
@@ -214,6 +219,7 @@ class RoomProcess:
 
     def _look_at_process(self, now: float) -> None:
         code: int | None = None
+        self._adopt_lost()
         if self._process is not None:
             code = self._process.poll()
             is_over = code is not None
@@ -296,24 +302,17 @@ class RoomProcess:
         self._last_process = self._process.pid
         self._began, self.begins_anew, self._is_asked = time.monotonic(), False, False
 
-    def _spawn(self, listener: int, lock: int, log: int) -> subprocess.Popen[bytes]:
+    def _spawn(self, listener: int, lock: int, log: int) -> subprocess.Popen[bytes] | Nursling:
         what, options = self.settings.what, self._options
         parent, own_end = os.pipe() if options.ends_with_parent else (-1, -1)
         folder = str(self.folder.path.resolve())
         told = RoomOptions(folder, listener, options.leave, options.public_origin, options.gateway, parent)
-        words = [sys.executable, "-m", "iota", "run", what, "--no-open", "--room", told.to_text(), *options.words()]
+        words = ["run", what, "--no-open", "--room", told.to_text(), *options.words()]
         words += ["--fresh"] if self.begins_anew else []
-        place = self.folder.path if what in studies.names() else Path(what).parent
+        place = (self.folder.path if what in studies.names() else Path(what).parent).resolve()
+        files = [listener, lock, *([parent] if parent >= 0 else [])]
         try:
-            started = subprocess.Popen(
-                words,
-                cwd=place,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                pass_fds=(listener, lock, *([parent] if parent >= 0 else [])),
-                start_new_session=True,  # neither Ctrl-C nor a closed terminal is for it
-            )
+            started = self._nursery.make(words, place, self.folder.name, log, files)
         except BaseException:
             if own_end >= 0:
                 os.close(own_end)

@@ -22,6 +22,7 @@ from iota.journal.folder import BusyError
 from iota.metrics import CONTENT_TYPE, Metric, of_process, one, text_of
 from iota.rooms.cluster import Cluster, RoomActor
 from iota.rooms.folder import RoomFolder, Settings, check_name, owner, try_lock, write_owner
+from iota.rooms.nursery import Nursery
 from iota.rooms.process import HostOptions, RoomProcess
 from iota.world import Server
 from iota.world.callbacks import one_line, print_error, print_on_terminal
@@ -76,6 +77,10 @@ class Rooms(Server):
             self._options.gateway = public_origin or f"{'https' if lan else 'http'}://{host}:{self.port}"
         self._public_origin = public_origin
         self.rooms: dict[str, RoomProcess | RoomActor] = {}
+        self._nursery = Nursery()
+        if cluster is None:
+            with suppress(OSError):  # such as too many processes: it is tried again with the first visitor
+                self._nursery.start()
         self._find()
         self.serve_requests([LIST, CHANGE, PICTURE, METRICS])
         if cluster is not None:
@@ -113,6 +118,7 @@ class Rooms(Server):
             room.ask_to_end()
         for room in self.rooms.values():
             room.end()
+        self._nursery.close()
         os.close(self._lock)
 
     # --- what the page asks for ----------------------------------------------------------------------------------------
@@ -141,7 +147,7 @@ class Rooms(Server):
     def _add(self, name: str, folder: RoomFolder, settings: Settings) -> None:
         room: RoomProcess | RoomActor
         if self._cluster is None:
-            room = RoomProcess(folder, settings, self._options)
+            room = RoomProcess(folder, settings, self._options, self._nursery)
         else:
             room = RoomActor(folder, settings, self._options, self._cluster)
         self.rooms[name] = room
