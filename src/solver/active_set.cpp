@@ -126,13 +126,7 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
         const Bounds bounds = bounds_of(law[r], stage);
         double& lambda = pool.multiplier(k)[r];
         RowStates::Row& state = pool.states.rows_[k * C::rows + r];
-        state.start = g[r], state.yield = state.late = 0;
-        if (law[r].is_compliant() && law[r].damping > 0 && stage.is_mid_point() &&
-            (g[r] == 0 || law[r].stretch(g[r]) != 0)) {
-          const RowMotion<C> motion(problem, pool.items[k]);
-          state.late = lateness(law[r].damping, motion.mobility(problem, pool.items[k], r), stage.h),
-          state.speed = motion.speed[r];
-        }
+        state.start = g[r], state.yield = 0;
         state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
         if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
         state.side_before = state.side;

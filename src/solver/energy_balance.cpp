@@ -54,8 +54,6 @@ struct Solved {
   template <class C>
   void add_dissipation_of_rows(const ConstraintPool<C>&, const double* multipliers_before, StepEnergy&) const;
   template <class C>
-  double dashpot_work(const ConstraintPool<C>&, std::size_t item, int row, double before, double after) const;
-  template <class C>
   double mean_speed_across(const C&, int row) const;
   double work_of_gaps() const;
   double work_of_imbalance() const;
@@ -140,12 +138,13 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, const double
     for (int r = 0; r < C::rows; ++r) {
       const RowLaw& law = pool.law(k)[r];
       const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
+      const double stretched = law.stretch(after[r]) - law.stretch(before[r]);
       const bool is_free = pool.is_equation(k, r);
       if (law == RowLaw{} || law.is_off()) continue;
       if (law.is_rate)
         energy.dissipated += lambda * (moved - law.rate * stage.h);
       else if (law.is_compliant())
-        energy.dissipated += is_free ? dashpot_work(pool, k, r, before[r], after[r])
+        energy.dissipated += is_free ? law.damping / stage.h * stretched * stretched
                                      : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
       else if (pool.states.has_been_met(k * C::rows + static_cast<std::size_t>(r)))
         energy.impact += lambda * (stage.is_mid_point() ? moved : stage.h * mean_speed_across(pool.items[k], r));
@@ -153,17 +152,6 @@ void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, const double
         energy.dissipated += lambda * moved;
     }
   });
-}
-
-/// By the stretch; of a late one by its force, as its rate is a small difference of large numbers.
-template <class C>
-double Solved::dashpot_work(const ConstraintPool<C>& pool, std::size_t k, int r, double before, double after) const {
-  const std::size_t row = k * C::rows + static_cast<std::size_t>(r);
-  const RowLaw& law = pool.law(k)[r];
-  const double stretched = law.stretch(after) - law.stretch(before);
-  const bool is_slack = law.is_one_sided() && (law.stretch(before) == 0 || law.stretch(after) == 0);
-  if (pool.states.late(row) == 0 || is_slack) return law.damping / stage.h * stretched * stretched;
-  return pool.multiplier(k)[r] * (after - before) - law.energy(after) + law.energy(before);
 }
 
 /// Mean velocity of a row over the step, by its gradient at the end, m/s.
@@ -240,7 +228,6 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
   if (energy.made() > energy.slack) {
     const Strain strain = newton.strain_released(problem, stage, multipliers_before);
-    energy.returned = std::clamp(strain.released, 0.0, energy.made() - energy.slack);
     energy.slack += step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, strain.released);
     energy.overdrawn = std::max(0.0, strain.released) - std::max(0.0, strain.of_stored);
   }
@@ -253,6 +240,7 @@ void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
   const double impact = std::clamp(missing, 0.0, std::max(0.0, step.impact));  // at most what is missing
   missing -= impact;
   report.external_work += step.external_work, report.dissipated += step.dissipated + impact;
+    energy.returned = std::clamp(strain.released, 0.0, energy.made() - energy.slack);
 }
 
 void EnergyBalance::close(const Problem& problem, double reference_length, double h, AdvanceReport& report) {

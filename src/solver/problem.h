@@ -341,8 +341,6 @@ struct Problem {
   }
   /// Tells forces the velocities at the start of a (sub-)step of h seconds.
   void begin_forces(double h) {
-    for (SpringForce& f : items_of<SpringForce>()) f.begin(velocity.data(), mass.data(), h);
-    for (DragForce& f : items_of<DragForce>()) f.begin(velocity.data(), mass.data(), h);
     for (VelocityForce& f : items_of<VelocityForce>()) f.begin(velocity.data(), h);
   }
   std::size_t multiplier_count() const {

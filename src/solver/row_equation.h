@@ -41,20 +41,15 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   if (law.is_rate) g -= start + law.rate * stage.h;
   if (!law.is_compliant()) return {g, pool.states.yield(i * C::rows + static_cast<std::size_t>(r))};
   const double part = stage.is_mid_point() ? 0.5 : 1;
-  const std::size_t row = i * C::rows + static_cast<std::size_t>(r);
-  const double stiffness = 1 / law.compliance;
-  double damping = law.damping / stage.h;
+  const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
+  const double total = part * stiffness + damping;
   const double before = law.is_rate ? 0 : law.stretch(start);
   if (stage.is_mid_point() && !law.is_rate && law.is_one_sided()) {
     const bool becomes_taut = before == 0 && start != 0;
     const bool becomes_slack = before != 0 && law.stretch(g) == 0 && g != 0 && part * stiffness > damping;
     if (becomes_taut || becomes_slack) return equation_at_slack(start, before, g, part * stiffness, damping);
   }
-  const double late = pool.states.late(row);
-  damping *= 1 + late;
-  const double total = part * stiffness + damping;
-  const double earlier = late > 0 ? late * law.damping * (pool.states.speed(row) - law.rate) : 0;
-  return {g + (((1 - part) * stiffness - damping) * before - earlier) / total, 1 / total};
+  return {g + ((1 - part) * stiffness - damping) / total * before, 1 / total};
 }
 
 /// Rows that are eliminated before their points by their own compliance need as much of it where that of forces is nothing: else
@@ -105,12 +100,6 @@ struct RowMotion {
     }
   }
   const Vec3& gradient(int node, int r) const { return rows_[node][r]; }
-  /// The acceleration of a row by a multiplier of -1, if its points were free.
-  double mobility(const Problem& problem, const C& c, int r) const {
-    double sum = 0;
-    for (int i = 0; i < c.node_count(); ++i) sum += dot(rows_[i][r], rows_[i][r]) / problem.mass[c.nodes[i]];
-    return sum;
-  }
 
  private:
   Gradients<C> gradients_;

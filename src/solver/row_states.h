@@ -29,9 +29,6 @@ class RowStates {
   }
   /// The value of a rate or compliant row at the start of the (sub-)step.
   double start(std::size_t row) const { return rows_[row].start; }
-  /// Of a dashpot: see solver::lateness; and the rate of its row at the start of the (sub-)step.
-  double late(std::size_t row) const { return rows_[row].late; }
-  double speed(std::size_t row) const { return rows_[row].speed; }
   /// By how much a rate row yields to a multiplier of 1 while the sides are sought; 0 in every solution.
   double yield(std::size_t row) const { return rows_[row].yield; }
 
@@ -42,7 +39,7 @@ class RowStates {
     std::int8_t side = 0;         // -1, 1: its multiplier is at the lower, upper bound; 0: an equation
     std::int8_t side_before = 0;  // at the start of the (sub-)step
     bool off_speed = false;       // a rate row whose velocity there was not the target
-    double start = 0, yield = 0, late = 0, speed = 0;
+    double start = 0, yield = 0;
     double before =
         0;  // at the start of an explicit sub-step: the speed of a row that slides, the multiplier of an equation
     std::int8_t next_side = as_it_moves;  // of an explicit sub-step

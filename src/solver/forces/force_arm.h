@@ -29,12 +29,6 @@ struct ForceArm {
     for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];
     return e;
   }
-  /// Its acceleration by a force of 1 N, if its points were free, 1/kg.
-  double mobility(const double* masses) const {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i] * weights[i] / masses[nodes[i]];
-    return sum;
-  }
   /// Its rate for velocities v of the points.
   Vec3 rate(const Vec3* v) const {
     Vec3 sum;
@@ -43,24 +37,12 @@ struct ForceArm {
   }
 };
 
-/// A dashpot in a step of the mid-point rule. Its force by the mean rate throws back what it would stop within a fraction of a
-/// step: with x = c h / 2m the rate turns from r to (1 - x)/(1 + x) r. Above x = 1 it takes the rate so much later that the body
-/// stops:
-///   force = -c ((1 + late) (g1 - g0)/h - late r),   r the rate at the start, late = 1 - 1/x
-/// Where rows tie m to more than it, it is nearer to the rate at the end, and right to first order.
-inline double lateness(double damping, double mobility, double h) {
-  const double x = 0.5 * h * damping * mobility;
-  return x > 1 ? 1 - 1 / x : 0;
-}
-
 /// The evaluation of a force in a step: backward Euler at its end, the mid-point rule by a discrete gradient.
 struct ForceStage {
   double h = 0;  ///< s
   bool midpoint = false;
   bool clamp = false;    ///< make stiffness blocks positive semi-definite
   bool instant = false;  ///< at the place e1 with the rate (e1 - e0)/h, not between e0 and e1
-  /// Whether a dashpot of this lateness takes a later rate.
-  bool is_late(double late) const { return late > 0 && midpoint && !instant; }
   /// With e0 = e1 minus the rate; work and dissipation are then powers.
   static ForceStage at_an_instant() { return {.h = 1, .instant = true}; }
 };

@@ -15,19 +15,13 @@
 
 namespace iota::solver {
 
-/// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n as Dashpot says; see `lateness`. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which
+/// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n as Dashpot says. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which
 /// is -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
 struct SpringForce {
   static constexpr bool is_external = false;
   ForceArm arm;
   double stiffness = 0, damping = 0, length = 0;
-  double late = 0;  ///< of the dashpot: see lateness
-  Vec3 start;       ///< rate of the arm at the start of a (sub-)step, m/s; if late
 
-  void begin(const Vec3* velocities, const double* masses, double h) {
-    late = has_dashpot() ? lateness(damping, arm.mobility(masses), h) : 0;
-    if (late > 0) start = arm.rate(velocities);
-  }
   static Vec3 direction(const Vec3& e) { return (1 / (norm(e) + 1e-300)) * e; }
   double energy(const Vec3& e) const {
     const double stretch = norm(e) - length;
@@ -42,29 +36,22 @@ struct SpringForce {
   bool has_dashpot() const { return damping > 0; }
   Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Dashpot dashpot(e0, e1, s, length == 0);
-    return -dashpot_pull(dashpot, s) * dashpot.n;
-  }
-  double dashpot_pull(const Dashpot& dashpot, const ForceStage& s) const {
-    return s.is_late(late) ? damping * ((1 + late) / s.h * dashpot.along - late * dot(dashpot.n, start))
-                           : damping / s.h * dashpot.along;
+    return (-damping / s.h * dashpot.along) * dashpot.n;
   }
   /// Forces that an end-point step takes along the line at its start, and not at its end, where it takes moments.
   bool may_act_across() const { return has_dashpot(); }
   Vec3 force_across(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return dashpot_force(e0, e1, s); }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!has_dashpot()) return 0;
-    const Dashpot dashpot(e0, e1, s, length == 0);
-    return dashpot_pull(dashpot, s) * dashpot.along;
+    const double along = Dashpot(e0, e1, s, length == 0).along;
+    return damping / s.h * along * along;
   }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Vec3 n1 = direction(e1);
     Mat3 k;
     if (has_dashpot()) {
       const Dashpot dashpot(e0, e1, s, length == 0);
-      const double more = s.is_late(late) ? late : 0;
-      k = dashpot.stiffness_matrix(e1, (1 + more) * damping / s.h, dashpot_pull(dashpot, s), s);
-      if (more > 0 && dashpot.turns)
-        k += (-more * damping / dashpot.length) * Mat3::outer(dashpot.n, start - dot(dashpot.n, start) * dashpot.n);
+      k = dashpot.stiffness_matrix(e1, damping / s.h, damping / s.h * dashpot.along, s);
     }
     if (s.midpoint) {
       const double r = (norm(e0) + norm(e1)) / 2;
@@ -85,29 +72,18 @@ struct SpringForce {
   double factor(double r) const { return length == 0 ? 1 : 1 - length / (r + 1e-300); }
 };
 
-/// F = -c (e1 - e0)/h: viscous drag; see `lateness`.
+/// F = -c (e1 - e0)/h: viscous drag.
 struct DragForce {
   static constexpr bool is_external = false;
   ForceArm arm;
   double damping = 0;
-  double late = 0;
-  Vec3 start;  ///< rate of the arm at the start of a (sub-)step, m/s; if late
 
-  void begin(const Vec3* velocities, const double* masses, double h) {
-    late = lateness(damping, arm.mobility(masses), h);
-    if (late > 0) start = arm.rate(velocities);
-  }
   double energy(const Vec3&) const { return 0; }
-  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    if (s.is_late(late)) return (-damping * (1 + late) / s.h) * (e1 - e0) + (damping * late) * start;
-    return (-damping / s.h) * (e1 - e0);
-  }
+  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return (-damping / s.h) * (e1 - e0); }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    return -dot(force(e0, e1, s), e1 - e0);
+    return damping / s.h * dot(e1 - e0, e1 - e0);
   }
-  Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const {
-    return Mat3::diagonal((s.is_late(late) ? 1 + late : 1) * damping / s.h);
-  }
+  Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const { return Mat3::diagonal(damping / s.h); }
 };
 
 /// A grip: F = -k e - c (e1 - e0)/h towards the arm's origin.
