@@ -240,7 +240,6 @@ void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
   const double impact = std::clamp(missing, 0.0, std::max(0.0, step.impact));  // at most what is missing
   missing -= impact;
   report.external_work += step.external_work, report.dissipated += step.dissipated + impact;
-    energy.returned = std::clamp(strain.released, 0.0, energy.made() - energy.slack);
 }
 
 void EnergyBalance::close(const Problem& problem, double reference_length, double h, AdvanceReport& report) {

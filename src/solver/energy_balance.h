@@ -18,7 +18,6 @@ struct StepEnergy {
   double impact = 0;              ///< upper bound of what rows that have just become active dissipate
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
-  double returned = 0;   ///< of what is made: by rows that had stored it in their compliance
   double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored
 
   double missing() const { return total_before + external_work - dissipated - total; }

@@ -165,7 +165,6 @@ class Integrator {
   void find_holds_of_pieces(const Problem&);
   RigidMotion rigid_motion_of_piece(const Problem&, std::uint32_t piece) const;
   void scale_motions_of_pieces(Problem&, double missing);
-  void remove_from_pieces(Problem&, double energy);
   void keep_correction(const Problem&);
 
   double advance_explicitly(Problem&, double h, AdvanceReport&);

@@ -112,12 +112,7 @@ void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dis
 void Integrator::remove_made_energy(Problem& problem, double energy_before) {
   double made = drives_rows_ || -energy_.missing <= energy_.slack ? 0 : -energy_.missing - 0.5 * energy_.slack;
   if (is_conservative_) made = std::max(made, energy_.total - energy_before);
-  if (!(made > 0)) return;
-  find_pieces_if_due(problem);
-  if (pieces_.empty())
-    (void)change_kinetic_energy(problem, made);
-  else  // a rigid body on a slack rope gives nothing, as a free one does
-    remove_from_pieces(problem, made);
+  if (made > 0) (void)change_kinetic_energy(problem, made);
 }
 
 // Removes `excess` from the kinetic energy, or adds it if negative: scales all velocities, in an isolated problem
@@ -224,14 +219,6 @@ RigidMotion Integrator::rigid_motion_of_piece(const Problem& problem, std::uint3
   const Holds& holds = pieces_[piece].holds;
   if (const auto pivot = holds.pivot()) return rigid_motion_about(problem, *pivot, piece_of_, piece);
   return holds.are_none() ? rigid_motion_of(problem, piece_of_, piece) : RigidMotion{};
-}
-
-void Integrator::remove_from_pieces(Problem& problem, double energy) {
-  constexpr double rigid = 1e-9;  // of the kinetic energy
-  find_holds_of_pieces(problem);
-  double rest = energy_.kinetic;
-  for (std::uint32_t k = 0; k < pieces_.size(); ++k) rest -= rigid_motion_of_piece(problem, k).kinetic_energy();
-  if (rest > rigid * energy_.kinetic) scale_motions_of_pieces(problem, -std::min(energy, (1 - rigid) * rest));
 }
 
 // After an explicit sub-step. Its error is that of all pieces together, so all motions beside the rigid ones share it.
