@@ -111,7 +111,7 @@ class Running:
         self._link, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             self._process = subprocess.Popen(
-                [sys.executable, "-c", "from iota.rooms.nursery import main; main()", str(other.fileno())],
+                [sys.executable, "-c", "from iota.cli.nursery import main; main()", str(other.fileno())],
                 pass_fds=(other.fileno(),),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -239,13 +239,3 @@ def become(wish: dict[str, Any], files: list[int], mine: list[int], run: Callabl
             with suppress(OSError, ValueError):
                 stream.flush()
         os._exit(code)
-
-
-def main() -> None:
-    from iota import builder, studies
-    from iota.cli.main import main as command_line
-    from iota.journal import reader, writer
-    from iota.rooms import room
-
-    assert all((builder, studies, reader, writer, room))  # they are loaded, for all copies
-    serve(socket.socket(fileno=int(sys.argv[1])), command_line)

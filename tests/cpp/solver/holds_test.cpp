@@ -81,7 +81,9 @@ TEST_P(Slack, a_rope_that_tightens_and_slackens_keeps_momentum_and_angular_momen
   }
   EXPECT_TRUE(has_been_taut);
   expect_near(system.momentum(), linear, 1e-9);
-  expect_near(system.angular_momentum(), angular, 1e-4 * norm(angular));
+  // A jerk is not solved to the end in mode plausible.
+  const double most = GetParam() == IntegrationMode::plausible ? 3e-4 : 1e-6;
+  expect_near(system.angular_momentum(), angular, most * norm(angular));
 }
 
 INSTANTIATE_TEST_SUITE_P(Acting, Slack, testing::ValuesIn(all_modes));
