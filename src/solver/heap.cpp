@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/heap.h"
 
-#include "solver/pieces.h"
+#include "math/mat3.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
-#include <type_traits>
+#include <span>
 
 namespace iota::solver {
 

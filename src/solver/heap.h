@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "math/mat3.h"
 #include "solver/heap_bodies.h"
 #include "solver/heap_forces.h"
 #include "solver/heap_points.h"
 #include "solver/heap_ties.h"
 #include "solver/problem.h"
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,8 +29,8 @@ struct HeapReport {
 /// linear in the number of contacts.
 class Heap {
  public:
-  /// After a change of structure: whether contacts, joints and other rows of two bodies connect rigid bodies, and fewer
-  /// forces: nets and soft bodies stretch by sweeps.
+  /// After a change of structure: whether contacts, joints and other rows connect rigid bodies, and fewer forces than contacts: by
+  /// sweeps nets and soft bodies would stretch.
   bool find_bodies(const Problem&);
   bool has_joints() const { return !ties_.are_none(); }
   /// Whether a joint connects bodies of very different masses: sweeps do not hold what hangs on light links.
