@@ -303,7 +303,7 @@ class Meeting {
       : model_(model), first_(first), second_(second), motion_(motion) {}
 
   bool is_eased() const { return is_on_its_own(model_, first_) && is_on_its_own(model_, second_); }
-  /// What a contact at this gap has of the materials, of the motion, and of the step before.
+  /// A contact at this gap takes its numbers from the materials, the motion and the step before.
   void renew(Contact& c, double gap) const {
     c.friction = std::sqrt(one_.friction * other_.friction);
     c.static_friction = std::sqrt(one_.largest_friction() * other_.largest_friction());

@@ -76,7 +76,7 @@ IOTA_ALWAYS_INLINE FourLanes transposed(const FourLanes& rows) {
 
 /// Which record of an array each lane has.
 using LaneNumbers = std::array<std::uint32_t, lane_count>;
-/// Of records that are of numbers alone: their numbers at 4 k to 4 k + 3, by lanes.
+/// The numbers at 4 k to 4 k + 3 of records that are of numbers alone, by lanes.
 template <class Record>
 IOTA_ALWAYS_INLINE FourLanes gather(const Record* records, const LaneNumbers& numbers, int k) {
   FourLanes rows;

@@ -136,7 +136,7 @@ struct Obstacle {
   Quaternion orientation;
 };
 
-/// Where a body was when its contacts were found anew: until it leaves that place they are those of the step before.
+/// The place of a body when its contacts were found anew: until it leaves it they are those of the step before.
 struct Stand {
   double reach = 0;            ///< of its outline then, m
   std::array<Vec3, 3> places;  ///< of the first points of its basis

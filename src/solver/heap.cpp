@@ -17,6 +17,8 @@ namespace {
 constexpr int sweeps = 2;
 constexpr int first_sweeps = 8;  // where contacts begin
 
+Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
+
 }  // namespace
 
 bool Heap::find_bodies(const Problem& problem) {
@@ -184,6 +186,21 @@ void Heap::load_bodies(const Problem& problem, double h) {
     found_.all[found_.with(std::span(t.nodes).first(t.count))].turning += h * t.torque;
 }
 
+void Heap::load_grips(const Problem& problem) {
+  grips_.clear();
+  const std::span forces = problem.items_of<GripForce>();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const GripForce& force = forces[i];
+    Grip grip{.body = found_.with(std::span(force.arm.nodes).first(force.arm.count)),
+              .item = static_cast<std::uint32_t>(i)};
+    if (!is_free(grip.body)) continue;
+    grip.error = force.arm.value(problem.position.data());
+    grip.arm = grip.error + force.arm.origin - found_.all[grip.body].center;
+    grips_.push_back(grip);
+  }
+}
+
+// Held forces, and grips by the end-point rule.
 void Heap::push(double h, const Problem& problem, HeapReport& report) {
   for (std::size_t i = 0; i < found_.all.size(); ++i) {
     const Body& body = found_.all[i];
@@ -193,6 +210,24 @@ void Heap::push(double h, const Problem& problem, HeapReport& report) {
     motion.velocity += 0.5 * body.gain, motion.spin += 0.5 * turned;
     report.external_work += dot(gained, motion.velocity) / motion.by_mass + dot(body.turning, motion.spin);
     motion.velocity += 0.5 * body.gain, motion.spin += 0.5 * turned;
+  }
+  const std::span forces = problem.items_of<GripForce>();
+  for (const Grip& grip : grips_) {
+    const Body& body = found_.all[grip.body];
+    Motion& motion = motions_[grip.body];
+    const GripForce& force = forces[grip.item];
+    const Vec3 arm = rotate(body.turn, grip.arm), error = grip.error + body.moved + arm - grip.arm;
+    const Vec3 velocity = motion.velocity + cross(motion.spin, arm);
+    const double resistance = h * (force.damping + h * force.stiffness);
+    Mat3 matrix;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 unit = unit_vector(k);
+      matrix.set_column(k,
+                        unit + resistance * (motion.by_mass * unit + cross(motion.by_inertia * cross(arm, unit), arm)));
+    }
+    const Vec3 impulse = solve(matrix, -(h * force.stiffness) * error - resistance * velocity);
+    motion.velocity += motion.by_mass * impulse, motion.spin += motion.by_inertia * cross(arm, impulse);
+    report.external_work += 0.5 * dot(impulse, velocity + motion.velocity + cross(motion.spin, arm));
   }
 }
 
@@ -247,7 +282,7 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   load_bodies(problem, part);
   points_.load(problem, found_, motions_, part, (fraction - from) / h);
   ties_.begin(problem, found_, part);
-  forces_.begin();
+  load_grips(problem), forces_.begin();
   const auto way_at = [&](int k) { return from + (fraction - from) * k / sub_steps; };
   ties_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
   forces_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));

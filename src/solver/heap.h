@@ -49,6 +49,12 @@ class Heap {
   using Body = HeapBody;
   using Motion = HeapMotion;
 
+  struct Grip {
+    std::uint32_t body = none, item = 0;
+    Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
+  };
+  bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
+  void load_grips(const Problem&);
   void find_least_cost();
   void load_bodies(const Problem&, double h);
   void push(double h, const Problem&, HeapReport&);
@@ -62,6 +68,7 @@ class Heap {
   HeapForces forces_;
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
+  std::vector<Grip> grips_;
   bool has_light_joints_ = false;
   double least_cost_ = 0;                                       // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects

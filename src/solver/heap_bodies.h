@@ -68,7 +68,7 @@ struct HeapBodies {
   bool find(const Problem&);
   bool have(std::uint32_t body, std::uint32_t node) const { return place_of(body, node) < all[body].count; }
   bool is_shared(std::uint32_t node) const { return !copies.empty() && bodies_at_[node].size() > 1; }
-  /// Of each, kg; of what is driven zero.
+  /// The mass of each body, kg; zero where it is driven.
   std::vector<double> masses(const Problem&) const;
   /// The places of all points in a step, and those that driven ones reach next: at these fractions of the way of their targets.
   void find_places(const Problem&, double from, double to, std::vector<Vec3>& now, std::vector<Vec3>& next) const;

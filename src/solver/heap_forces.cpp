@@ -21,7 +21,7 @@ void HeapForces::find(const Problem& problem, const HeapBodies& bodies) {
   items_.clear(), between_ = 0;
   std::uint8_t number = 0;
   problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
-    for (std::size_t i = 0; i < pool.items.size(); ++i) {
+    for (std::size_t i = 0; i < pool.items.size() && !std::is_same_v<F, GripForce>; ++i) {
       Item item{.number = static_cast<std::uint32_t>(i), .pool = number};
       const ForceArm& arm = pool.items[i].arm;
       for (std::uint32_t k = 0; k < arm.count; ++k) {

@@ -11,7 +11,7 @@
 
 namespace iota::solver {
 
-/// The implicit forces of a heap: springs, drags, laws between points, grips. In a sweep each gets the impulse that it has at the end of
+/// The implicit forces of a heap but grips: springs, drags, laws between points. In a sweep each gets the impulse that it has at the end of
 /// the sub-step, by one step of Newton's method with the masses of its bodies: no stiffness is too large for that.
 class HeapForces {
  public:
@@ -34,7 +34,7 @@ class HeapForces {
   void refresh(Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
   void warm(std::span<HeapMotion>) const;
   void sweep(const Problem&, std::span<HeapMotion>, double h);
-  /// Of forces from outside, where the bodies move like this in the sub-step, J.
+  /// The work of forces from outside, where the bodies move like this in the sub-step, J.
   double work(const Problem&, std::span<const HeapMotion>) const;
 
  private:

@@ -379,7 +379,7 @@ bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeti
   return is(meeting.first) || is(meeting.second);
 }
 
-// What is edited has no stand any more.
+// An edited body has no stand any more.
 bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outlines, std::uint32_t slot) {
   if (all_moved_.size() <= slot) all_moved_.resize(model.bodies.slot_count());
   Moved& moved = all_moved_[slot];
@@ -389,8 +389,7 @@ bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outl
   model::Stand stand{.reach = outlines.reach(slot)};
   const double most = standing * stand.reach;
   moved.is = !before || before->reach != stand.reach;
-  const std::size_t count = body.kind == BodyKind::static_ ? 0 : std::min<std::size_t>(body.rank, stand.places.size());
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(body.rank, stand.places.size()); ++k) {
     stand.places[k] = model.position(body.basis[k]);
     moved.is = moved.is || !(norm(stand.places[k] - before->places[k]) <= most);
   }
@@ -398,9 +397,14 @@ bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outl
   return moved.is;
 }
 
-// Nothing comes into reach of two bodies that stand: `within` is more than they go.
+// Nothing comes into reach of two bodies that stand: `within` is more than they go. Rods are found anew: ropes that creep about a beam did
+// not converge with places of before.
 bool ContactFinder::renew(model::Model& model, const contact::Outlines& outlines, const Pair& pair,
                           const Meeting& meeting, std::span<const std::uint32_t> former) {
+  const auto is_solid = [&](std::uint32_t body) {
+    return model.bodies[body].kind == BodyKind::static_ || model.bodies[body].rank == 4;
+  };
+  if (!is_solid(pair.first) || !is_solid(pair.second)) return false;
   const bool has_first_moved = has_moved(model, outlines, pair.first),
              has_second_moved = has_moved(model, outlines, pair.second);
   if (has_first_moved || has_second_moved || !(h_ * meeting.speed() <= standing * meeting.size)) return false;

@@ -114,41 +114,6 @@ it("plastic has a highlight, in which the soft box above it is mirrored", async 
 });
 
 describe.each(["light", "dark", "script"])("in the %s look", (look) => {
-  it("a spark has no rim: outside its hot middle it is between its color and what is behind it", async () => {
-    await chooseLook(look);
-    const { across, outside } = await tab.page.evaluate(() => {
-      const { viewer: { renderer, scene, camera }, world: { entities: { body, particleSet } } } = iota.page;
-      const [color, radius] = [[255, 128, 32], 0.25];
-      const gl = renderer.getContext();
-      const width = gl.drawingBufferWidth;
-      const row = () => {
-        const pixels = new Uint8Array(4 * width);
-        renderer.render(scene, camera);
-        gl.readPixels(0, Math.floor(gl.drawingBufferHeight / 2), width, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-        return pixels;
-      };
-      body.root.visible = false;
-      const behind = row();
-      const at = [0, 0.35, 0];  // the middle of the picture
-      const shown = { count: 1, position: Float32Array.from(at), radius: Float32Array.of(radius), color: Uint32Array.of(0xff8020) };
-      particleSet.takeSparks(shown as unknown as Parameters<typeof particleSet.takeSparks>[0]);
-      const spark = row();
-      particleSet.takeSparks({ ...shown, count: 0 } as unknown as Parameters<typeof particleSet.takeSparks>[0]);
-      body.root.visible = true;
-      const perMeter = (renderer.getContext().drawingBufferHeight / 2) * camera.projectionMatrix.elements[5] / camera.position.length();
-      let [seen, far] = [0, 0];
-      for (let x = 0; x < width; x++) {
-        if (Math.abs(x - width / 2) < 0.9 * radius * perMeter) continue;
-        const pixel = [0, 1, 2].map((channel) => [behind[4 * x + channel], spark[4 * x + channel], color[channel]]);
-        if (pixel.some(([back, now]) => Math.abs(now - back) > 4)) seen++;
-        for (const [back, now, own] of pixel) far = Math.max(far, Math.min(back, own) - now, now - Math.max(back, own));
-      }
-      return { across: seen / perMeter / radius, outside: far };
-    });
-    expect(across, "radii of halo that are seen").toBeGreaterThan(1);
-    expect(outside, "of 255").toBeLessThan(6);
-  });
-
   it("a mirror shows the ground and the sky in their colors", async () => {
     await chooseLook(look);
     // Where the ball mirrors what is in front of it, and the sky 5 degrees above the horizon.

@@ -70,7 +70,7 @@ def can_be_copied(tie: Tie) -> bool:
 
 
 def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
-    """Those of which copies of ties need copies."""
+    """The particles of which copies of ties need copies."""
     found: set[Particle] = set()
     for tie in ties:
         if isinstance(tie, Constraint):

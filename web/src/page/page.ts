@@ -103,7 +103,7 @@ class Themes implements FramePart {
   }
 
   private apply_(): void {
-    const { viewer, world: { entities: { stage } } } = this.parts_;
+    const { viewer, world: { entities: { stage, particleSet } } } = this.parts_;
     const told = stage.all().at(-1);
     const [sky, horizon, ground] = [told?.sky, told?.horizon, told?.ground].map((color) => (color === undefined ? null : textOf(color)));
     viewer.invalidate();
@@ -112,6 +112,7 @@ class Themes implements FramePart {
     const behind = horizon ?? sky;
     const theme = behind === null ? this.system_ : new Color(behind).getHSL({ h: 0, s: 0, l: 0 }, SRGBColorSpace).l < 0.4 ? "dark" : "light";
     this.highlights_.setTheme(theme);
+    particleSet.setTheme(theme);
   }
 }
 

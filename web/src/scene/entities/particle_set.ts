@@ -17,11 +17,11 @@ const mostReserved = 4096;
 /** Linear values of the 256 values of a channel. */
 const linear = Float32Array.from({ length: 256 }, (_, value) => new Color().setHex(value).b);
 
-/** A bright ball with a halo; both cover the background, by weights from 1 in the middle to 0: light that is only added would be a bright rim
- * by day. Pictures are blended in the values of the screen, so the color is encoded first, and weighted then. */
+/** A bright ball with a halo: the ball covers the background, the halo only adds light. */
 function makeGlow(): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, depthWrite: false, fog: false, toneMapped: false,
+    uniforms: { glow: { value: 0.3 } },
     blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor,
     vertexShader: `
       varying vec2 vPlace;
@@ -34,17 +34,17 @@ function makeGlow(): ShaderMaterial {
         gl_Position = projectionMatrix * center;
       }`,
     fragmentShader: `
+      uniform float glow;
       varying vec2 vPlace;
       varying vec3 vColor;
       void main() {
         float radius = length(vPlace);
-        float ball = 0.92 * (1.0 - smoothstep(0.2, 1.1, radius));
-        float halo = 0.5 * pow(max(1.0 - radius / 3.0, 0.0), 1.5);
+        float ball = 1.0 - smoothstep(0.2, 1.1, radius);
+        float halo = glow * pow(max(1.0 - radius / 3.0, 0.0), 2.5);
         float hot = max(1.0 - radius, 0.0);
-        vec3 core = mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r);
-        halo *= 1.0 - ball;
-        vec3 shown = ball * linearToOutputTexel(vec4(core, 1.0)).rgb + halo * linearToOutputTexel(vec4(vColor, 1.0)).rgb;
-        gl_FragColor = vec4(shown, ball + halo);
+        vec3 shown = ball * mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r) + halo * vColor;
+        gl_FragColor = vec4(shown, 0.92 * ball);
+        #include <colorspace_fragment>
       }`,
   });
 }
@@ -63,6 +63,11 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     this.mesh_.visible = false;
     this.root.add(this.mesh_);
     this.reserve_(64);
+  }
+
+  /** On a bright ground the halo is weaker. */
+  setTheme(theme: "light" | "dark"): void {
+    this.mesh_.material.uniforms["glow"].value = theme === "dark" ? 0.32 : 0.07;
   }
 
   /** Number of shown sparks. */
