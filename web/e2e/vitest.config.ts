@@ -2,7 +2,7 @@
 import path from "node:path";
 import { defineConfig } from "vitest/config";
 
-// Two files at a time, in one browser and in two processes that all files share: while one waits for its world, the other computes.
+// Two files at a time, in one browser: while one waits for its world, the other computes.
 export default defineConfig({
   root: path.resolve(import.meta.dirname, ".."),
   test: {
