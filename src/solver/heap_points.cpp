@@ -62,9 +62,8 @@ class HeapPoints::Sides {
 
 // False if nothing free touches.
 bool HeapPoints::load_point(const Problem& problem, const HeapBodies& bodies, std::span<const HeapMotion> motions,
-                            std::size_t item, double rate, Point& point) const {
+                            std::size_t item, double rate, const Vec3& up, Point& point) const {
   const ContactConstraint& c = problem.items_of<ContactConstraint>()[item];
-  const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
   const Vec3* const x = problem.position.data();
   const auto is_free = [&](std::uint32_t body) { return body != none && motions[body].by_mass > 0; };
   double sum = 0;
@@ -117,9 +116,10 @@ void HeapPoints::load(const Problem& problem, const HeapBodies& bodies, std::spa
                       double rate) {
   points_.clear(), by_height_.clear();
   are_new_ = false;
+  const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
   for (std::size_t i = 0; i < problem.items_of<ContactConstraint>().size(); ++i) {
     Point point;
-    if (!load_point(problem, bodies, motions, i, rate, point)) continue;
+    if (!load_point(problem, bodies, motions, i, rate, up, point)) continue;
     are_new_ = are_new_ || point.forces[0] == 0;
     by_height_.push_back({-point.height, static_cast<std::uint32_t>(points_.size())});
     points_.push_back(point);

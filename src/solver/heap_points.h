@@ -90,7 +90,7 @@ class HeapPoints {
   class Sides;
 
   bool load_point(const Problem&, const HeapBodies&, std::span<const HeapMotion>, std::size_t item, double rate,
-                  Point&) const;
+                  const Vec3& up, Point&) const;
   void pack(std::span<const HeapMotion>, double h);
   void turn_lines(std::span<const HeapMotion>, bool weighs_all);
 
