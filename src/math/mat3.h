@@ -21,6 +21,7 @@ struct Mat3 {
     return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
   }
   void set_column(int k, const Vec3& v) { m[0][k] = v.x, m[1][k] = v.y, m[2][k] = v.z; }
+  double trace() const { return m[0][0] + m[1][1] + m[2][2]; }
   Mat3& operator+=(const Mat3& b) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) m[i][j] += b.m[i][j];

@@ -292,7 +292,7 @@ HeapPoints::Report HeapPoints::store(Problem& problem, double h) const {
                                    begin.sum_second[lane] * pack.second.way.at(lane));
       l[0] = -begin.sum[lane] / h;
       l[1] = -dot(drag, c.arm(3, problem.position.data(), 1)), l[2] = -dot(drag, c.arm(4, problem.position.data(), 1));
-      c.is_of_sweeps = true;
+      c.is_of_sweeps = true, c.is_strained = false;
       for (int r = 0; r < ContactConstraint::rows; ++r) c.impulse[r] += h * l[r];
       report.external_work -= dot(begin.sum[lane] * pack.normal.way.at(lane) + h * drag, begin.drift.at(lane));
       report.depth = std::max(report.depth, -pack.gap[lane]);

@@ -10,6 +10,8 @@ namespace iota::solver {
 
 namespace {
 
+constexpr double left_by_rounding = 1e-24;  ///< of a square that should be zero
+
 template <class C>
 bool has_laws(const ConstraintPool<C>& pool, std::size_t i) {
   return pool.has_laws() &&
@@ -111,6 +113,7 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
     const std::span<Side> sides = sides_of(tie);
     for (Side& side : sides) side.way = side.turn = {};
     const Gradients<C> gradients(c, x_.data(), from);
+    std::array<double, C::rows> apart{};  // what the points of a row would be moved, if they did not share a body
     for (int i = 0; i < c.node_count(); ++i) {
       const std::uint32_t node = c.nodes[i];
       const auto side = std::ranges::find_if(sides, [&](const Side& s) { return bodies.have(s.body, node); });
@@ -118,8 +121,15 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
       const Vec3 arm = x_[node] - bodies.all[side->body].center_now();
-      for (int r = 0; r < C::rows; ++r) side->way[r] += rows[r], side->turn[r] += cross(arm, rows[r]);
+      const HeapMotion& m = motions[side->body];
+      const double by_mass = m.by_mass + m.by_inertia.trace() * dot(arm, arm);
+      for (int r = 0; r < C::rows; ++r)
+        side->way[r] += rows[r], side->turn[r] += cross(arm, rows[r]), apart[r] += by_mass * dot(rows[r], rows[r]);
     }
+    // A rod between two points of one body moves nothing: by what round-off leaves it shot the body away.
+    for (int r = 0; r < C::rows; ++r)
+      if (!(by_mass_of(tie, r, r, motions) > left_by_rounding * apart[r]))
+        for (Side& side : sides) side.way[r] = side.turn[r] = {};
     weigh(tie, motions);
   });
   for (; next < ties_.size(); ++next) {
@@ -139,21 +149,27 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
   }
 }
 
+double HeapTies::by_mass_of(const Tie& tie, int r, int s, std::span<const HeapMotion> motions) const {
+  double sum = 0;
+  for (const Side& side : sides_of(tie)) {
+    const HeapMotion& m = motions[side.body];
+    sum += m.by_mass * dot(side.way[r], side.way[s]) + dot(side.turn[r], m.by_inertia * side.turn[s]);
+  }
+  return sum;
+}
+
 void HeapTies::weigh(Tie& tie, std::span<const HeapMotion> motions) const {
   Mat3 matrix = Mat3::diagonal(0);
   for (int r = 0; r < tie.rows; ++r)
-    for (int s = 0; s <= r; ++s) {
-      double sum = 0;
-      for (const Side& side : sides_of(tie)) {
-        const HeapMotion& m = motions[side.body];
-        sum += m.by_mass * dot(side.way[r], side.way[s]) + dot(side.turn[r], m.by_inertia * side.turn[s]);
-      }
-      matrix.m[r][s] = matrix.m[s][r] = sum;
-    }
+    for (int s = 0; s <= r; ++s) matrix.m[r][s] = matrix.m[s][r] = by_mass_of(tie, r, s, motions);
   for (int r = 0; r < tie.rows; ++r) tie.by_mass[r] = matrix.m[r][r];
   if (tie.rows != 3 || !tie.are_equations) return;
   // A rod does not turn about its line: a little more in each direction keeps the matrix regular.
   const double size = std::max({matrix.m[0][0], matrix.m[1][1], matrix.m[2][2]});
+  if (!(size > 0)) {
+    tie.mass = Mat3::diagonal(0);
+    return;
+  }
   for (int r = 0; r < 3; ++r) matrix.m[r][r] += 1e-12 * size;
   for (int k = 0; k < 3; ++k) {
     const Vec3 column = solve(matrix, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});

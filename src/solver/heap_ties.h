@@ -89,6 +89,8 @@ class HeapTies {
   /// The changes of all bodies by impulses that take this from each row: rows(tie, r). Changes have no masses.
   template <class Rows>
   void find_changes(std::span<const HeapMotion>, Rows);
+  /// The change of the rate of row r by a unit impulse of row s, 1/kg.
+  double by_mass_of(const Tie&, int r, int s, std::span<const HeapMotion>) const;
   void weigh(Tie&, std::span<const HeapMotion>) const;
   double rate_of(const Tie&, int row, std::span<const HeapMotion>) const;
   void give(Tie&, int row, double impulse, std::span<HeapMotion>);

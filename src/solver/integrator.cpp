@@ -78,6 +78,22 @@ void Integrator::make_room(const Problem& problem) {
   multipliers_saved_.resize(problem.multiplier_count());
 }
 
+namespace {
+
+/// The friction of sweeps has strained nothing: contacts that stick begin to hold here.
+void begin_strain(Problem& problem) {
+  if (!problem.has_used<ContactConstraint>()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t i = 0; i < pool.items.size(); ++i) {
+    if (std::exchange(pool.items[i].is_strained, true)) continue;
+    double* const l = pool.multiplier(i);
+    l[1] = l[2] = 0;
+    pool.items[i].unstored -= strain_energy(pool.items[i], l);
+  }
+}
+
+}  // namespace
+
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
   AdvanceReport report;
   if (settings.max_turn != settings_.max_turn) least_turn_cosine_ = std::cos(settings.max_turn);
@@ -91,6 +107,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
     sweep(problem, {.h = h}, report);
     return report;
   }
+  begin_strain(problem);
   make_ready(problem);
   newton_.add_times_to(times_of_thread());
   constexpr int unlimited = std::numeric_limits<int>::max();

@@ -73,6 +73,8 @@ concept BouncingConstraint = ConeConstraint<C> && requires(C& c) { c.restitution
 template <ConeConstraint C>
 double strain_energy(const C& c, const double* multipliers) {
   double energy = 0;
+  if constexpr (requires { c.is_strained; })
+    if (!c.is_strained) return 0;
   for (int r = 0; r < C::rows; ++r) energy += 0.5 * c.compliance_of(r) * multipliers[r] * multipliers[r];
   return energy;
 }

@@ -43,6 +43,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
   bool stays_slipping = false;  ///< meanwhile: to stick needs more than its cone has
   bool is_of_sweeps = false;    ///< its overlap was left by sweeps: see Heap
+  bool is_strained = true;      ///< its compliance stores energy. Forces of sweeps are impulses: see Heap
   bool is_round = false;        ///< the radius is that of both together, above zero
   bool has_wires = false;       ///< round: two wires that cross, one along arm 2, one along arm 3
   double bends[2] = {1, 0};     ///< k_2, k_3

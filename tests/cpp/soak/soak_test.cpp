@@ -36,10 +36,12 @@ TEST(RandomHeaps, stay_whole_and_finite_and_make_no_motion_from_nothing) {
   EXPECT_LT(tally.unsolved, tally.steps / 5) << "heaps that are mostly conflicts test little else";
 }
 
-/// An island that takes its step in parts had a share of the budget by the islands of the step before.
+/// An island that takes its step in parts had a share of the budget by the islands of the step before. By what round-off left of a row
+/// that moves nothing bodies were shot away.
 TEST(RandomHeaps, that_once_failed_do_not_any_more) {
   scenes::HeapTally tally;
-  for (const std::uint64_t seed : {700398u}) EXPECT_EQ(scenes::play_heap(seed, tally).value_or(""), "") << seed;
+  for (const std::uint64_t seed : {700398u, 1000u, 1250u})
+    EXPECT_EQ(scenes::play_heap(seed, tally).value_or(""), "") << seed;
 }
 
 TEST(RandomScenes, stay_finite_whole_and_honest) {
