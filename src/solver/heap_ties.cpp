@@ -83,11 +83,9 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
     const C& c = pool.items[tie.item];
     tie.moves = c.is_moving(), tie.size = c.reference_length();
     for (const std::uint32_t node : pool.nodes_of(c)) tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
-    tie.drives = tie.moves;
     for (int r = 0; r < C::rows; ++r) {
       tie.law[r] = pool.has_laws() ? pool.law(tie.item)[r] : RowLaw{};
       tie.impulse[r] = std::clamp(-h * pool.multiplier(tie.item)[r], -h * tie.law[r].upper, -h * tie.law[r].lower);
-      tie.drives = tie.drives || (tie.law[r].is_rate && tie.law[r].rate != 0);
     }
   });
   for (Tie& tie : ties_) {
@@ -184,14 +182,17 @@ double HeapTies::rate_of(const Tie& tie, int r, std::span<const HeapMotion> moti
   return rate;
 }
 
+// A motor works by the whole rate, all others by that of their targets: what they take off the rest is lost.
 void HeapTies::give(Tie& tie, int r, double impulse, std::span<HeapMotion> motions) {
-  const double before = tie.drives ? rate_of(tie, r, motions) : 0;
+  const bool is_motor = tie.law[r].is_rate && tie.law[r].rate != 0;
+  const double before = is_motor ? rate_of(tie, r, motions) : 0;
   for (const Side& side : sides_of(tie)) {
     HeapMotion& motion = motions[side.body];
     motion.velocity += (impulse * motion.by_mass) * side.way[r];
     motion.spin += motion.by_inertia * (impulse * side.turn[r]);
   }
-  if (tie.drives) work_ += impulse * (0.5 * (before + rate_of(tie, r, motions)) - tie.drift[r]);
+  work_ -= impulse * tie.drift[r];
+  if (is_motor) work_ += 0.5 * impulse * (before + rate_of(tie, r, motions));
 }
 
 void HeapTies::warm(std::span<HeapMotion> motions) {
@@ -244,6 +245,13 @@ void HeapTies::store(Problem& problem, double h) {
   visit_rows(problem, [&]<class C>(const Tie& tie, ConstraintPool<C>& pool) {
     for (int r = 0; r < C::rows; ++r) pool.multiplier(tie.item)[r] = -tie.sum[r] / h;
   });
+}
+
+double HeapTies::worst_gap() const {
+  double worst = 0;
+  for (const std::uint32_t k : equations_)
+    for (int r = 0; r < ties_[k].rows; ++r) worst = std::max(worst, std::abs(ties_[k].value[r]));
+  return worst;
 }
 
 bool HeapTies::are_met() const {

@@ -42,6 +42,8 @@ class HeapTies {
   void begin(const Problem&, const HeapBodies&, double h);
   /// At the places of the bodies, for a sub-step from and to these fractions of the step's way of targets.
   void refresh(const Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
+  /// Of the equations, m.
+  double worst_gap() const;
   void warm(std::span<HeapMotion>);
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
   /// Ends a sub-step. Returns the work of rows that drive, J.
@@ -67,7 +69,6 @@ class HeapTies {
     std::uint8_t pool = of_copies, rows = 1;
     bool are_equations = true;  ///< of all its rows
     bool moves = false;         ///< its value depends on time
-    bool drives = false;        ///< its impulses may do work
     // In a sub-step, each of the rows.
     std::array<double, 3> value{}, drift{};  ///< drift: rate of the value by targets alone
     double size = 0;                         ///< length of reference of the value, m

@@ -268,6 +268,16 @@ void Integrator::fit_contacts(Problem& problem, double share) {
   for (std::size_t k = 0; k < pool.items.size(); ++k) pool.items[k].fit(share, pool.multiplier(k));
 }
 
+// Nothing moves against each other. The momenta of what nothing holds stay as they are.
+void Integrator::stay(Problem& problem, double h, bool is_alone) {
+  const Vec3 way = is_alone ? h * (rigid_motion_of(problem).velocity + 0.5 * h * problem.gravity) : Vec3{};
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    if (problem.mass[i] == 0) continue;
+    problem.position[i] += way;
+    problem.velocity[i] = is_alone ? problem.velocity[i] + h * problem.gravity : 0.5 * problem.velocity[i];
+  }
+}
+
 // To the end of the step, in place of the equations of all contacts: these would close its overlaps at once.
 void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report) {
   fit_contacts(problem, 1);
@@ -280,7 +290,11 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const bool is_free = is_alone && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   const std::optional<RigidMotion> free =
       (heap_->has_joints() || heap_->has_forces()) && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
-  const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
+  HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
+  if (swept.has_diverged) {
+    swept = {.are_joints_met = false};
+    stay(problem, part.h, is_alone);
+  }
   track(problem, part.to);
   // A joint that is open within the step has its forces at two places, and is closed at its end. A spring has them where it was.
   if (free) keep_momenta(problem, {*free}, part.h);

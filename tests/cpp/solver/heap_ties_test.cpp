@@ -124,6 +124,32 @@ TEST(HeapTies, let_a_free_wheel_turn_on_a_stand_that_rests) {
   EXPECT_NEAR(system.bodies().angular_velocity(wheel).z, speed, 1e-5 * speed);
 }
 
+// What is hinged at a post, too, holds against whoever pulls it: that is no work on it.
+TEST(HeapTies, make_no_energy_of_what_scripted_bodies_pull) {
+  for (const bool is_held : {false, true}) {
+    System system = make_tied_world(true);
+    system.set_usual_material(Material{0});
+    const BodyId box = system.bodies().create(Box{{0.4, 0.4, 0.4}}, SolidOptions{.mass = 5, .position = {0, 0.2, 0}});
+    const BodyId hand = system.bodies().create(Box{{0.1, 0.1, 0.1}}, SolidOptions{.mass = 1, .position = {0, 0.5, 0}});
+    const BodyId post =
+        system.bodies().create(Box{{0.1, 0.1, 0.1}}, SolidOptions{.mass = 1, .position = {0, 0.2, 0.3}});
+    system.bodies().set_kind(hand, BodyKind::scripted), system.bodies().set_kind(post, BodyKind::static_);
+    (void)system.joints().create(JointSpec{.a = box, .b = hand, .at = {0, 0.45, 0}, .axis = {0, 0, 1}});
+    if (is_held) (void)system.joints().create(JointSpec{.a = box, .b = post, .at = {0, 0.2, 0.25}, .axis = {0, 0, 1}});
+    for (int i = 0; i < 30; ++i) {
+      system.bodies().set_pose(hand, {(i + 1) / 60.0, 0.5, 0}, {});
+      const StepReport report = system.step(1.0 / 60);
+      EXPECT_EQ(report.approximate, 1) << i;
+      EXPECT_LT(report.energy.made, 1e-3) << i;
+      EXPECT_GE(report.energy.external_work, 0) << i;
+    }
+    if (is_held) continue;
+    const Energy energy = system.energy();
+    EXPECT_NEAR(energy.kinetic, 3, 1e-3) << "with the hand, which has 1 kg";
+    EXPECT_NEAR(energy.external_work, 3, 0.03);
+  }
+}
+
 TEST(HeapTies, keep_gears_of_four_bodies_in_mesh) {
   System system = make_tied_world(true);
   std::vector<BodyId> wheels;
