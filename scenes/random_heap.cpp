@@ -177,7 +177,7 @@ std::string text_of(const auto&... parts) {
 
 std::optional<std::string> play_heap(std::uint64_t seed, HeapTally& tally) {
   constexpr int steps = 120;
-  constexpr double most_solved = 1e-3, most_in_sweeps = 0.7;  // of the energy of the heap, from nothing in a step
+  constexpr double most_solved = 0.02, most_in_sweeps = 0.5;  // of the energy of the heap, from nothing in a step
   Heap heap(seed);
   System& system = heap.system();
   bool was_unsolved = false;
