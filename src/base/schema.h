@@ -185,9 +185,9 @@ class SchemaWriter {
  private:
   void add(Schema::Record record, char kind) {
     const auto found = std::ranges::find(schema_.records, record);
-    const auto place = static_cast<std::uint32_t>(found - schema_.records.begin());
+    const auto index = static_cast<std::uint32_t>(found - schema_.records.begin());
     if (found == schema_.records.end()) schema_.records.push_back(std::move(record));
-    schema_.items.push_back({name_ + "." + std::to_string(number_++), kind, place});
+    schema_.items.push_back({name_ + "." + std::to_string(number_++), kind, index});
   }
   Schema& schema_;
   std::string name_;

@@ -20,24 +20,24 @@ class SideTable {
  public:
   bool is_empty() const { return values_.empty(); }
   std::uint32_t size() const { return static_cast<std::uint32_t>(values_.size()); }
-  bool has(std::uint32_t slot) const { return slot < place_of_.size() && place_of_[slot] != absent; }
+  bool has(std::uint32_t slot) const { return slot < index_of_.size() && index_of_[slot] != absent; }
 
   /// The value of an item, or a default value if it has none.
   const T& operator[](std::uint32_t slot) const {
     static const T standard{};
-    return has(slot) ? values_[place_of_[slot]] : standard;
+    return has(slot) ? values_[index_of_[slot]] : standard;
   }
-  T* find(std::uint32_t slot) { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
-  const T* find(std::uint32_t slot) const { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
+  T* find(std::uint32_t slot) { return has(slot) ? &values_[index_of_[slot]] : nullptr; }
+  const T* find(std::uint32_t slot) const { return has(slot) ? &values_[index_of_[slot]] : nullptr; }
   /// The item must have a value.
-  T& at(std::uint32_t slot) { return values_[place_of_[slot]]; }
-  const T& at(std::uint32_t slot) const { return values_[place_of_[slot]]; }
+  T& at(std::uint32_t slot) { return values_[index_of_[slot]]; }
+  const T& at(std::uint32_t slot) const { return values_[index_of_[slot]]; }
 
   /// The value of an item; makes a default one if it has none.
   T& make(std::uint32_t slot) {
     if (!has(slot)) {
-      if (place_of_.size() <= slot) place_of_.resize(slot + std::size_t{1}, absent);
-      place_of_[slot] = size();
+      if (index_of_.size() <= slot) index_of_.resize(slot + std::size_t{1}, absent);
+      index_of_[slot] = size();
       reserve_a_quarter(values_), reserve_a_quarter(owners_);
       values_.push_back({}), owners_.push_back(slot);
     }
@@ -52,45 +52,45 @@ class SideTable {
   /// Does nothing if the item has no value. The last value moves into the gap.
   void erase(std::uint32_t slot) {
     if (!has(slot)) return;
-    const std::uint32_t place = place_of_[slot];
-    place_of_[slot] = absent;
-    if (place + 1 < size()) {
-      values_[place] = values_.back(), owners_[place] = owners_.back();
-      place_of_[owners_[place]] = place;
+    const std::uint32_t index = index_of_[slot];
+    index_of_[slot] = absent;
+    if (index + 1 < size()) {
+      values_[index] = values_.back(), owners_[index] = owners_.back();
+      index_of_[owners_[index]] = index;
     }
     values_.pop_back(), owners_.pop_back();
   }
 
   /// Keeps its room.
   void clear() {
-    for (const std::uint32_t slot : owners_) place_of_[slot] = absent;
+    for (const std::uint32_t slot : owners_) index_of_[slot] = absent;
     values_.clear(), owners_.clear();
   }
 
   template <class Visit>
   void for_each(Visit visit) const {
-    for (std::uint32_t place = 0; place < size(); ++place) visit(owners_[place], values_[place]);
+    for (std::uint32_t index = 0; index < size(); ++index) visit(owners_[index], values_[index]);
   }
 
   /// `slots`: number of slots of the item table; values of higher slots are refused.
   template <class Archive>
   void archive(Archive& ar, std::uint32_t slots) {
     ar.vector(values_), ar.vector(owners_);
-    place_of_.clear();
+    index_of_.clear();
     bool good = values_.size() == owners_.size();
-    for (std::uint32_t place = 0; good && place < size(); ++place) {
-      good = owners_[place] < slots && !has(owners_[place]);
+    for (std::uint32_t index = 0; good && index < size(); ++index) {
+      good = owners_[index] < slots && !has(owners_[index]);
       if (!good) break;
-      if (place_of_.size() <= owners_[place]) place_of_.resize(owners_[place] + std::size_t{1}, absent);
-      place_of_[owners_[place]] = place;
+      if (index_of_.size() <= owners_[index]) index_of_.resize(owners_[index] + std::size_t{1}, absent);
+      index_of_[owners_[index]] = index;
     }
-    if (!good) ar.fail(), values_.clear(), owners_.clear(), place_of_.clear();
+    if (!good) ar.fail(), values_.clear(), owners_.clear(), index_of_.clear();
   }
 
  private:
   std::vector<T> values_;
   std::vector<std::uint32_t> owners_;    // of each value
-  std::vector<std::uint32_t> place_of_;  // of each slot's value; not saved
+  std::vector<std::uint32_t> index_of_;  // of each slot's value; not saved
 };
 
 }  // namespace iota

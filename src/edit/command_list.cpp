@@ -86,7 +86,7 @@ std::vector<std::byte> default_bytes() {
 struct Own {
   std::vector<Entry> entries;
   std::vector<std::vector<std::byte>> defaults;
-  std::map<std::string, std::size_t, std::less<>> places;
+  std::map<std::string, std::size_t, std::less<>> index_of;
 };
 
 const Own& own() {
@@ -96,7 +96,7 @@ const Own& own() {
       const auto add = [&]<class C>() {
         Entry entry{name_of<C>(), {}};
         add_layout<C>(entry.layout);
-        made.places.emplace(entry.name, made.entries.size());
+        made.index_of.emplace(entry.name, made.entries.size());
         made.entries.push_back(std::move(entry));
         made.defaults.push_back(default_bytes<C>());
       };
@@ -196,9 +196,9 @@ class Walk {
   std::size_t at_ = 0;
 };
 
-std::size_t place_by_name(const Entry& other) {
-  const auto found = own().places.find(other.name);
-  if (found == own().places.end())
+std::size_t index_by_name(const Entry& other) {
+  const auto found = own().index_of.find(other.name);
+  if (found == own().index_of.end())
     throw std::invalid_argument(
         text("this recording has the command ", other.name, ", which this version of Iota does not have"));
   if (!own().entries[found->second].layout.starts_with(other.layout))
@@ -227,13 +227,13 @@ std::vector<std::byte> in_own_commands(std::string_view list, std::span<const st
     const std::uint64_t number = walk.number(1);
     if (number >= others.size())
       throw std::invalid_argument("a command of the recording has a number that is not in its list");
-    const std::size_t place = place_by_name(others[number]);
+    const std::size_t index = index_by_name(others[number]);
     const std::size_t begin = walk.at();
     walk.skip_all(others[number].layout);
-    translated.push_back(static_cast<std::byte>(place));
+    translated.push_back(static_cast<std::byte>(index));
     const auto fields = commands.subspan(begin, walk.at() - begin);
     translated.insert(translated.end(), fields.begin(), fields.end());
-    const std::vector<std::byte>& defaults = own().defaults[place];
+    const std::vector<std::byte>& defaults = own().defaults[index];
     Walk known(defaults);
     known.skip_all(others[number].layout);
     translated.insert(translated.end(), defaults.begin() + static_cast<std::ptrdiff_t>(known.at()), defaults.end());

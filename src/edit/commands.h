@@ -156,7 +156,7 @@ struct AllCommands<std::variant<C...>, std::tuple<I...>> {
 };
 }  // namespace detail
 
-/// All commands: those above, then those of the ingredients. Recordings name a command by its place in a list that they contain
+/// All commands: those above, then those of the ingredients. Recordings name a command by its index in a list that they contain
 /// (command_list.h).
 using Command = detail::AllCommands<OfNouns, ingredient::Ingredients>::type;
 
@@ -167,14 +167,14 @@ auto apply(Editor& e, const C& c) {
   return ingredient::OwnerOf<C>::apply(e.model, c);
 }
 
-/// The place of a command in that list.
+/// The index of a command in that list.
 template <class C, class Commands = Command>
-inline constexpr std::uint8_t place_of = 0;
+inline constexpr std::uint8_t index_of = 0;
 template <class C, class... Commands>
-inline constexpr std::uint8_t place_of<C, std::variant<Commands...>> = [] {
-  std::uint8_t place = 0;
-  static_cast<void>(((std::is_same_v<C, Commands> || (++place, false)) || ...));
-  return place;
+inline constexpr std::uint8_t index_of<C, std::variant<Commands...>> = [] {
+  std::uint8_t index = 0;
+  static_cast<void>(((std::is_same_v<C, Commands> || (++index, false)) || ...));
+  return index;
 }();
 
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for

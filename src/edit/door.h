@@ -87,7 +87,7 @@ class Door {
 template <class C>
 void write(std::vector<std::byte>& bytes, const C& command) {
   Writer writer(bytes);
-  writer.value(place_of<C>);
+  writer.value(index_of<C>);
   serialize(writer, command);
 }
 

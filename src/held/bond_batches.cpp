@@ -26,22 +26,22 @@ void BondBatches::update(const model::Model& model) {
   if (seen_revision == model.bonds_revision) return;
   seen_revision = model.bonds_revision;
   held.clear(), watched.clear();
-  std::vector<std::uint32_t> place_held(model.laws.slot_count(), model::none), place_watched = place_held;
-  const auto put = [&](std::vector<BondBatch>& batches, std::uint32_t& place, std::uint32_t slot, std::uint32_t law) {
-    if (place == model::none) {
-      place = static_cast<std::uint32_t>(batches.size());
+  std::vector<std::uint32_t> index_of_held(model.laws.slot_count(), model::none), index_of_watched = index_of_held;
+  const auto put = [&](std::vector<BondBatch>& batches, std::uint32_t& index, std::uint32_t slot, std::uint32_t law) {
+    if (index == model::none) {
+      index = static_cast<std::uint32_t>(batches.size());
       batches.emplace_back().law = law;
     }
-    batches[place].bonds.push_back(slot);
-    batches[place].ids.push_back(model.bonds.id(slot));
+    batches[index].bonds.push_back(slot);
+    batches[index].ids.push_back(model.bonds.id(slot));
   };
   model.bonds.for_each([&](std::uint32_t slot, const ingredient::Bond& bond) {
     if (!bond.acts()) return;
     if (bond.law == ingredient::scripted_law) return;
     if (!bond.implicit)
-      put(held, place_held[bond.law], slot, bond.law);
+      put(held, index_of_held[bond.law], slot, bond.law);
     else if (!is_finite_everywhere(model.laws[bond.law]))
-      put(watched, place_watched[bond.law], slot, bond.law);
+      put(watched, index_of_watched[bond.law], slot, bond.law);
   });
   const auto by_law = [](const BondBatch& a, const BondBatch& b) { return a.law < b.law; };
   std::sort(held.begin(), held.end(), by_law);

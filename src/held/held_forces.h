@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "held/bond_batches.h"
 #include "held/functions.h"
-#include "held/holding_error.h"
+#include "held/held_force_error.h"
 #include "held/particle_sets.h"
 
 namespace iota {
@@ -81,7 +81,7 @@ class HeldForces {
   const Parallel& parallel_;
   BondBatches batches_;
   ParticleSets sets_;
-  HoldingError error_;
+  HeldForceError error_;
   bool in_step_ = false;
   bool energy_is_known_ = false;  // since the last command
   double energy_ = 0;

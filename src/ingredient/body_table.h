@@ -19,27 +19,27 @@ class BodyTable : public SlotTable<T, IdType> {
  public:
   IdType create(const T& item) {
     const IdType id = Items::create(item);
-    by_body_.insert(place_of({item.body, id.slot}), {item.body, id.slot});
+    by_body_.insert(find_from({item.body, id.slot}), {item.body, id.slot});
     return id;
   }
   void destroy(std::uint32_t slot) {
-    by_body_.erase(place_of({(*this)[slot].body, slot}));
+    by_body_.erase(find_from({(*this)[slot].body, slot}));
     Items::destroy(slot);
   }
   void move(std::uint32_t slot, std::uint32_t body) {
-    by_body_.erase(place_of({(*this)[slot].body, slot}));
+    by_body_.erase(find_from({(*this)[slot].body, slot}));
     (*this)[slot].body = body;
-    by_body_.insert(place_of({body, slot}), {body, slot});
+    by_body_.insert(find_from({body, slot}), {body, slot});
   }
   /// visit(slot, item): in the order of slots.
   template <class Visit>
   void for_each_of(std::uint32_t body, Visit visit) const {
     if (by_body_.empty()) return;
-    for (auto at = place_of({body, 0}); at != by_body_.end() && at->body == body; ++at)
+    for (auto at = find_from({body, 0}); at != by_body_.end() && at->body == body; ++at)
       visit(at->slot, (*this)[at->slot]);
   }
   bool has_any(std::uint32_t body) const {
-    const auto at = place_of({body, 0});
+    const auto at = find_from({body, 0});
     return at != by_body_.end() && at->body == body;
   }
   template <class Archive>
@@ -51,15 +51,15 @@ class BodyTable : public SlotTable<T, IdType> {
   }
 
  private:
-  struct Place {
+  struct Entry {
     std::uint32_t body, slot;
-    friend auto operator<=>(const Place&, const Place&) = default;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
   };
-  std::vector<Place>::const_iterator place_of(const Place& place) const {
-    return std::lower_bound(by_body_.begin(), by_body_.end(), place);
+  std::vector<Entry>::const_iterator find_from(const Entry& entry) const {
+    return std::lower_bound(by_body_.begin(), by_body_.end(), entry);
   }
 
-  std::vector<Place> by_body_;  // in order; not saved
+  std::vector<Entry> by_body_;  // in order; not saved
 };
 
 }  // namespace iota::ingredient

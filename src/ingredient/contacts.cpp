@@ -41,11 +41,6 @@ auto positions_of(const Model& model) {
   return [&model](std::uint32_t p) { return model.position(p); };
 }
 
-Vec3 unit_or(const Vec3& v, const Vec3& other) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : other;
-}
-
 /// Whether it moves, by itself or by the script, so that its points are in the rows of its contacts.
 bool has_points(const model::Body& body) { return body.kind != BodyKind::static_; }
 

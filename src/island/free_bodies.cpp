@@ -123,18 +123,18 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
   parallel.for_each(chunks, 1, [&](std::size_t c) {
     Share share;
     for (std::size_t i = c * chunk; i < std::min(awake_.size(), (c + 1) * chunk); ++i) {
-      const Place& place = awake_[i];
-      model::Ring& ring = model.rings[place.ring];
-      ingredient::Push* const push = model.pushes.find(place.ring);
+      const FreeParticle& free = awake_[i];
+      model::Ring& ring = model.rings[free.ring];
+      ingredient::Push* const push = model.pushes.find(free.ring);
       if (push) push->before = std::exchange(push->force, Vec3{});
       const Vec3 force = push ? push->before : Vec3{};
-      const double mass = model.particles[place.particle].mass;
-      const double damping = model.damping + model.body_damping[place.body];
+      const double mass = model.particles[free.particle].mass;
+      const double damping = model.damping + model.body_damping[free.body];
       const Vec3 before = ring.velocity;
       Vec3 gained = h * ((1 / mass) * force + gravity);
       Vec3 turning;
-      if (push && model.pushes_by_velocity.has(place.ring)) [[unlikely]]
-        turning = push_by_velocity(model, place.ring, mass, h, before, gained);
+      if (push && model.pushes_by_velocity.has(free.ring)) [[unlikely]]
+        turning = push_by_velocity(model, free.ring, mass, h, before, gained);
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
       constexpr double absurd = 1e12;  // m/s: the energy of a higher speed would overflow
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
@@ -153,14 +153,14 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
         ring.velocity *= left;
       }
       ring.acceleration = (1 / h) * (ring.velocity - before);
-      model.corrections.set(place.ring, {}), ring.is_instant = 0;
+      model.corrections.set(free.ring, {}), ring.is_instant = 0;
       if (model.rest_after > 0) {
         const double speed2 = dot(ring.velocity, ring.velocity);
-        double& slow_time = model.articulates[place.articulate].slow_time;
+        double& slow_time = model.articulates[free.articulate].slow_time;
         slow_time = !pushed && speed2 < model.rest_speed * model.rest_speed ? slow_time + h : 0;
         if (slow_time >= model.rest_after) {
           share.lost += 0.5 * mass * speed2;
-          rest(model, place.articulate);
+          rest(model, free.articulate);
           ++share.resting;
         }
       }

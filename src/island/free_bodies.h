@@ -42,7 +42,7 @@ class FreeBodies {
   }
   template <class Visit>
   void for_each_awake(Visit visit) const {
-    for (const Place& place : awake_) visit(place.body);
+    for (const FreeParticle& free : awake_) visit(free.body);
     for (const Loose& loose : loose_) visit(loose.body);
   }
   /// Another number whenever the still ones are others.
@@ -74,14 +74,14 @@ class FreeBodies {
   std::size_t size(const model::Model&);
 
  private:
-  struct Place {
+  struct FreeParticle {
     std::uint32_t articulate, body, particle, ring;
   };
   void refresh(const model::Model&);
   static void rest(model::Model&, std::uint32_t articulate);
 
   std::vector<std::uint8_t> articulates_;  // 1 where free, by slot
-  std::vector<Place> awake_;               // particles, in order
+  std::vector<FreeParticle> awake_;        // particles, in order
   std::vector<Loose> loose_;               // in order
   std::vector<std::uint32_t> still_;       // bodies, in order
   std::uint64_t version_ = 0;

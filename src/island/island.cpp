@@ -125,7 +125,7 @@ void Island::load(const Model& model, double h) {
     problem_.velocity[i] = r.velocity;
   }
   for_each_ingredient([&](auto& i) { i.load(model, nodes_, h, problem_); });
-  integrator_->place_forces_by_velocity(problem_);
+  integrator_->set_slots_of_velocity_forces(problem_);
 }
 
 void Island::store_carried(Model& model, MovedRings& moved) const {

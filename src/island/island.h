@@ -64,7 +64,7 @@ class Island {
   };
   /// Follows a change; `articulates`: those that it then has, in order. It is then as if assembled again, except for the
   /// order of elimination: joined points are eliminated first, in their order, so that the rest of the matrix keeps its
-  /// places. This takes the time of what has changed. False if so much has changed that it must be assembled.
+  /// slots. This takes the time of what has changed. False if so much has changed that it must be assembled.
   bool follow(model::Model&, std::span<const std::uint32_t> articulates, const Change&,
               std::vector<std::uint32_t>& node_of_ring, MovedRings&);
   /// Whether it should have its order of elimination again. With contacts it may not be analyzed yet, and is when it is

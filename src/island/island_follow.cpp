@@ -113,7 +113,7 @@ bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of
   const ingredient::IslandMap map(model, nodes_, {}, node_of_ring);
   for_each_ingredient([&](auto& i) { i.renew_pulls(map, problem_); });
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
-  return integrator_->place_forces(problem_);
+  return integrator_->set_slots_of_forces(problem_);
 }
 
 void Island::add_node(const Model& model, std::uint32_t ring, std::uint32_t beside,

@@ -14,7 +14,7 @@ using model::Model;
 using model::none;
 
 void Islands::forget() {
-  places_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
+  entries_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
   free_bodies_.forget();
   ++epoch_;
   knows_all_ = false, order_is_old_ = true;
@@ -35,9 +35,9 @@ void Islands::renew(Model& model) {
 }
 
 void Islands::wait(std::uint32_t articulate) {
-  Place& place = places_[articulate];
-  if (place.is_waiting) return;
-  place.is_waiting = true;
+  Entry& entry = entries_[articulate];
+  if (entry.is_waiting) return;
+  entry.is_waiting = true;
   waiting_.push_back(articulate);
 }
 
@@ -46,7 +46,7 @@ void Islands::drop(Home& home) {
   forget_suspects(home);
   std::erase(changed_, &home);
   for (const std::uint32_t a : home.articulates) {
-    places_[a].home = nullptr;
+    entries_[a].home = nullptr;
     wait(a);
   }
   retire(home.leader);
@@ -95,7 +95,7 @@ void Islands::set_members(Home& home, std::span<const std::uint32_t> articulates
   home.articulates.assign(articulates.begin(), articulates.end());
   for (const std::uint32_t a : articulates) {
     free_bodies_.set(a, false);
-    places_[a].home = &home, places_[a].is_waiting = false;
+    entries_[a].home = &home, entries_[a].is_waiting = false;
   }
 }
 
@@ -126,7 +126,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
     return kept_orders_.clear(), false;
   ++epoch_;
   order_is_old_ = awake_is_old_ = true;
-  places_.resize(model.articulates.slot_count()), home_of_leader_.resize(places_.size());
+  entries_.resize(model.articulates.slot_count()), home_of_leader_.resize(entries_.size());
   node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
 
   drop_marked(model, renews);
@@ -150,7 +150,7 @@ void Islands::drop_marked(const Model& model, bool all) {
   for (std::size_t i = 0; i < marked_.articulates.size(); ++i) {
     if (marked_.only_locally[i] && !all) continue;
     const std::uint32_t a = marked_.articulates[i];
-    if (Home* const home = places_[a].home)
+    if (Home* const home = entries_[a].home)
       drop(*home);
     else
       wait(a);
@@ -158,7 +158,7 @@ void Islands::drop_marked(const Model& model, bool all) {
   for (const std::uint32_t body : marked_.local.pulled) {  // a grip may be all that holds a body
     if (!model.bodies.is_alive(body)) continue;
     const std::uint32_t a = model.bodies[body].articulate;
-    Home* const home = places_[a].home;
+    Home* const home = entries_[a].home;
     if (model.articulates[a].count == 1 && (!home || home->articulates.size() == 1)) home ? drop(*home) : wait(a);
   }
 }
@@ -166,11 +166,11 @@ void Islands::drop_marked(const Model& model, bool all) {
 // 2. Homes that must follow local changes, with their present articulates. Small ones are dropped.
 void Islands::find_changed(const Model& model) {
   for (const std::uint32_t a : marked_.articulates)
-    if (Home* const home = places_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
+    if (Home* const home = entries_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
   homes_.assign(changed_.begin(), changed_.end());
   for (Home* const home : homes_) find_members(model, *home);
   for (const std::uint32_t a : marked_.articulates)  // made by a cut, of a home that was dropped
-    if (!places_[a].home) wait(a);
+    if (!entries_[a].home) wait(a);
 }
 
 void Islands::note_changed(Home& home) {
@@ -184,20 +184,20 @@ void Islands::find_members(const Model& model, Home& home) {
   if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return model.bodies.is_alive(body); }))
     return drop(home);
   members_.assign(home.articulates.begin(), home.articulates.end());
-  for (const std::uint32_t a : members_) places_[a].home = nullptr;
+  for (const std::uint32_t a : members_) entries_[a].home = nullptr;
   home.articulates.clear();
   std::uint32_t elsewhere = none;  // the latest
   for (const std::uint32_t body : bodies) {
     const std::uint32_t a = model.bodies[body].articulate;
-    Place& place = places_[a];
-    if (place.home == &home || a == elsewhere) continue;
-    if (place.home || place.is_waiting)
+    Entry& entry = entries_[a];
+    if (entry.home == &home || a == elsewhere) continue;
+    if (entry.home || entry.is_waiting)
       joins_.push_back({&home, elsewhere = a});
     else
-      place.home = &home, home.articulates.push_back(a);
+      entry.home = &home, home.articulates.push_back(a);
   }
   for (const std::uint32_t a : members_)  // with inactive bodies only: the island does not list them
-    if (!places_[a].home && model.articulates.is_alive(a)) wait(a);
+    if (!entries_[a].home && model.articulates.is_alive(a)) wait(a);
   if (home.articulates.empty()) return;
   std::sort(home.articulates.begin(), home.articulates.end());
   set_leader(home);
@@ -215,7 +215,7 @@ bool Islands::is_due(const Home& home, const Model& model) {
 void Islands::take_parts_out(const Model& model) {
   constexpr std::size_t small = 16;  // bodies
   for (const std::uint32_t a : marked_.articulates)
-    if (Home* const home = places_[a].home) home->marked.push_back(a);
+    if (Home* const home = entries_[a].home) home->marked.push_back(a);
   for (Home* const home : changed_) {
     take_parts_out(model, *home, home->marked, small);
     home->marked.clear();
@@ -225,18 +225,18 @@ void Islands::take_parts_out(const Model& model) {
     if (!is_due(*home, model)) continue;
     members_.assign(home->suspects.begin(), home->suspects.end());
     forget_suspects(*home);
-    std::erase_if(members_, [&](std::uint32_t a) { return places_[a].home != home; });
+    std::erase_if(members_, [&](std::uint32_t a) { return entries_[a].home != home; });
     take_parts_out(model, *home, members_, none);
   }
 }
 
 void Islands::take_parts_out(const Model& model, Home& home, std::span<const std::uint32_t> suspects,
                              std::size_t most_bodies) {
-  const auto is_member = [&](std::uint32_t a) { return places_[a].home == &home; };
+  const auto is_member = [&](std::uint32_t a) { return entries_[a].home == &home; };
   const std::size_t before = home.leaving.size();
   cut_search_.find(model, suspects, most_bodies, is_member, home.leaving);
   if (home.leaving.size() == before) return;
-  for (const std::uint32_t a : home.leaving) places_[a].home = nullptr, wait(a);
+  for (const std::uint32_t a : home.leaving) entries_[a].home = nullptr, wait(a);
   std::erase_if(home.articulates, [&](std::uint32_t a) { return !is_member(a); });
   set_leader(home);
   note_changed(home);
@@ -252,15 +252,15 @@ std::uint32_t Islands::unit_of(Home& home) {
 
 // The unit of the home of an articulate, or of the articulate, which waits for one from now on.
 std::uint32_t Islands::unit_of(std::uint32_t articulate) {
-  Place& place = places_[articulate];
-  if (place.home && place.home->is_small()) drop(*place.home);
-  if (place.home) return unit_of(*place.home);
+  Entry& entry = entries_[articulate];
+  if (entry.home && entry.home->is_small()) drop(*entry.home);
+  if (entry.home) return unit_of(*entry.home);
   wait(articulate);
-  if (place.unit == none) {
-    place.unit = static_cast<std::uint32_t>(units_.size());
-    units_.push_back({nullptr, articulate, place.unit});
+  if (entry.unit == none) {
+    entry.unit = static_cast<std::uint32_t>(units_.size());
+    units_.push_back({nullptr, articulate, entry.unit});
   }
-  return place.unit;
+  return entry.unit;
 }
 
 std::uint32_t Islands::root_of(std::uint32_t unit) {
@@ -276,7 +276,7 @@ void Islands::find_groups(const Model& model) {
     const Home* const own = units_[unit].home;
     const auto reach = [&](std::uint32_t far) {
       const std::uint32_t a = model.bodies[far].articulate;
-      if (a == units_[unit].articulate || (own && places_[a].home == own)) return;
+      if (a == units_[unit].articulate || (own && entries_[a].home == own)) return;
       const std::uint32_t with = unit_of(a);
       units_[root_of(unit)].parent = root_of(with);
     };
@@ -284,22 +284,22 @@ void Islands::find_groups(const Model& model) {
   };
   for (Home* const home : changed_) (void)unit_of(*home);
   for (const auto& [home, articulate] : joins_)
-    if (places_[articulate].home != home) {
+    if (entries_[articulate].home != home) {
       const std::uint32_t with = unit_of(articulate);
       units_[root_of(unit_of(*home))].parent = root_of(with);
     }
   ingredient::sort_unique(marked_.local.bodies);
   for (const std::uint32_t body : marked_.local.bodies)
     if (model.bodies.is_alive(body))
-      if (Home* const home = places_[model.bodies[body].articulate].home) search(unit_of(*home), body);
+      if (Home* const home = entries_[model.bodies[body].articulate].home) search(unit_of(*home), body);
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
     const std::uint32_t a = waiting_[i];
-    Place& place = places_[a];
+    Entry& entry = entries_[a];
     const bool is_alive = model.articulates.is_alive(a), is_free = is_alive && FreeBodies::is_free(model, a);
     free_bodies_.set(a, is_free);
     if (is_free && !FreeBodies::is_particle(model, a)) fresh_loose_.push_back(a);
     if (!is_alive || is_free) {
-      place.is_waiting = false;
+      entry.is_waiting = false;
       continue;
     }
     const std::uint32_t unit = unit_of(a);
@@ -330,11 +330,11 @@ void Islands::collect_groups(const Model& model) {
       group_of(unit).waiting.push_back(units_[unit].articulate);
   for (const std::uint32_t body : marked_.local.bodies) {
     if (!model.bodies.is_alive(body)) continue;
-    const Place& place = places_[model.bodies[body].articulate];  // a home's body may be in an articulate that waits
-    const std::uint32_t unit = place.home ? place.home->unit : place.unit;
+    const Entry& entry = entries_[model.bodies[body].articulate];  // a home's body may be in an articulate that waits
+    const std::uint32_t unit = entry.home ? entry.home->unit : entry.unit;
     if (unit != none) group_of(unit).bodies.push_back(body);
   }
-  for (const Unit& unit : units_) (unit.home ? unit.home->unit : places_[unit.articulate].unit) = none;
+  for (const Unit& unit : units_) (unit.home ? unit.home->unit : entries_[unit.articulate].unit) = none;
   by_lowest_.clear();
   for (std::uint32_t g = 0; g < group_count_; ++g) {
     Group& group = groups_[g];
@@ -362,7 +362,7 @@ void Islands::form_groups(Model& model, MovedRings& moved) {
       fresh_.push_back(&home);
     } else if (!follow(model, group, moved)) {
       for (Home* const home : group.homes) drop(*home);
-      for (const std::uint32_t a : group.waiting) places_[a].is_waiting = false, wait(a);
+      for (const std::uint32_t a : group.waiting) entries_[a].is_waiting = false, wait(a);
     }
   }
 }
@@ -435,7 +435,7 @@ void Islands::add_suspect(Home& home, std::uint32_t articulate, std::uint64_t st
 }
 
 void Islands::forget_suspects(Home& home) {
-  for (const std::uint32_t a : home.suspects) places_[a].is_suspect = false;
+  for (const std::uint32_t a : home.suspects) entries_[a].is_suspect = false;
   if (!home.suspects.empty()) std::erase(suspected_, &home);
   home.suspects.clear();
 }
@@ -443,16 +443,16 @@ void Islands::forget_suspects(Home& home) {
 // A cut touches articulates on both of its sides.
 void Islands::note_suspects(const Model& model) {
   for (const std::uint32_t a : marked_.articulates) {
-    Home* const home = places_[a].home;
+    Home* const home = entries_[a].home;
     if (!home || !home->has_followed || home->articulates.size() == 1) continue;
-    if (!std::exchange(places_[a].is_suspect, true)) add_suspect(*home, a, model.step);
+    if (!std::exchange(entries_[a].is_suspect, true)) add_suspect(*home, a, model.step);
   }
 }
 
 void Islands::renew_pulls(const Model& model) {
   for (const std::uint32_t body : marked_.local.pulled) {
     if (!model.bodies.is_alive(body)) continue;
-    Home* const home = places_[model.bodies[body].articulate].home;
+    Home* const home = entries_[model.bodies[body].articulate].home;
     if (!home || !home->is_built) continue;  // it will be built, with its pulls
     if (!home->island.renew_pulls(model, node_of_ring_)) drop(*home);
   }
@@ -486,7 +486,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
                 "the latest update has built an island twice");
   if (!knows_all_ || model.is_marked()) return;
   model.articulates.for_each([&](std::uint32_t a, const model::Articulate& articulate) {
-    const Home* const home = places_[a].home;
+    const Home* const home = entries_[a].home;
     audit.require((home != nullptr) != free_bodies_.contains(a), "articulate ", a, " is not in one island");
     if (!home) return;
     audit.require(std::binary_search(home->articulates.begin(), home->articulates.end(), a),
@@ -494,7 +494,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
     for (std::uint32_t b = articulate.first; b != none; b = model.bodies[b].next_in_articulate)
       model.for_each_particle_of(b, [&](std::uint32_t p) {
         model.visit_tied(p, Model::Ties::all, [&](std::uint32_t far) {
-          audit.require(places_[model.bodies[far].articulate].home == home, "bodies ", b, " and ", far,
+          audit.require(entries_[model.bodies[far].articulate].home == home, "bodies ", b, " and ", far,
                         " are tied, and in two islands");
         });
       });
@@ -506,7 +506,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
                   "the island of leader ", leader, " has another leader");
     std::size_t bodies = 0;
     for (const std::uint32_t a : home->articulates) {
-      audit.require(places_[a].home == home, "articulate ", a, " is listed by an island that it is not in");
+      audit.require(entries_[a].home == home, "articulate ", a, " is listed by an island that it is not in");
       model.for_each_body_of(a, [&](std::uint32_t b) {
         bodies += model.bodies[b].kind != BodyKind::inactive && model.bodies[b].count > 0;
       });
@@ -514,14 +514,14 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
     audit.require(bodies == home->island.body_count(), "the island of leader ", leader, " has ",
                   home->island.body_count(), " bodies, and its articulates ", bodies);
     for (const std::uint32_t b : home->island.bodies())
-      audit.require(model.bodies.is_alive(b) && places_[model.bodies[b].articulate].home == home, "body ", b,
+      audit.require(model.bodies.is_alive(b) && entries_[model.bodies[b].articulate].home == home, "body ", b,
                     " is in an island without its articulate");
   }
 }
 
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
   for (std::uint32_t& a : articulates)
-    a = places_[a].home ? places_[a].home->leader : (free_bodies_.contains(a) ? a : none);
+    a = entries_[a].home ? entries_[a].home->leader : (free_bodies_.contains(a) ? a : none);
   std::sort(articulates.begin(), articulates.end());
   articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
   if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // destroyed ones
@@ -631,8 +631,8 @@ void Islands::advance(Model& model, std::size_t index, double h, Island::Clock::
 }
 
 Islands::Work Islands::work_of(const Model& model, std::uint32_t articulate) const {
-  if (articulate < places_.size() && places_[articulate].home) {
-    const Island& island = places_[articulate].home->island;
+  if (articulate < entries_.size() && entries_[articulate].home) {
+    const Island& island = entries_[articulate].home->island;
     const double share = static_cast<double>(model.articulates[articulate].count) /
                          static_cast<double>(std::max<std::size_t>(1, island.body_count()));
     return {share * island.work(), island.is_still() ? 0 : island.solved_steps()};

@@ -101,7 +101,7 @@ class Islands {
   ingredient::Book book(const model::Model&);
   /// Null for a free body.
   Island* of_articulate(std::uint32_t articulate) const {
-    return places_[articulate].home ? &places_[articulate].home->island : nullptr;
+    return entries_[articulate].home ? &entries_[articulate].home->island : nullptr;
   }
   /// Replaces a list of articulates by the leaders of their islands, each once, in order: a net of particles is one
   /// island with an articulate for each particle. A free body is its own leader.
@@ -146,7 +146,7 @@ class Islands {
     /// Whether it is assembled anew as quickly as it could follow.
     bool is_small() const { return island.size() <= 24; }
   };
-  struct Place {
+  struct Entry {
     Home* home = nullptr;
     std::uint32_t unit = none;  ///< while units are grouped, of one that waits
     bool is_waiting = false;    ///< for a home
@@ -211,7 +211,7 @@ class Islands {
   void note_suspects(const model::Model&);
 
   // By articulate slot.
-  std::vector<Place> places_;
+  std::vector<Entry> entries_;
   std::vector<std::unique_ptr<Home>> home_of_leader_;
   /// With room for the next ones, by the bits of the number of points for which they have it.
   std::array<std::vector<std::unique_ptr<Home>>, 14> spare_;

@@ -16,13 +16,13 @@ class KeptOrders {
  public:
   /// Takes those of a model. Lists that do not fit together count as none: an island without an order gets a new one.
   void read(const model::Model&);
-  void clear() { place_of_ring_.clear(), ends_.clear(), work_.clear(); }
+  void clear() { index_of_ring_.clear(), ends_.clear(), work_.clear(); }
   /// For the points of an island, given by their rings, the order that an island of exactly these rings had; none if there
   /// was none.
   void find(std::span<const std::uint32_t> rings, solver::KnownOrder& order) const;
 
  private:
-  std::vector<std::uint32_t> place_of_ring_;  // by slot; empty: there are no orders
+  std::vector<std::uint32_t> index_of_ring_;  // by slot; empty: there are no orders
   std::vector<std::uint32_t> ends_;           // of the orders, one after the other
   std::vector<double> work_;                  // of each
 };

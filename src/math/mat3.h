@@ -89,6 +89,11 @@ Quaternion turn_by(const Vec3& v);
 Quaternion shortest_turn(const Vec3& from, const Vec3& to);
 /// The rotation whose columns are the orthonormal, right-handed axes.
 Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z);
+/// The direction of v, or `other` if v is not longer than `least`.
+inline Vec3 unit_or(const Vec3& v, const Vec3& other, double least = 0) {
+  const double length = norm(v);
+  return length > least ? (1 / length) * v : other;
+}
 /// A unit vector at right angles to unit vector v.
 Vec3 any_perpendicular(const Vec3& v);
 

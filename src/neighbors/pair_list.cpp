@@ -99,12 +99,12 @@ void PairList::build(const laws::ParticleArrays& p, double radius, std::span<con
   }
 
   // Two counting sorts, by the second and then by the first, leave every row in rising order.
-  const auto sort_by = [&](std::span<const Pair> from, auto key, auto place) {
+  const auto sort_by = [&](std::span<const Pair> from, auto key, auto put) {
     count_.assign(n + 1, 0);
     for (const Pair& pair : from) ++count_[key(pair) + 1];
     for (std::size_t i = 0; i < n; ++i) count_[i + 1] += count_[i];
     start_ = count_;
-    for (const Pair& pair : from) place(count_[key(pair)]++, pair);
+    for (const Pair& pair : from) put(count_[key(pair)]++, pair);
   };
   by_second_.resize(count), partners_.resize(count);
   sort_by(

@@ -44,7 +44,7 @@ constexpr auto frame_time = 16ms;
 
 [[noreturn]] void fail(const error_code& error, const std::string& what) { throw std::system_error(error, what); }
 
-std::string place_of(const ServerOptions& options) { return options.host + " port " + std::to_string(options.port); }
+std::string address_of(const ServerOptions& options) { return options.host + " port " + std::to_string(options.port); }
 
 ServerOptions checked(ServerOptions options) {
   if (options.token.empty()) throw std::invalid_argument("the server needs a token");
@@ -128,8 +128,8 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
     if (!error) return acceptor;
     if (error == asio::error::address_in_use) break;  // do not try another address, which the user would not expect
   }
-  if (error == asio::error::address_in_use) fail(error, place_of(options) + " is taken, choose another port");
-  fail(error, "cannot listen on " + place_of(options));
+  if (error == asio::error::address_in_use) fail(error, address_of(options) + " is taken, choose another port");
+  fail(error, "cannot listen on " + address_of(options));
 }
 
 }  // namespace

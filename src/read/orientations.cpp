@@ -13,10 +13,7 @@ using model::none;
 
 namespace {
 
-Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
-  const double length = norm(v);
-  return length > 1e-12 ? (1 / length) * v : otherwise;
-}
+constexpr double no_length = 1e-12;  // m: without a direction
 
 /// Whether a vector has the direction of a unit vector to round-off; also if it is zero.
 bool is_along(const Vec3& v, const Vec3& unit) {
@@ -34,9 +31,9 @@ void refresh_frame(const model::Model& model, model::Body& b) {
     return;
   }
   const Vec3 x0 = model.position(b.basis[0]);
-  const Vec3 x = unit_or(model.position(b.basis[1]) - x0, rotate(b.orientation, {1, 0, 0}));
+  const Vec3 x = unit_or(model.position(b.basis[1]) - x0, rotate(b.orientation, {1, 0, 0}), no_length);
   const Vec3 in_plane = model.position(b.basis[2]) - x0;
-  const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x));
+  const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x), no_length);
   b.orientation = from_axes(x, y, cross(x, y));
 }
 
@@ -65,7 +62,7 @@ void Orientations::refresh(model::Model& model) {
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     // Most rods have not turned since an edit between two steps.
     if (is_along(along, old_x) && !model.spins.has(slot)) return;
-    const Vec3 x = unit_or(along, old_x);
+    const Vec3 x = unit_or(along, old_x, no_length);
     // Turn the frame by the smallest rotation, and about its axis by the spin.
     b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
     if (ingredient::RodSpin* const spin = model.spins.find(slot)) {

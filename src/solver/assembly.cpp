@@ -97,11 +97,11 @@ bool Assembly::is_round_off_of_laws(const Problem& problem, const Stage& stage, 
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
       const Mat3 stiffness = f.stiffness_matrix(f.arm.value(x0), f.arm.value(x), force_stage);
-      double size = 0, place = norm(f.arm.origin);
+      double size = 0, far = norm(f.arm.origin);
       for (const auto& row : stiffness.m) size += dot({row[0], row[1], row[2]}, {row[0], row[1], row[2]});
-      for (std::uint32_t i = 0; i < f.arm.count; ++i) place += std::abs(f.arm.weights[i]) * norm(x[f.arm.nodes[i]]);
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) far += std::abs(f.arm.weights[i]) * norm(x[f.arm.nodes[i]]);
       for (std::uint32_t i = 0; i < f.arm.count; ++i)
-        blur_[f.arm.nodes[i]] += std::abs(f.arm.weights[i]) * std::sqrt(size) * place;
+        blur_[f.arm.nodes[i]] += std::abs(f.arm.weights[i]) * std::sqrt(size) * far;
     }
   });
   for (std::size_t i = 0; i < problem.size(); ++i) {

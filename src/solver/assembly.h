@@ -40,16 +40,16 @@ enum class Hessian { exact, clamped, none };
 class Assembly {
  public:
   /// Analyzes the structure of the problem; call again after nodes, constraints or forces were added or removed ...
-  /// Returns whether it was like the latest one, whose places in the matrix are then kept. order: of the nodes;
+  /// Returns whether it was like the latest one, whose slots in the matrix are then kept. order: of the nodes;
   /// empty: it is found.
   bool compile(Problem&, const KnownOrder& order = {});
   /// ... or, if they were added and removed by the problem's own functions, follow the change: removes marked nodes and
-  /// finds new places near the changes, in a fraction of the time.
+  /// finds new slots near the changes, in a fraction of the time.
   void follow(Problem&);
   /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
-  bool place_forces(Problem&) const;
+  bool set_slots_of_forces(Problem&) const;
   /// Forces that are loaded anew for each step. Each is on points of one body, which are coupled.
-  void place_forces_by_velocity(Problem&) const;
+  void set_slots_of_velocity_forces(Problem&) const;
   /// From now on adds the times of forces, factors and solutions to `times`; null: they are not measured.
   void add_times_to(StepTimes* times) { times_ = times; }
 
@@ -100,8 +100,8 @@ class Assembly {
   template <class F>
   void set_slots(ForcePool<F>&, std::size_t item) const;
   template <class IsDue>
-  void place_items(Problem&, IsDue);
-  void place_nodes(const Problem&);
+  void set_slots_of_items(Problem&, IsDue);
+  void set_slots_of_nodes(const Problem&);
   BlockPattern& own_pattern() {
     if (!own_pattern_) own_pattern_ = std::make_shared<BlockPattern>();
     return *own_pattern_;

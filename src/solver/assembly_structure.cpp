@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places in the matrix: set by an analysis, or updated to follow a change of the problem.
+// Slots in the matrix: set by an analysis, or updated to follow a change of the problem.
 #include "solver/assembly.h"
 
 #include "base/slack.h"
@@ -189,8 +189,8 @@ bool Assembly::compile(Problem& problem, const KnownOrder& order) {
   problem.for_each_constraint_pool([&](auto& pool) {
     for (auto& slots : pool.slots) slots.unknown = constraint++->unknown;
   });
-  place_items(problem, [](auto&&...) { return true; });
-  place_nodes(problem);
+  set_slots_of_items(problem, [](auto&&...) { return true; });
+  set_slots_of_nodes(problem);
   weigh(problem);
   problem.note_compiled();
   return false;
@@ -229,10 +229,10 @@ void Assembly::follow(Problem& problem) {
   reference_length_ = set_reference_lengths(problem);
   factor_.grow(*pattern_);
   forget_factors();
-  place_nodes(problem);
+  set_slots_of_nodes(problem);
   weigh(problem);
   const auto has_moved = [&](std::uint32_t node) { return pattern_->has_moved(node_unknown_[node]); };
-  place_items(problem, [&](const auto& nodes, std::uint32_t unknown) {
+  set_slots_of_items(problem, [&](const auto& nodes, std::uint32_t unknown) {
     if (unknown != CouplingGraph::no_unknown && pattern_->has_moved(unknown)) return true;
     for (const std::uint32_t node : nodes)
       if (has_moved(node)) return true;
@@ -242,13 +242,13 @@ void Assembly::follow(Problem& problem) {
   problem.note_compiled();
 }
 
-bool Assembly::place_forces(Problem& problem) const {
+bool Assembly::set_slots_of_forces(Problem& problem) const {
   bool are_coupled = true;
   problem.forget_slots();
   problem.for_each_force_pool([&](auto& pool) {
-    const std::size_t placed = pool.slots.size();
+    const std::size_t before = pool.slots.size();
     resize_with_slack(pool.slots, pool.items.size());
-    for (std::size_t i = placed; i < pool.items.size(); ++i) {
+    for (std::size_t i = before; i < pool.items.size(); ++i) {
       const ForceArm& arm = pool.items[i].arm;
       for (std::uint32_t a = 0; a < arm.count; ++a)
         for (std::uint32_t b = a + 1; b < arm.count; ++b)
@@ -259,7 +259,7 @@ bool Assembly::place_forces(Problem& problem) const {
   return are_coupled;
 }
 
-void Assembly::place_forces_by_velocity(Problem& problem) const {
+void Assembly::set_slots_of_velocity_forces(Problem& problem) const {
   if (problem.items_of<VelocityForce>().empty()) return;
   auto& pool = problem.pool_of<VelocityForce>();
   resize_with_slack(pool.slots, pool.items.size());
@@ -268,7 +268,7 @@ void Assembly::place_forces_by_velocity(Problem& problem) const {
 
 // Gives slots to the items of which `is_due` says so: (nodes, unknown of a constraint).
 template <class IsDue>
-void Assembly::place_items(Problem& problem, IsDue is_due) {
+void Assembly::set_slots_of_items(Problem& problem, IsDue is_due) {
   for (auto& c : problem.mass_couplings)
     if (is_due(std::array{c.a, c.b}, CouplingGraph::no_unknown)) c.slot = pattern_->pair_slot(c.a, c.b);
   problem.for_each_constraint_pool([&](auto& pool) {
@@ -281,7 +281,7 @@ void Assembly::place_items(Problem& problem, IsDue is_due) {
   });
 }
 
-void Assembly::place_nodes(const Problem& problem) {
+void Assembly::set_slots_of_nodes(const Problem& problem) {
   const auto n = static_cast<std::uint32_t>(problem.size());
   const auto make_room = [](std::size_t size, auto&... lists) { (resize_with_slack(lists, size), ...); };
   make_room(n, node_unknown_, node_diagonal_, node_stride_);

@@ -11,9 +11,9 @@ namespace iota::solver {
 namespace {
 
 constexpr double round_off_of_energy = 1e-14;
-constexpr double of_motion = 1e-9;  // of the kinetic energy: what the tolerance of a solve may make
-constexpr double most_held = 0.05;  // of the kinetic energy: the error of a force that is held over a step
-constexpr double finest = 1e-12;    // of a length: motion below it is round-off
+constexpr double of_motion = 1e-9;            // of the kinetic energy: what the tolerance of a solve may make
+constexpr double most_of_held_forces = 0.05;  // of the kinetic energy: the error of a force that is held over a step
+constexpr double finest = 1e-12;              // of a length: motion below it is round-off
 
 /// The energy of motions below the round-off of places, J. A body at rest has this much.
 double jitter_energy(const Problem& problem, double reference_length, double h) {
@@ -48,7 +48,7 @@ struct Solved {
   }
 
   double external_work() const;
-  double holding_error() const;
+  double held_force_error() const;
   double work_of_drives() const;
   void add_dissipation(StepEnergy&, std::span<const double> multipliers_before) const;
   template <class C>
@@ -85,10 +85,10 @@ double Solved::external_work() const {
 }
 
 // The work of attracting poles by the end-point rule, as that of held forces, counts as work from outside.
-double Solved::holding_error() const {
+double Solved::held_force_error() const {
   double error = 0;
   for (const auto& f : problem.items_of<RadialForce>())
-    error += f.holding_error(f.arm.value(start()), f.arm.value(end()), force_stage());
+    error += f.held_force_error(f.arm.value(start()), f.arm.value(end()), force_stage());
   return error;
 }
 
@@ -218,8 +218,8 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   step.add_dissipation(energy, multipliers_before);
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
   if (!stage.is_mid_point()) {  // a larger error is made energy: the step is halved
-    const double most = most_held * std::min(kinetic, energy.kinetic);
-    energy.external_work += std::clamp(step.holding_error(), -most, most);
+    const double most = most_of_held_forces * std::min(kinetic, energy.kinetic);
+    energy.external_work += std::clamp(step.held_force_error(), -most, most);
   }
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();

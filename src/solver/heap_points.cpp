@@ -10,11 +10,6 @@ namespace {
 
 constexpr double fastest_push = 1;  // m/s, with which an overlap ends
 
-Vec3 unit_or(const Vec3& v, const Vec3& other) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : other;
-}
-
 /// The sums over the points of both bodies of a contact of weight times f(node): of the first one, and of the second one,
 /// whose weights are negative.
 template <class Of>

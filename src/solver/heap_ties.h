@@ -42,7 +42,7 @@ class HeapTies {
   void begin(const Problem&, const HeapBodies&, double h);
   /// At the places of the bodies, for a sub-step from and to these fractions of the step's way of targets.
   void refresh(const Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
-  /// Of the equations, m.
+  /// The largest gap of an equation, m.
   double worst_gap() const;
   void warm(std::span<HeapMotion>);
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);

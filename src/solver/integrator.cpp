@@ -59,7 +59,7 @@ void Integrator::analyze(Problem& problem, const KnownOrder& order) {
 void Integrator::make_ready(Problem& problem) {
   if (!is_due_) return;
   analyze(problem);
-  newton_.place_forces_by_velocity(problem);
+  newton_.set_slots_of_velocity_forces(problem);
 }
 
 void Integrator::follow(Problem& problem) {

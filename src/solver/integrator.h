@@ -30,9 +30,11 @@ class Integrator {
   bool can_follow() const { return !is_due_; }
   /// After a change of structure by the problem's own functions: see Problem::open.
   void follow(Problem& problem);
-  bool place_forces(Problem& problem) const { return is_due_ || newton_.place_forces(problem); }  ///< see Assembly
-  void place_forces_by_velocity(Problem& problem) const {
-    if (!is_due_) newton_.place_forces_by_velocity(problem);
+  bool set_slots_of_forces(Problem& problem) const {
+    return is_due_ || newton_.set_slots_of_forces(problem);
+  }  ///< see Assembly
+  void set_slots_of_velocity_forces(Problem& problem) const {
+    if (!is_due_) newton_.set_slots_of_velocity_forces(problem);
   }
 
   /// Advances positions, velocities and multipliers of `problem` by h seconds.

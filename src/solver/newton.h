@@ -34,8 +34,8 @@ class Newton {
   /// Allocates and analyzes the structure of the problem, or follows it: see Assembly.
   bool compile(Problem& problem, const KnownOrder& order = {});
   void follow(Problem& problem);
-  bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
-  void place_forces_by_velocity(Problem& problem) const { assembly_.place_forces_by_velocity(problem); }
+  bool set_slots_of_forces(Problem& problem) const { return assembly_.set_slots_of_forces(problem); }  ///< see Assembly
+  void set_slots_of_velocity_forces(Problem& problem) const { assembly_.set_slots_of_velocity_forces(problem); }
   void add_times_to(StepTimes* times) { assembly_.add_times_to(times); }  ///< see Assembly
 
   /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and

@@ -13,14 +13,14 @@ namespace iota::solver {
 
 namespace {
 
-/// Takes the groups of `count` values at some places (in order) out of a list. What lies between them moves as it is.
+/// Takes the groups of `count` values at some indices (in order) out of a list. What lies between them moves as it is.
 template <class T>
-void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size_t> places) {
-  if (places.empty() || list.empty()) return;
-  const auto at = [&](std::size_t place) { return list.begin() + static_cast<std::ptrdiff_t>(place * count); };
-  auto end = at(places[0]);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    end = std::move(at(places[i] + 1), i + 1 < places.size() ? at(places[i + 1]) : list.end(), end);
+void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size_t> indices) {
+  if (indices.empty() || list.empty()) return;
+  const auto at = [&](std::size_t index) { return list.begin() + static_cast<std::ptrdiff_t>(index * count); };
+  auto end = at(indices[0]);
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    end = std::move(at(indices[i] + 1), i + 1 < indices.size() ? at(indices[i + 1]) : list.end(), end);
   list.erase(end, list.end());
 }
 

@@ -273,7 +273,7 @@ struct Problem {
   /// Whether there ever was an item of a type.
   template <class Item>
   bool has_used() const {
-    return used_ >> place_of<Item>() & 1u;
+    return used_ >> index_of<Item>() & 1u;
   }
   bool has_used_springs() const { return has_used<SpringForce>() || has_used<RadialForce>(); }
   bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
@@ -423,22 +423,22 @@ struct Problem {
   }
   template <class Item>
   void note_structure(const Item& item, std::span<const std::uint32_t> nodes) {
-    note_structure(place_of<Item>() << 32 | nodes.size());
+    note_structure(index_of<Item>() << 32 | nodes.size());
     for (const std::uint32_t node : nodes) note_structure(node);
     if constexpr (GeneralConstraint<Item>) note_structure(static_cast<std::uint64_t>(item.first_side));
   }
 
   static constexpr std::size_t constraint_types = std::tuple_size_v<ConstraintPools<ConstraintPool>>;
 
-  /// The place of a type in the lists, constraints first.
+  /// The index of a type in the lists, constraints first.
   template <class Item>
-  static constexpr std::size_t place_of() {
-    std::size_t place = 0;
+  static constexpr std::size_t index_of() {
+    std::size_t index = 0;
     const auto find = [&]<class... Pool>(std::type_identity<std::tuple<Pool...>>) {
-      return ((std::is_same_v<decltype(Pool::items), std::vector<Item>> || (++place, false)) || ...);
+      return ((std::is_same_v<decltype(Pool::items), std::vector<Item>> || (++index, false)) || ...);
     };
     if (!find(std::type_identity<ConstraintPools<ConstraintPool>>{})) find(std::type_identity<ForcePools<ForcePool>>{});
-    return place;
+    return index;
   }
   template <class Pools, class Visit>
   static void visit_used(Pools& pools, std::uint32_t used, Visit& visit) {
@@ -480,7 +480,7 @@ void Problem::add(const Item& item, ItemKey key) {
     reserve_with_slack(pool.keys, pool.items.size() + 1);
   }
   if (structure_ == 0 && !has_used<Item>()) pool.slots.clear();  // of an earlier structure
-  used_ |= std::uint32_t{1} << place_of<Item>();
+  used_ |= std::uint32_t{1} << index_of<Item>();
   pool.items.push_back(item);
   pool.keys.push_back(key);
 }

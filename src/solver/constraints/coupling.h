@@ -119,7 +119,7 @@ struct CouplingConstraint {
       for (std::uint32_t a = 0; a < row.count; ++a)
         for (std::uint32_t b = a; b < row.count; ++b, ++block) {
           const std::uint32_t i = row.nodes[a], j = row.nodes[b];
-          blocks[place_of_block(std::min(i, j), std::max(i, j))] += i <= j ? *block : block->transposed();
+          blocks[index_of_block(std::min(i, j), std::max(i, j))] += i <= j ? *block : block->transposed();
         }
     });
   }
@@ -133,7 +133,7 @@ struct CouplingConstraint {
     }
   };
   /// Blocks of the upper triangle, row by row.
-  std::uint32_t place_of_block(std::uint32_t i, std::uint32_t j) const { return i * count - i * (i + 1) / 2 + j; }
+  std::uint32_t index_of_block(std::uint32_t i, std::uint32_t j) const { return i * count - i * (i + 1) / 2 + j; }
 
   template <class Visit>
   void for_each_row(Visit visit) const {

@@ -86,7 +86,7 @@ struct RadialForce {
     return u.curvature < 0 && u.slope > 0;
   }
   /// The difference of the work of a force that is held at the start of a step from the change of its energy, J.
-  double holding_error(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+  double held_force_error(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0);
     if (s.midpoint || s.instant || !attracts_more_nearby(r0)) return 0;
     return energy(e1) - energy(e0) - law->elastic(at(r0), parameters.data()).slope / (r0 + tiny) * dot(e0, e1 - e0);

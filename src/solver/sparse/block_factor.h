@@ -61,7 +61,7 @@ class BlockFactor {
   int eliminate(const BlockPattern::Vertex&);
   template <bool Symmetric>
   int eliminate(const BlockPattern::Panel&);
-  void place_rows(const BlockPattern::Panel&);
+  void number_rows(const BlockPattern::Panel&);
   template <class Visit>
   void for_each_below(const BlockPattern::Panel&, Visit) const;
   template <bool Symmetric>
@@ -75,8 +75,8 @@ class BlockFactor {
   template <bool Symmetric>
   void update_columns(const BlockPattern::Panel&, const BlockPattern::Vertex& last, std::uint32_t begin,
                       std::uint32_t end);
-  std::size_t place_in_panel(std::uint32_t row, std::uint32_t column) const {
-    return place_in_strips(row, column, stride_);
+  std::size_t index_in_panel(std::uint32_t row, std::uint32_t column) const {
+    return index_in_strips(row, column, stride_);
   }
   static std::uint32_t strips_in(std::uint32_t rows) { return (rows + strip_rows - 1) / strip_rows; }
   void size_fronts();

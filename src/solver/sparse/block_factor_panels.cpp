@@ -19,7 +19,7 @@ constexpr std::uint32_t entries_at_once = 6;  // of a panel's last vertex: their
 template <bool Symmetric>
 int BlockFactor::eliminate(const BlockPattern::Panel& panel) {
   stride_ = std::size_t{panel.columns} * strip_rows;
-  place_rows(panel);
+  number_rows(panel);
   gather<Symmetric>(panel);
   int wrong = 0;
   for (const std::uint32_t v : pattern_->panel_vertices().subspan(panel.first, panel.count)) {
@@ -35,7 +35,7 @@ int BlockFactor::eliminate(const BlockPattern::Panel& panel) {
 template int BlockFactor::eliminate<true>(const BlockPattern::Panel&);
 template int BlockFactor::eliminate<false>(const BlockPattern::Panel&);
 
-void BlockFactor::place_rows(const BlockPattern::Panel& panel) {
+void BlockFactor::number_rows(const BlockPattern::Panel& panel) {
   const auto members = pattern_->panel_vertices().subspan(panel.first, panel.count);
   std::uint32_t row = 0;
   for (const std::uint32_t v : members) row_of_[v] = row, row += pattern_->vertices()[v].pivot;
@@ -44,7 +44,7 @@ void BlockFactor::place_rows(const BlockPattern::Panel& panel) {
     row_of_[e.vertex] = row, row += e.width;
 }
 
-/// visit(offset of a value below the diagonal, its place in the panel).
+/// visit(offset of a value below the diagonal, its index in the panel).
 template <class Visit>
 void BlockFactor::for_each_below(const BlockPattern::Panel& panel, Visit visit) const {
   for (const std::uint32_t v : pattern_->panel_vertices().subspan(panel.first, panel.count)) {
@@ -54,8 +54,8 @@ void BlockFactor::for_each_below(const BlockPattern::Panel& panel, Visit visit) 
       for (const auto& e : entries) {
         std::size_t offset = e.offset;
         for (std::uint32_t r = 0; r < e.width; ++r, offset += Pivot) {
-          const std::size_t place = place_in_panel(row_of_[e.vertex] + r, row_of_[v]);
-          for (std::size_t c = 0; c < Pivot; ++c) visit(offset + c, place + c * strip_rows);
+          const std::size_t index = index_in_panel(row_of_[e.vertex] + r, row_of_[v]);
+          for (std::size_t c = 0; c < Pivot; ++c) visit(offset + c, index + c * strip_rows);
         }
       }
     });
@@ -72,19 +72,19 @@ void BlockFactor::gather(const BlockPattern::Panel& panel) {
     const std::uint32_t pivot = vertex.pivot;
     for (std::uint32_t r = 0; r < pivot; ++r)
       for (std::uint32_t c = 0; c < pivot; ++c)
-        panel_lower_[place_in_panel(row_of_[v] + r, row_of_[v] + c)] = diagonals_[vertex.diagonal + r * pivot + c];
+        panel_lower_[index_in_panel(row_of_[v] + r, row_of_[v] + c)] = diagonals_[vertex.diagonal + r * pivot + c];
   }
-  for_each_below(panel, [&](std::size_t offset, std::size_t place) {
-    panel_lower_[place] = lower_[offset];
-    if constexpr (!Symmetric) panel_upper_[place] = upper_[offset];
+  for_each_below(panel, [&](std::size_t offset, std::size_t index) {
+    panel_lower_[index] = lower_[offset];
+    if constexpr (!Symmetric) panel_upper_[index] = upper_[offset];
   });
 }
 
 template <bool Symmetric>
 void BlockFactor::store(const BlockPattern::Panel& panel) {
-  for_each_below(panel, [&](std::size_t offset, std::size_t place) {
-    lower_[offset] = panel_lower_[place];
-    if constexpr (!Symmetric) upper_[offset] = panel_upper_[place];
+  for_each_below(panel, [&](std::size_t offset, std::size_t index) {
+    lower_[offset] = panel_lower_[index];
+    if constexpr (!Symmetric) upper_[offset] = panel_upper_[index];
   });
 }
 
@@ -114,7 +114,7 @@ template <bool Symmetric, int Pivot>
   double d[Pivot][Pivot];
   for (std::uint32_t r = 0; r < Pivot; ++r)
     for (std::uint32_t c = 0; c < (Symmetric ? r + 1 : Pivot); ++c)
-      d[r][c] = panel_lower_[place_in_panel(at + r, at + c)];
+      d[r][c] = panel_lower_[index_in_panel(at + r, at + c)];
   factor_pivot_block<Symmetric>(
       d, [&](int k, double pivot) { wrong += k < vertex.positives ? !(pivot > 0) : !(pivot < 0); });
   for (int r = 0; r < Pivot; ++r)

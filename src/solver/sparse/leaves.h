@@ -23,19 +23,19 @@ struct LanesOf<1> {
 template <int Pivot, int N>
 struct Leaves {
   using Lanes = typename LanesOf<N>::Type;
-  using Places = std::array<double*, N>;
-  Places diagonal, lower, upper;  ///< the blocks of each
-  Places target;                  ///< the diagonal block of its later node, and the length of its rows
+  using Pointers = std::array<double*, N>;
+  Pointers diagonal, lower, upper;  ///< the blocks of each
+  Pointers target;                  ///< the diagonal block of its later node, and the length of its rows
   std::array<int, N> target_stride;
-  Places own, later;  ///< the right-hand side, or solution, of each and of its later node
+  Pointers own, later;  ///< the right-hand side, or solution, of each and of its later node
 
-  static Lanes get(const Places& from, int i) {
+  static Lanes get(const Pointers& from, int i) {
     if constexpr (N == 1)
       return from[0][i];
     else
       return Lanes{from[0][i], from[1][i]};
   }
-  static void put(const Places& to, int i, const Lanes& value) {
+  static void put(const Pointers& to, int i, const Lanes& value) {
     for (int lane = 0; lane < N; ++lane) to[lane][i] = of(value, lane);
   }
   static double of(const Lanes& value, int lane) {
@@ -104,7 +104,7 @@ template <bool Symmetric>
 template <int Pivot, int N>
 template <bool Symmetric>
 [[gnu::flatten]] void Leaves<Pivot, N>::finish() const {
-  const Places& off_diagonal = Symmetric ? lower : upper;
+  const Pointers& off_diagonal = Symmetric ? lower : upper;
   Lanes x[Pivot];
   unroll<Pivot>([&](auto k) {
     x[k] = get(own, k);

@@ -29,7 +29,7 @@ template <int N, int W>
                                                 std::size_t row, std::size_t depth, std::size_t stride) {
   constexpr std::size_t t_stride = W * strip_rows;
   const double* y_rows[W];
-  for (std::size_t c = 0; c < W; ++c) y_rows[c] = y + place_in_strips(row + c, 0, stride);
+  for (std::size_t c = 0; c < W; ++c) y_rows[c] = y + index_in_strips(row + c, 0, stride);
   if constexpr (N == strip_rows) {  // a strip is one vector: two strips at once
     for (; strips > 1; strips -= 2, t += 2 * t_stride, x += 2 * stride)
       multiply_tile<N, W>(t, t + t_stride, x, x + stride, y_rows, depth);

@@ -18,7 +18,7 @@ void multiply_strips(double* t, const double* x, int strips, const double* y, st
                      std::size_t stride);
 
 /// The index of element (row, column) in the array of a panel.
-constexpr std::size_t place_in_strips(std::size_t row, std::size_t column, std::size_t stride) {
+constexpr std::size_t index_in_strips(std::size_t row, std::size_t column, std::size_t stride) {
   return row / strip_rows * stride + column * strip_rows + row % strip_rows;
 }
 

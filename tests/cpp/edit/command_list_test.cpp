@@ -50,11 +50,11 @@ TEST(CommandList, commands_with_other_numbers_are_found_by_their_names) {
   // All others have moved down by one.
   std::vector<std::byte> moved;
   for (const auto& command : {SetSolver{"exact"}}) write(moved, command);
-  other[step] = static_cast<std::byte>(place_of<SetSolver> - 1);
-  other[step + moved.size()] = static_cast<std::byte>(place_of<CreateBody> - 1);
+  other[step] = static_cast<std::byte>(index_of<SetSolver> - 1);
+  other[step + moved.size()] = static_cast<std::byte>(index_of<CreateBody> - 1);
   std::vector<std::byte> body;
   write(body, CreateBody{});
-  other[step + moved.size() + body.size()] = static_cast<std::byte>(place_of<CreateSolid> - 1);
+  other[step + moved.size() + body.size()] = static_cast<std::byte>(index_of<CreateSolid> - 1);
   EXPECT_EQ(in_own_commands(list, other), some_commands());
 }
 

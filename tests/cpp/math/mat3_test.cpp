@@ -223,5 +223,13 @@ TEST(Vec3, any_perpendicular_is_a_unit_vector_at_right_angles) {
   }
 }
 
+TEST(Vec3, without_a_direction_gives_the_other_unit_vector) {
+  const Vec3 other{0, 0, 1};
+  EXPECT_EQ(unit_or({0, -4, 0}, other), (Vec3{0, -1, 0}));
+  EXPECT_EQ(unit_or({}, other), other);
+  EXPECT_EQ(unit_or({1e-13, 0, 0}, other), (Vec3{1, 0, 0}));
+  EXPECT_EQ(unit_or({1e-13, 0, 0}, other, 1e-12), other);
+}
+
 }  // namespace
 }  // namespace iota

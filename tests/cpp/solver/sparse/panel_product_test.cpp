@@ -26,7 +26,7 @@ TEST(PanelProduct, multiplies_like_three_loops_in_every_size_and_place) {
             for (int c = 0; c < columns; ++c) {
               double sum = 0;
               for (int k = 0; k < depth; ++k)
-                sum += x[place_in_strips(row, k, stride)] * y[place_in_strips(first + c, k, stride)];
+                sum += x[index_in_strips(row, k, stride)] * y[index_in_strips(first + c, k, stride)];
               ASSERT_EQ(t[(row / strip_rows * columns + c) * strip_rows + row % strip_rows], sum)
                   << "the same bits on all processors";
             }

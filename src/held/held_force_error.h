@@ -12,7 +12,7 @@ namespace iota::held {
 /// derivative f'' has a mean that differs by h^2 f''/24 from that in the middle of the step; f'' is found from the last three
 /// steps. In a second such an acceleration moves a point by half of it, and its motion carries that on: the figure of eight of
 /// three bodies was 1.4 times as far off, so the estimate is twice that.
-class HoldingError {
+class HeldForceError {
  public:
   void forget() { known_ = 0; }
   /// Before held forces are added to the pushes, and after: the estimate, in lengths of the links (of 1 m for single

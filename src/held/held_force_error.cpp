@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "held/holding_error.h"
+#include "held/held_force_error.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace iota::held {
 
-void HoldingError::begin(const model::Model& model) {
+void HeldForceError::begin(const model::Model& model) {
   if (model.mode != IntegrationMode::accurate) return forget();
   if (structure_ != model.structure_version) forget();
   structure_ = model.structure_version;
@@ -14,7 +14,7 @@ void HoldingError::begin(const model::Model& model) {
   model.pushes.for_each([&](std::uint32_t ring, const ingredient::Push& push) { applied_[ring] = push.force; });
 }
 
-double HoldingError::estimate(const model::Model& model, double h) {
+double HeldForceError::estimate(const model::Model& model, double h) {
   if (model.mode != IntegrationMode::accurate) return 0;
   if (h != h_) forget();
   h_ = h;

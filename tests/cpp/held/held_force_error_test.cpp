@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The error of mode accurate by forces that are held over a step: against the motion at a tenth of the step.
-#include "held/holding_error.h"
+#include "held/held_force_error.h"
 
 #include <iota/system.h>
 
@@ -12,7 +12,7 @@
 namespace iota {
 namespace {
 
-TEST(HoldingError, of_a_field_that_changes_over_a_step_is_told_of_second_order_and_only_in_mode_accurate) {
+TEST(HeldForceError, of_a_field_that_changes_over_a_step_is_told_of_second_order_and_only_in_mode_accurate) {
   const auto told = [](IntegrationMode mode, double h) {
     System system({.gravity = {}, .mode = mode});
     const BodyId rod = system.bodies().create();
