@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls of the public interface at random, with good, odd and bad arguments: nothing but refusals in words may be raised,
-and the system stays whole and finite. IOTA_FUZZ_CALLS asks for more than the usual few thousand."""
+and the system stays whole and finite. IOTA_FUZZ_CALLS asks for more than the usual thousand."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from amount import TRIES_ALL
 
 import iota
 
-CALLS = int(os.environ.get("IOTA_FUZZ_CALLS", "3000"))
+CALLS = int(os.environ.get("IOTA_FUZZ_CALLS", "3000" if TRIES_ALL else "1000"))
 ROUNDS = 10
 ITERATIONS = 0 if TRIES_ALL else 300  # of a step: a search for what has no solution takes seconds
 # Slow, and swept elsewhere; threads: a crash in a worker thread is no finding that a seed repeats.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random edits against brute force, and bits against bits.
 #include "scenes/chain.h"
+#include "tests/cpp/amount.h"
 
 #include <gtest/gtest.h>
 
@@ -79,11 +80,10 @@ struct RandomWorld {
   }
 };
 
-TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
-  int edits = 0;
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+TEST(RandomEdits, keep_the_structure_whole_and_finite) {
+  for (std::uint64_t seed = 1; seed <= sampled(std::uint64_t{100}); ++seed) {
     RandomWorld world(seed, 12);
-    for (int i = 0; i < 200; ++i, ++edits) {
+    for (int i = 0; i < 200; ++i) {
       world.edit();
       if (HasFatalFailure()) return;
       ASSERT_EQ(world.system.validate(), std::vector<std::string>{}) << "seed " << seed << " edit " << i;
@@ -98,7 +98,6 @@ TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
       if (world.system.bodies().ids().size() < 6) world.add_body();
     }
   }
-  EXPECT_EQ(edits, 10000);
 }
 
 void drive(System& system, std::uint64_t seed, int steps, std::vector<std::uint64_t>& hashes) {
