@@ -17,7 +17,7 @@ import pytest
 from waiting import wait_until
 
 import iota
-from iota.terminal import TerminalView, outline
+from iota.terminal import TerminalView
 
 
 class Probe(iota.View):

@@ -5,6 +5,7 @@
 epoch                   "7": a process that finds a higher number than its own writes no more
 lock                    locked by the process that writes, until it ends
 aside-N                 older journals, which nobody reads any more
+picture.png             the world as a page drew it
 """
 
 from __future__ import annotations
@@ -79,6 +80,10 @@ class Folder:
         """Gives the lock back if the world never ran."""
         self.unlock()
 
+    @property
+    def picture(self) -> Path:
+        return self.path / "picture.png"
+
     def files(self) -> list[File]:
         """Oldest first. By the numbers in their names: clocks may be set back."""
         found = []
@@ -115,7 +120,7 @@ class Folder:
                 file.path.unlink()
 
     def put_aside(self, files: list[File]) -> Path | None:
-        """Moves files into a new folder beside them. Raises OSError."""
+        """Moves files into a new folder beside them, with the picture. Raises OSError."""
         if not files:
             return None
         number = 1
@@ -124,6 +129,8 @@ class Folder:
         aside.mkdir()
         for file in files:
             file.path.rename(aside / file.path.name)
+        with suppress(FileNotFoundError):
+            self.picture.rename(aside / self.picture.name)
         return aside
 
     def _read_epoch(self) -> int:

@@ -6,9 +6,8 @@ deleted/NAME-1      a room that was deleted
 NAME/room.json      what it runs, its port, the secret of its addresses
 NAME/state.json     what its process told last
 NAME/lock           locked by its process as long as it lives
-NAME/journal        its world, see iota.journal
+NAME/journal        its world and a picture of it, see iota.journal.folder
 NAME/log            what its process printed
-NAME/picture.png    made by the page of a visitor
 """
 
 from __future__ import annotations
@@ -23,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from iota.arguments import SHORT
+from iota.journal.folder import Folder
 from iota.saving import replacing
 
 with suppress(ImportError):  # there are no rooms on Windows
@@ -116,7 +116,7 @@ class RoomFolder:
 
     @property
     def picture(self) -> Path:
-        return self.path / "picture.png"
+        return Folder(self.journal).picture
 
     def read(self) -> Settings:
         """Raises ValueError for a damaged file, OSError."""

@@ -19,14 +19,11 @@ from pathlib import Path
 from typing import Any
 
 from iota.rooms.folder import RoomFolder, Told
-from iota.saving import replacing
 from iota.world import Server, World
 from iota.world.callbacks import print_error
 
 LOOK = 0.5  # s, between two looks at who is there
 TELL = 2.0  # s, after which everything is told anew
-FIRST_PICTURE, PICTURE = 5.0, 300.0  # s, from the first visitor to a picture, and from one to the next
-LATE = 30.0  # s, after which a picture does not come any more
 PATIENCE = 5.0  # s, to end in an orderly way
 
 
@@ -116,20 +113,14 @@ class RoomHere:
     def _watch_until_over(self) -> None:
         assert self._server is not None
         looked, empty_since = 0.0, time.monotonic()
-        count, picture_at = 0, float("inf")
+        count = 0
         while not self._is_over.wait(LOOK):
             now, clients = time.monotonic(), self._server.statistics.clients
             if clients:
                 empty_since = now
-                picture_at = min(picture_at, now + FIRST_PICTURE)
-            else:
-                picture_at = float("inf")
             if clients != count or now - looked > TELL:
                 count, looked = clients, now
                 self._world._inputs.call(self._look)
-            if now > picture_at:
-                picture_at = now + PICTURE
-                self._world._inputs.call(self._ask_picture)
             if now - empty_since > self._options.leave:
                 self._end_process()
 
@@ -155,26 +146,3 @@ class RoomHere:
     def _tell(self) -> None:
         with suppress(OSError):  # a full disk: the journal tells of it
             self.folder.tell(self._told)
-
-    def _ask_picture(self) -> None:
-        """On the thread of the world; a picture comes later."""
-        publisher, state = self._world.pages._publisher, self._world._state
-        client = next(iter(state.clients.by_id), None)
-        if publisher is None or client is None:
-            return
-        number = state.pictures.ask()
-        publisher.room.ask_picture(client, number)
-        threading.Thread(target=self._wait_for_picture, args=(number,), daemon=True).start()
-
-    def _wait_for_picture(self, number: int) -> None:
-        pictures = self._world._state.pictures
-        end = time.monotonic() + LATE
-        while time.monotonic() < end:
-            if (picture := pictures.ready(number)) is not None:
-                with suppress(OSError):
-                    if picture:
-                        with replacing(self.folder.picture) as fresh:
-                            fresh.write_bytes(picture)
-                return
-            time.sleep(LOOK)
-        pictures.forget(number)

@@ -60,31 +60,31 @@ def script_break(world: iota.World, chain: list[iota.Body]) -> None:
         return
     hook, eye = chain[cut - 1].particles[-1], chain[cut].particles[0]
     weight = 9.81 * sum(link.mass for link in chain[cut:])  # N, what the forces have to carry
-    bonds: list[iota.Bond] = []
+    system = world.system
 
     def pull(bond: iota.types.BondState) -> iota.Vec3:
         return weight * min(10 * (bond.distance - APART), 2.5) * bond.direction
 
     def fall_off() -> None:
-        if system.articulate_count > 1 or bonds:
+        if system.articulate_count > 1 or system.bonds:
             return  # somebody is at it, or it is under way
         hook.separate(eye)
-        bonds.append(system.bond(hook, eye, "spring", stiffness=weight / 0.2, damping=weight / 3, length=APART))
-        world.after(2.5)(come_close)
-        world.after(4.0)(rejoin)
+        system.bond(hook, eye, "spring", stiffness=weight / 0.2, damping=weight / 3, length=APART)
+        world.keep_state("fell", system.time)
 
-    def come_close() -> None:
-        bonds.append(system.bond(hook, eye, pull))
-        bonds.append(system.bond(hook, eye, "drag", damping=weight / 2))
+    @world.on_step
+    def mend() -> None:  # also after the process was killed meanwhile
+        bonds = list(system.bonds)
+        since = system.time - world.kept_state("fell", 0.0) if bonds else 0.0
+        if len(bonds) == 1 and since >= 2.5 - 1e-9:
+            system.bond(hook, eye, pull)
+            system.bond(hook, eye, "drag", damping=weight / 2)
+        elif since >= 4.0 - 1e-9:
+            for bond in bonds:
+                bond.destroy()
+            if hook.body.articulate != eye.body.articulate:
+                hook.combine(eye, over=0.4)
 
-    def rejoin() -> None:
-        while bonds:
-            bonds.pop().destroy()
-        if hook.body.articulate != eye.body.articulate:
-            hook.combine(eye, over=0.4)
-
-    system = world.system
-    world.on_reset(bonds.clear)
     story = Story(world, wait=8.0, first=4.0)
     story.at(0.0)(fall_off)
     story.at(5.0)(lambda: None)

@@ -172,7 +172,7 @@ class Inputs:
 
     @handles(protocol.Picture)
     def _picture(self, client: Client, message: protocol.Picture) -> None:
-        self._state.pictures.take(message)
+        self._state.pictures.take(client.id, message)
 
     @handles(protocol.GrabStart, share=0.2)
     def _grab_start(self, client: Client, message: protocol.GrabStart) -> None:

@@ -11,6 +11,7 @@ import math
 import struct
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -23,6 +24,8 @@ from iota.journal.reader import Found, JournalError, find, recover
 from iota.journal.records import FORMAT, Commands, schema_of, without_schema
 from iota.journal.writer import Content, Writer
 from iota.world.callbacks import one_line, print_on_terminal
+from iota.world.going_on import ask_to_go_on, people_in
+from iota.world.pictures import Portrait
 from iota.world.state import State
 from iota.world.widgets import Button, Choice, Widget
 
@@ -50,6 +53,11 @@ class Journal:
         self._folder.lock()
         self._found: Found | None = None
         self._why_anew = ""  # told when the world begins
+        self.goes_on = False
+        """The world is where it was in the run before."""
+        self.kept_picture = b""
+        """A PNG file with the world that goes on; empty without one."""
+        self.portrait = Portrait(self._folder.picture, state.pictures, state.clients)
         self._values: dict[str, Any] = {}  # of the script
         self._writer: Writer | None = None
         self._version: tuple[Any, ...] = ()  # of what `_world_now` tells
@@ -101,13 +109,16 @@ class Journal:
     # --- the run before -----------------------------------------------------------------------------------------------
 
     def _read(self) -> None:
-        """Looks for a state to go on from. A journal that cannot be read is put aside later, not overwritten."""
+        """Looks for a state to go on from, before the script asks for what it has kept. A journal that cannot be read is put aside later,
+        not overwritten."""
         try:
-            if self._is_fresh:
+            found = None if self._is_fresh else find(self._folder)
+            if self._is_fresh or (found is not None and not ask_to_go_on(found)):
                 aside = self._folder.put_aside(self._folder.files())
                 self._why_anew = f"begins anew; the world before is in {aside}" if aside is not None else ""
+                self._is_fresh = True
                 return
-            self._found = find(self._folder)
+            self._found = found
         except JournalError as error:
             self._why_anew = f"begins anew: {error}. It is put aside"
             return
@@ -148,13 +159,13 @@ class Journal:
         except (ValueError, RuntimeError) as error:  # of another version; a recording of the script runs already
             self._values = {}
             return f"begins anew: {error}. The world before is put aside in {self._folder.path}", True
+        lost = f"lost at most {math.ceil(recovered.lost * 10) / 10:g} s" if recovered.lost > 0 else "nothing was lost"
+        self.goes_on = True
+        with suppress(OSError):
+            self.kept_picture = self._folder.picture.read_bytes()
         self._set_world(found.world)
         self._state.schedule.skip(recovered.time)
-        people = found.world.get("people")
-        count = len(people) if isinstance(people, list) else 0
-        lost = f"lost at most {math.ceil(recovered.lost * 10) / 10:g} s" if recovered.lost > 0 else "nothing was lost"
-        people_text = f"{count} {'person' if count == 1 else 'people'}"
-        told = f"goes on where it was: t = {recovered.time:.2f} s, {people_text}, {lost} (r on the page resets it)"
+        told = f"goes on where it was: t = {recovered.time:.2f} s, {people_in(found)}, {lost} (r on the page resets it)"
         if start.get("state") != self._start["state"]:
             told += "; its script starts in another way now, which a reset shows"
         if not recovered.is_equal:
@@ -425,9 +436,14 @@ def function_called(name: str) -> FunctionType | None:
         for each in gc.get_objects()
         if type(each) is FunctionType  # isinstance asks proxies, whose object may be gone
         and each.__qualname__ == name
-        and not (each.__module__ or "").startswith("iota.")
+        and is_of_script(each.__module__ or "")
     ]
     is_one = len(found) == 1 or (
         found and all(each.__code__ is found[0].__code__ for each in found) and not found[0].__closure__
     )
     return found[0] if is_one else None
+
+
+def is_of_script(module: str) -> bool:
+    """Whether the functions of a module are those of a script: the package's own may have the same names. A study is a script."""
+    return not module.startswith("iota.") or module.startswith("iota.studies.")

@@ -21,6 +21,8 @@ from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
 
+KEPT_PICTURE = "/kept.png"
+
 
 class Publisher:
     """A world's room on a server. The room sends only changes to viewers."""
@@ -53,7 +55,7 @@ class Publisher:
             options = run_options.current()
             make_server, options.make_server = options.make_server or Server, None  # of the first world
             server = make_server(host, port, folder=folder, lan=lan)
-            server.serve_requests(["/metrics"])
+            server.serve_requests(["/metrics", KEPT_PICTURE])
             publisher = cls(state, server, server.open("default"), is_alone=True, modules=modules)
             publisher._folder = stack.pop_all()
         return publisher
@@ -103,8 +105,12 @@ class Publisher:
         self.answer_requests()
 
     def answer_requests(self) -> None:
-        """For figures of the world; only those who have a token come this far."""
+        """For figures of the world, and the picture that it was kept with; only those who have a token come this far."""
         for request in self._server.take_requests() if self._is_alone else ():
+            if request.path == KEPT_PICTURE:
+                picture = self._state.kept_picture
+                self._server.answer(request, picture, "image/png", status=200 if picture else 404)
+                continue
             figures = of_world(self._state, self._server.statistics) + of_process()
             self._server.answer(request, text_of(figures).encode(), CONTENT_TYPE)
 

@@ -24,7 +24,8 @@ from iota.world.visuals import Visuals
 
 @dataclass
 class State:
-    """The objects of a world, each with its own state. step_ms: length of a step, smoothed."""
+    """The objects of a world, each with its own state. step_ms: length of a step, smoothed. kept_picture: of the world that goes
+    on after an earlier process, a PNG file; empty without one."""
 
     system: System
     title: str
@@ -40,6 +41,7 @@ class State:
     notices: Notices = field(default_factory=Notices)
     levels: Levels | None = None
     step_ms: float = 0.0
+    kept_picture: bytes = b""
 
     def __post_init__(self) -> None:
         self.clients = Clients(self.system)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from iota._core import Body, Broken, StepReport, StepTimes, System
+from iota._core import Body, Broken, Room, StepReport, StepTimes, System
 from iota.errors import ForceError
 from iota.world.blame import told_of_energy
 from iota.world.callbacks import GO_ON, SLOW_STEP, Guard, Hook, print_on_terminal
@@ -26,6 +26,8 @@ from iota.world.summary import RunSummary, Tally
 
 IMPACTS_EVERY = 0.05  # s, simulated
 SMALLER = "Try a smaller world, or the mode 'plausible'."
+KEPT = "iota kept"  # id of a card that the page completes, see web/src/page/session.ts
+ASKING = 120.0  # s, in which pages that open ask whether the world goes on
 SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
 
 
@@ -43,6 +45,7 @@ class Stepper:
         self._tally: Tally | None = None
         self._impact_at = -math.inf  # s
         self._told_of_energy = False
+        self._asks_until: float | None = None  # s
 
     @property
     def has_begun(self) -> bool:
@@ -71,19 +74,28 @@ class Stepper:
 
     def _go_on(self, journal: Journal, recovers: bool) -> None:
         told = journal.begin(self._start or b"", recovers)
+        self._state.kept_picture = journal.kept_picture
         if told:
             print_on_terminal(f"iota: {told}\n")
-            self._state.notices.send("The journal", f"The world {told}.", "A reset begins the world anew.", keep=True)
+            id, hint = "", "A reset begins the world anew."
+            if journal.goes_on:
+                id, self._asks_until = KEPT, time.monotonic() + ASKING
+            self._state.notices.send("The journal", f"The world {told}.", hint, keep=True, id=id)
 
     def keep(self) -> None:
         """Writes the state for the run of a changed script."""
         if self._keeper is not None:
             self._keeper.keep()
 
-    def check_journal(self) -> None:
-        """Between steps: a paused world is edited, too."""
+    def check_journal(self, room: Room | None = None) -> None:
+        """Between steps: a paused world is edited, too. room: of the pages that show the world."""
         if self.journal is not None:
             self.journal.check()
+            if self._asks_until is not None and time.monotonic() > self._asks_until:
+                self._asks_until = None
+                self._state.notices.over(KEPT)
+            if room is not None:
+                self.journal.portrait.look(room)
 
     def end(self) -> None:
         """The run has ended."""

@@ -693,7 +693,7 @@ class World:
             if self._pages._publisher is None:
                 raise RuntimeError("this world is not on a page")
             pictures = self._state.pictures
-            number = pictures.ask()
+            number = pictures.ask(client)
             self._pages._publisher.frame()  # so that it shows the latest changes of the script
             self._pages._publisher.room.ask_picture(client, number)
             end = time.monotonic() + seconds
@@ -702,8 +702,8 @@ class World:
                     if time.monotonic() > end:
                         raise TimeoutError(f"no picture came from client {client} within {seconds:g} s")
                     time.sleep(0.005)
-                    for _, part in self._pages._publisher.room.take_pictures():
-                        pictures.take(part)
+                    for sender, part in self._pages._publisher.room.take_pictures():
+                        pictures.take(sender, part)
             finally:
                 pictures.forget(number)
             if not picture:
@@ -719,7 +719,8 @@ class World:
                 thing.sample(self.system.time, self._guard)
         with self._state.costs.of("pages"):
             self._pages._frame()
-        self._stepper.check_journal()
+        publisher = self._pages._publisher
+        self._stepper.check_journal(None if publisher is None else publisher.room)
         if self.clock.reached_speed < 0.8:
             text = "This machine is too slow for this world in real time: it runs in slow motion."
             self._state.notices.warn_once(text)

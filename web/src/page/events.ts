@@ -22,6 +22,15 @@ export interface PageNotice {
   /** How long it is shown; 0 (default): as usual for its level, -1: until it is closed. */
   readonly seconds?: number;
   readonly place?: NoticePlace;
+  /** The address of an image. */
+  readonly picture?: string;
+  /** Buttons, each with its text; after a press the card goes. */
+  readonly choices?: readonly Choice[];
+}
+
+export interface Choice {
+  readonly text: string;
+  readonly choose: () => void;
 }
 
 /** All methods are optional. */

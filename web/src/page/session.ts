@@ -4,9 +4,9 @@
 
 import { keepName } from "../net/name.ts";
 import { Connection, type ConnectionListener, type LinkState, type JoinRequest } from "../net/connection.ts";
-import { Role, type ClientMessage, type ControlCommand, type Id, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
+import { ControlCommand, Role, type ClientMessage, type Id, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
-import type { Events } from "./events.ts";
+import type { Events, PageNotice } from "./events.ts";
 import type { PictureViewer } from "./picture.ts";
 import { smooth, type Viewer } from "./viewer.ts";
 
@@ -15,6 +15,10 @@ type SessionViewer = PictureViewer & Pick<Viewer, "invalidate" | "timing">;
 const noId: Id = { slot: 0, generation: 0 };
 /** In one message. */
 const mostBodies = 4096;
+/** The card about a world that goes on where an earlier process left it has this id, see python/iota/world/stepper.py. */
+const keptId = "iota kept";
+/** The card asks for so long. */
+const questionS = 20;
 
 export class Session implements ConnectionListener {
   readonly connection: Connection;
@@ -24,11 +28,13 @@ export class Session implements ConnectionListener {
   private readonly world_: World;
   private readonly viewer_: SessionViewer;
   private readonly events_: Events;
+  private readonly url_: string;
 
   constructor(url: string, request: JoinRequest, world: World, viewer: SessionViewer, events: Events) {
     this.world_ = world;
     this.viewer_ = viewer;
     this.events_ = events;
+    this.url_ = url;
     this.connection = new Connection(url, request, this);
   }
 
@@ -88,11 +94,23 @@ export class Session implements ConnectionListener {
 
   message(message: ServerMessage): void {
     this.viewer_.invalidate();
-    if (message.type === "notice") this.events_.notice({ ...message, ...(message.id === "" ? {} : { key: message.id }) });
+    if (message.type === "notice") this.events_.notice({ ...message, ...(message.id === "" ? {} : { key: message.id }), ...(message.id === keptId ? this.question_() : {}) });
     else if (message.type === "askPicture") void import("./picture.ts").then(({ sendPicture }) => sendPicture(this.viewer_, message.request, (part) => this.send(part)));
     else if (message.type === "effect") this.events_.effect(message.kind, message.position, message.volume);
     else if (message.type === "pulse") this.events_.pulse(message.hand, message.strength, message.seconds);
     else this.world_.take(message);
+  }
+
+  /** Whether a world that was kept goes on, which it does until somebody says otherwise: it as it was, and the choice. */
+  private question_(): Partial<PageNotice> {
+    const picture = new URL("kept.png", this.url_.replace(/^ws/, "http"));
+    picture.search = new URL(this.url_).search;
+    const choices = [
+      { text: "Go on", choose: () => undefined },
+      { text: "Begin anew", choose: () => this.control(ControlCommand.reset) },
+    ];
+    const asks = { title: "Go on where it was?", hint: "", choices, seconds: questionS };
+    return { picture: picture.href, ...(this.refusal(Role.host) === "" ? asks : {}) };
   }
 
   poses(poses: PosesBuffer, now: number): void {

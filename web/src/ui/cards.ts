@@ -2,6 +2,7 @@
 // Small cards: event, place, and suggestion. The world stays visible behind them, and they lie on no label and no control, unless the
 // script has chosen their place.
 
+import type { Choice } from "../page/events.ts";
 import { NoticePlace } from "../protocol/generated.ts";
 import { make } from "./dom.ts";
 
@@ -18,6 +19,10 @@ export interface CardOptions {
   /** How long it is shown; 0: as usual for its level, -1: until it is closed. */
   readonly seconds?: number | undefined;
   readonly place?: NoticePlace | undefined;
+  /** The address of an image. */
+  readonly picture?: string | undefined;
+  /** Buttons; after a press the card goes. */
+  readonly choices?: readonly Choice[] | undefined;
   /** Goes only by remove(). */
   readonly lasting?: boolean;
 }
@@ -48,7 +53,7 @@ export class Cards {
   }
 
   /** Shows a card; one with the same key is replaced. */
-  show(card: CardText, key = card.title, { seconds = 0, place = NoticePlace.free, lasting = false }: CardOptions = {}): void {
+  show(card: CardText, key = card.title, { seconds = 0, place = NoticePlace.free, lasting = false, picture, choices = [] }: CardOptions = {}): void {
     const face = `${card.level}\n${card.title}\n${card.text}\n${card.hint}`;
     const before = this.shown_.get(key);
     // Repeated (each failed attempt to connect): it is shown already, and must not flash.
@@ -67,6 +72,20 @@ export class Cards {
     }
     if (card.text !== "") element.append(make("p", "", card.text));
     if (card.hint !== "") element.append(make("p", "try", card.hint));
+    if (picture !== undefined) element.append(makePicture(picture));
+    if (choices.length > 0) {
+      const row = make("div", "choices");
+      for (const { text, choose } of choices) {
+        const button = make("button", "text", text);
+        button.type = "button";
+        button.addEventListener("click", () => {
+          this.remove(key);
+          choose();
+        });
+        row.append(button);
+      }
+      element.append(row);
+    }
     this.shown_.set(key, element);
     this.place_(element, place);
     const wait = seconds === 0 ? shownMs[card.level] : seconds < 0 ? Infinity : 1000 * seconds;
@@ -109,4 +128,13 @@ export class Cards {
     this.shown_.get(key)?.remove();
     this.shown_.delete(key);
   }
+}
+
+/** There may be none at the address. */
+function makePicture(address: string): HTMLImageElement {
+  const picture = make("img");
+  picture.alt = "";
+  picture.addEventListener("error", () => picture.remove());
+  picture.src = address;
+  return picture;
 }

@@ -189,9 +189,9 @@ export class Overlay implements PageListener, FramePart {
     }
   }
 
-  notice({ level, title, text, hint, key, seconds, place }: PageNotice): void {
+  notice({ level, title, text, hint, key, ...options }: PageNotice): void {
     if (title === "" && text === "") this.cards.remove(key ?? "");
-    else this.cards.show({ level: levels[level] ?? "info", title, text, hint }, key, { seconds, place });
+    else this.cards.show({ level: levels[level] ?? "info", title, text, hint }, key, options);
   }
 
   grab(grab: Grab): void {
