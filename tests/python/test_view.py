@@ -18,6 +18,7 @@ from waiting import wait_until
 
 import iota
 from iota.terminal import TerminalView
+from iota.world.braille import outline
 
 
 class Probe(iota.View):
