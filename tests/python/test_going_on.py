@@ -97,6 +97,27 @@ def test_without_an_answer_or_a_terminal_a_world_goes_on(tmp_path: Path, monkeyp
     assert run_chain(tmp_path / "kept", 0.1).system.time == pytest.approx(0.7)
 
 
+def test_a_script_that_was_saved_under_watch_goes_on_without_a_question(tmp_path: Path) -> None:
+    run_chain(tmp_path / "kept", 0.5)
+    (tmp_path / "world").write_bytes(b"")
+    with use(RunOptions(headless=True, keep=tmp_path / "kept", kept=tmp_path / "world")), typing("n\n") as printed:
+        world = chain.build()
+        world.run(0.1)
+        world.close()
+        assert "Go on where it was?" not in printed()
+    assert not (tmp_path / "kept" / "aside-1").exists()
+
+
+def test_a_process_in_the_background_of_a_terminal_goes_on_without_a_question(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run_chain(tmp_path / "kept", 0.5)
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
+    with typing("n\n") as printed:
+        assert run_chain(tmp_path / "kept", 0.1).system.time == pytest.approx(0.6)
+        assert "Go on where it was?" not in printed()
+
+
 def test_a_page_of_a_host_draws_the_kept_world_now_and_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pictures, "FIRST", 0.0)
     taken, clients, room = Pictures(), Clients(iota.System()), Asked()

@@ -310,6 +310,26 @@ def test_functions_of_the_start_are_taken_and_those_given_later_are_found_by_nam
     assert all(bond.active for bond in second.system.bonds)
 
 
+def test_a_function_that_was_given_up_before_the_end_is_found_for_what_is_repeated(make: Make) -> None:
+    def rise(bond: iota.types.BondState) -> tuple[float, float, float]:
+        return (0.0, 3.0, 0.0)
+
+    first = make()
+    journal = first.world._stepper.journal
+    assert journal is not None
+    bond = first.system.bond(first.chain[3].particles[1], first.ball.particles[0], rise)
+    first.steps(3)
+    journal.hand_over()
+    bond.destroy()
+    first.steps(3)
+    journal.hand_over()
+    end = first.system.state_hash()
+    first.end()
+    second = make()
+    assert "could not be repeated" not in second.told and "no function" not in second.told
+    assert second.system.state_hash() == end
+
+
 def test_a_function_that_cannot_be_found_is_named_in_one_line(make: Make) -> None:
     first = make()
     first.steps(3)

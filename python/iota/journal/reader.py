@@ -33,7 +33,8 @@ class Quick:
 
 @dataclass
 class Found:
-    """A state and what followed it. header: about the file. world: controls, people and so on, the latest. end: the latest time
+    """A state and what followed it. header: about the file. world: controls, people and so on, the latest. functions: kind and name of
+    all that were used until its end, by key: the state and what followed it may use those that are gone at the end. end: the latest time
     of the world that a record names, s. is_orderly: the world ended by itself. is_older: a later process has left nothing that can be read. damage: sentences. quick: the latest of its kind."""
 
     files: list[File]
@@ -43,6 +44,7 @@ class Found:
     redo: list[bytes]
     pieces: list[Commands] = field(default_factory=list)
     world: dict[str, Any] = field(default_factory=dict)
+    functions: dict[int, tuple[str, str]] = field(default_factory=dict)
     quick: Quick | None = None
     end: float = 0.0
     is_orderly: bool = False
@@ -97,10 +99,11 @@ def own_schema() -> str:
 
 @dataclass
 class _Cursor:
-    """The latest content of each kind on the way: states of undo, the world."""
+    """The latest content of each kind on the way: states of undo, the world. functions: of all worlds until then."""
 
     header: dict[str, Any] = field(default_factory=dict)
     world: dict[str, Any] = field(default_factory=dict)
+    functions: dict[int, tuple[str, str]] = field(default_factory=dict)
     states: dict[int, bytes] = field(default_factory=dict)
     undo: list[int] = field(default_factory=list)
     redo: list[int] = field(default_factory=list)
@@ -110,6 +113,7 @@ class _Cursor:
             self.header = dict(json.loads(content))
         elif kind == "W":
             self.world = dict(json.loads(content))
+            self.functions |= {key: (use, name) for use, key, name in self.world.get("functions", ())}
         elif kind == "U":
             self.states[struct.unpack_from("<Q", content)[0]] = content[8:]
         elif kind == "Y":
@@ -164,7 +168,7 @@ def find_in(files: list[File], damage: list[str]) -> list[Found]:
             damage.append(f"record {record.number}: {error}")
             is_whole = False
         if found is not None and is_whole:
-            found.world = cursor.world
+            found.world, found.functions = cursor.world, cursor.functions
     if found is not None:
         found.end, found.is_orderly, found.damage = end, is_orderly and is_whole, damage
     return all_found

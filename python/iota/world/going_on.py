@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import select
 import shutil
 import sys
@@ -19,7 +20,7 @@ COLUMNS, ROWS = 72, 16  # of the drawing, at most
 
 def ask_to_go_on(found: Found) -> bool:
     """True without an answer, where nobody can be asked, and for a state that this version cannot read."""
-    if not (is_open_terminal(sys.stdin) and is_open_terminal(sys.stderr)):
+    if not (is_open_terminal(sys.stdin) and is_open_terminal(sys.stderr) and is_in_foreground()):
         return True
     system = System()
     try:
@@ -43,6 +44,14 @@ def people_in(found: Found) -> str:
     people = found.world.get("people")
     count = len(people) if isinstance(people, list) else 0
     return f"{count} {'person' if count == 1 else 'people'}"
+
+
+def is_in_foreground() -> bool:
+    """Whether what is typed is for this process: one that is started with & would be stopped as it reads."""
+    try:
+        return os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
+    except (OSError, AttributeError):  # a terminal that controls no processes; Windows
+        return True
 
 
 def is_open_terminal(stream: object) -> bool:

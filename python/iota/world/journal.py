@@ -42,12 +42,13 @@ Call = Callable[[Callable[[], None]], None]  # calls a function on the thread th
 
 
 class Journal:
-    """The journal of one world. fresh: an older one is put aside, not read. Raises BusyError, OSError."""
+    """The journal of one world. fresh: an older one is put aside, not read. asks: a user at the terminal says whether it goes on. Raises
+    BusyError, OSError."""
 
-    def __init__(self, directory: Path, state: State, call: Call, fresh: bool = False) -> None:
+    def __init__(self, directory: Path, state: State, call: Call, fresh: bool = False, asks: bool = True) -> None:
         if not isinstance(state.system, System):
             raise TypeError(f"a journal keeps a System, not {SHORT.repr(state.system)}")
-        self._state, self._call, self._is_fresh = state, call, fresh
+        self._state, self._call, self._is_fresh, self._asks = state, call, fresh, asks
         self._log = Log(state.system)
         self._folder = Folder(directory)
         self._folder.lock()
@@ -113,7 +114,7 @@ class Journal:
         not overwritten."""
         try:
             found = None if self._is_fresh else find(self._folder)
-            if self._is_fresh or (found is not None and not ask_to_go_on(found)):
+            if self._is_fresh or (found is not None and self._asks and not ask_to_go_on(found)):
                 aside = self._folder.put_aside(self._folder.files())
                 self._why_anew = f"begins anew; the world before is in {aside}" if aside is not None else ""
                 self._is_fresh = True
@@ -153,7 +154,7 @@ class Journal:
             self._values = {}
             why = "begins anew: its script starts other bodies, joints or functions than before"
             return f"{why}. The world before is put aside in {self._folder.path}", True
-        self._give_functions(found.world.get("functions"))
+        self._give_functions(found.functions)
         try:
             recovered = recover(self._state.system, found, self._note_earlier)
         except (ValueError, RuntimeError) as error:  # of another version; a recording of the script runs already
@@ -186,12 +187,11 @@ class Journal:
             earlier.append((now, log.quick_snapshot()))
             del earlier[:-MOST_EARLIER]
 
-    def _give_functions(self, known: Any) -> None:
-        """Bonds may use functions that the script gave after its start: those are found by their names."""
+    def _give_functions(self, uses: dict[int, tuple[str, str]]) -> None:
+        """Bonds may use functions that the script gave after its start: those are found by their names. uses: kind and name by key."""
         there = {key for _, key, _, _ in self._log.functions()}
-        uses = known if isinstance(known, list) else []
-        self._names = {key: name for _, key, name in uses}
-        missing = {key: name for kind, key, name in uses if kind == "bond" and key not in there}
+        self._names = {key: name for key, (_, name) in uses.items()}
+        missing = {key: name for key, (kind, name) in uses.items() if kind == "bond" and key not in there}
         found = {name: function_called(name) for name in set(missing.values())}
         for key, name in missing.items():
             if (function := found[name]) is not None:

@@ -346,8 +346,8 @@ class World:
         """Keeps the world in a journal, from the begin of the run to its end. If the process is killed, the next one that
         keeps the same world there goes on where it was, with all edits, undo, controls and what `keep_state` names; at
         most 0.2 s are lost. The script has to start with the same bodies, joints, bonds and functions (not at the same
-        places): otherwise it begins anew, and the world before is put aside. fresh: so, too. `iota run --keep DIR` and
-        `--fresh` are the same.
+        places): otherwise it begins anew, and the world before is put aside. fresh: so, too. In a terminal it asks first,
+        for 10 s. `iota run --keep DIR` and `--fresh` are the same.
 
             world.keep("classroom")
             world.run()
@@ -363,7 +363,10 @@ class World:
         options = run_options.current()
         if options.keep is not None:  # of the first world
             directory, fresh, options.keep = options.keep, options.fresh, None
-        self._stepper.journal = Journal(Path(directory), self._state, self._inputs.call, fresh)
+        is_saved_script = options.kept is not None and options.kept.exists()  # whose world goes on anyway
+        self._stepper.journal = Journal(
+            Path(directory), self._state, self._inputs.call, fresh, asks=not is_saved_script
+        )
 
     def keep_state(self, key: str, value: Any) -> None:
         """Keeps a value of the script with the world, see `keep`: None, numbers, texts, lists and dicts (by text) of them,
