@@ -56,10 +56,11 @@ HELLO = frame(encode("hello", magic=CONSTANTS["protocol_magic"], version=SCHEMA[
 
 
 class Visitor:
-    """joined: s from the first packet to the first poses. refusals: of the server, before that."""
+    """joined: s from the first packet to the first poses. refusals: of the server, before that. heard: when something came last, s."""
 
     joined = 0.0
     refusals = 0
+    heard = 0.0
     is_dropped = False
 
     def join(self, url: str) -> None:
@@ -134,6 +135,7 @@ class Crowd(threading.Thread):
             is_open = bool(visitor.socket.recv(1 << 16))
         except OSError:
             is_open = False
+        visitor.heard = time.monotonic()
         if not is_open:
             visitor.is_dropped = True
             self._poll.unregister(visitor.socket)
@@ -242,10 +244,15 @@ def measure(rooms: int, visitors: int, gone: float) -> None:
             print(f"{len(back)} rooms killed one by one, back with a visitor after: {quantiles_of(back)}", flush=True)
             hosting.send_signal(signal.SIGKILL)
             hosting.wait()
-            dropped = sum(visitor.is_dropped for visitor in everybody)
+            there = [visitor for visitor in everybody if not visitor.is_dropped]
             time.sleep(gone)
-            dropped = sum(visitor.is_dropped for visitor in everybody) - dropped
-            print(f"iota rooms gone for {gone:.0f} s: {dropped} of {len(everybody)} visitors dropped", flush=True)
+            dropped = [visitor for visitor in there if visitor.is_dropped]
+            silence = time.monotonic() - min((v.heard for v in there if not v.is_dropped), default=0.0)
+            print(
+                f"iota rooms gone for {gone:.0f} s: {len(dropped)} of {len(there)} visitors dropped; "
+                f"the others heard of their rooms at most {silence:.1f} s before its end",
+                flush=True,
+            )
             hosting, url = start(folder, scripts)
             time.sleep(5)
             found = listed(url)
