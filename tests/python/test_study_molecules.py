@@ -11,6 +11,7 @@ import pytest
 
 import iota
 from iota.studies import bucky, molecule, soft_molecule
+from iota.world.shown import Label
 
 
 def test_the_ball_breathes_with_the_period_of_its_springs_and_never_collapses() -> None:
@@ -176,3 +177,18 @@ def test_the_rigid_molecule_hangs_beside_the_soft_one_and_a_push_of_that_makes_n
     for _ in range(480):
         world.step()
     assert "gained energy" not in capsys.readouterr().err
+
+
+def test_the_stands_tell_how_much_longer_the_soft_ring_hangs_and_it_is_nudged_when_it_is_calm() -> None:
+    world = soft_molecule.build()
+    labels = [thing for thing in world.drawings.things if isinstance(thing, Label)]
+    soft, rigid = world.system.positions[:24], world.system.positions[24:]
+    settle(world.system)
+    world.step()
+    told = {name: float(text.split()[0]) for name, text in (label.text.split(": ") for label in labels)}
+    for name, start in (("soft", slice(0, 24)), ("rigid", slice(24, 48))):
+        reach = molecule.NAIL.y - float(world.system.positions[start, 1].min())
+        assert told[name] == pytest.approx(soft_molecule.NANOMETERS * reach, abs=0.02)
+    assert told["soft"] > 1.1 * told["rigid"] and soft.shape == rigid.shape
+    world.advance(round(2 * soft_molecule.EVERY / world.dt))
+    assert world.system.energy.kinetic > 4e-3

@@ -104,6 +104,8 @@ class Study {
   async set(label: string, value: string): Promise<void> {
     const panel = this.tab.page.locator("#panel");
     if (!(await panel.evaluate((element) => (element as HTMLDetailsElement).open))) await panel.locator("summary").click();
+    const signs = panel.locator("fieldset", { hasText: label });
+    if (await signs.count() > 0) return signs.locator("label", { hasText: value }).click();
     const control = panel.locator("label", { hasText: label }).locator("input, select");
     if (await control.evaluate((element) => element.tagName === "SELECT")) await control.selectOption({ label: value });
     else await control.fill(value);
@@ -522,7 +524,10 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
   },
   playground: async (study) => {
     const { bodies } = study.facts;
+    await study.set("place", "ball");
     await study.set("place", "box");
+    expect(await study.tab.page.getByRole("radio", { name: "box" }).isChecked(), "the sign of a box is chosen").toBe(true);
+    expect(await study.tab.page.locator("#strip .action:has(svg)").allTextContents(), "actions with signs").toEqual(["undoz", "redoy", "rewindBackspace"]);
     await study.tab.page.mouse.click(120, 150);
     await study.knows("a box is there", (now) => now.bodies === bodies + 1);
     await study.does("z", "it is undone", (now) => now.bodies === bodies);
@@ -532,6 +537,7 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.does("k", "it is nailed", (now, before) => now.nails !== before.nails);
     await study.letGo();
     await study.tab.page.evaluate((id) => iota.select(id), body);
+    expect(await study.tab.page.locator("#strip .action:not(:has(svg))").count(), "actions without a sign").toBe(0);
     await study.does("x", "it is taken away", (now, before) => now.bodies < before.bodies);
   },
   pour: async (study) => {

@@ -10,6 +10,7 @@ import { id, part, visual } from "./test_world.ts";
 
 const rope = 0;
 const spring = 1;
+const ellipsoid = 2;
 
 function ties(...entries: Omit<TieEntity, "id">[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
   const poses = new PoseBuffer();
@@ -17,6 +18,7 @@ function ties(...entries: Omit<TieEntity, "id">[]): { view: TieView; poses: Pose
   const visuals = new Visuals((title) => expect.unreachable(title));
   visuals.create(visual(rope, "rope", part("cylinder", [0.01, 0.1], { material: "rope" })));
   visuals.create(visual(spring, "spring", part("cylinder", [0.02, 0.1])));
+  visuals.create(visual(ellipsoid, "ellipsoid", part("ellipsoid", [0.3, 0.06, 0.04])));
   const view = new TieView(poses, visuals);
   entries.forEach((entry, slot) => view.create({ id: id(slot), ...entry }));
   const pieces = () => {
@@ -52,6 +54,16 @@ describe("ties", () => {
     poses.rotation.set([1, 0, 0, 0], 4); // upside down: its point is below it now
     view.draw();
     expect(pieces()[0].middle.y).toBeCloseTo(0.5, 6);
+  });
+
+  it("an ellipsoid reaches from end to end of its spring, as wide as it was asked for", () => {
+    const { view, pieces } = ties({ kind: TieKind.spring, visual: ellipsoid, a: world(0, 0, 0), b: world(0.5, 0, 0), length: 0.2 });
+    view.draw();
+    const mesh = view.root.children[0] as InstancedMesh;
+    expect(pieces()[0].length).toBeCloseTo(0.5, 6);
+    const { min, max } = mesh.geometry.boundingBox!;
+    expect([max.y - min.y, max.z - min.z]).toEqual([expect.closeTo(0.06, 2), expect.closeTo(0.04, 2)]);
+    expect(mesh.geometry.getAttribute("position").count).toBeGreaterThan(60);
   });
 
   it("a taut rope is straight, a slack one hangs through by about its length", () => {

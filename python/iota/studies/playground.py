@@ -27,7 +27,9 @@ NAME = re.compile(r"[\w-]+")  # of a file, without its ending
 def build(folder: Path | None = None) -> iota.World:
     """The world of the study. folder: where files go, None: the current one."""
     system = iota.System(damping=0.1)
-    world = iota.World(system, title="playground: build with balls of 0.2 m, boxes and ropes", camera=CAMERA)
+    world = iota.World(
+        system, title="playground: click to place a box or a chain; drag, nail, tie and break", camera=CAMERA
+    )
     world.stage(ground="#8a9670")
     start(world)
     world.offer()

@@ -153,7 +153,8 @@ class Scene(Part):
         return self._visuals.looks_of(body)
 
     def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
-        """Sets the looks of springs, ropes or rods between bodies, as `draw`; an empty list hides them."""
+        """Sets the looks of springs, ropes or rods between bodies, as `draw`; an empty list hides them. A `looks.spring` is a coil, an
+        ellipsoid reaches from end to end; of other shapes the radius counts."""
         if kind not in TIES:
             raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
         self._visuals.assign_ties(kind, by_style(look))

@@ -3,8 +3,7 @@
 
 import { isAllowed, isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
 import { keyName, make } from "./dom.ts";
-
-const svgNamespace = "http://www.w3.org/2000/svg";
+import { makeSign, signOf } from "./signs.ts";
 
 /** An element of the bar that shows the present state of an entry. */
 export interface BarItem {
@@ -59,13 +58,9 @@ function makeButton(command: Command): BarItem {
 }
 
 function drawSign(button: HTMLButtonElement, sign: () => string): () => void {
-  const picture = document.createElementNS(svgNamespace, "svg");
-  picture.setAttribute("viewBox", "0 0 24 24");
-  picture.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(svgNamespace, "path");
-  picture.append(path);
+  const picture = makeSign("");
   button.append(picture);
-  return onChange(sign, (lines) => path.setAttribute("d", lines));
+  return onChange(sign, (lines) => picture.firstElementChild!.setAttribute("d", lines));
 }
 
 function writeLabel(button: HTMLButtonElement, command: Command): () => void {
@@ -99,10 +94,13 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
   };
 }
 
-/** A button with the script's label and key, for `body`; default: the action's body. */
+/** A button with the script's label and key, and a sign if its name has one, for `body`; default: the action's body. */
 export function makeActionButton(command: ScriptCommand, after?: () => void, body?: number): HTMLButtonElement {
-  const button = make("button", "action", command.title());
+  const button = make("button", "action");
   button.type = "button";
+  const sign = signOf(command.name.replace(/^action /, ""));
+  if (sign !== undefined) button.append(makeSign(sign));
+  button.append(make("span", "", command.title()));
   button.disabled = !isAllowed(command);
   button.title = command.refusal?.() || command.help || "";
   for (const key of command.keys ?? []) button.append(make("kbd", "", keyName(key)));

@@ -6,6 +6,7 @@ import type { FramePart } from "../page/viewer.ts";
 import { Role, WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
 import { byId, make } from "./dom.ts";
 import { drawPlot } from "./plot.ts";
+import { makeSign, signOf } from "./signs.ts";
 
 type PanelPage = Pick<Page, "world" | "session" | "viewer">;
 
@@ -209,13 +210,39 @@ function makeCheck(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
   } };
 }
 
+/** More options are a list. */
+const mostSigns = 6;
+
 function makeChoice(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const { options } = widget;
+  if (options.length <= mostSigns && options.every((option) => signOf(option) !== undefined)) return makeSigns(widget, send);
   const select = make("select");
   widget.options.forEach((option, index) => select.append(new Option(option, String(index))));
   select.addEventListener("change", () => send(select.selectedIndex));
   return { element: labeled(widget, select), show: ({ value, enabled }) => {
     select.selectedIndex = value;
     select.disabled = !enabled;
+  } };
+}
+
+/** A choice of what has signs: all are seen, and one press takes one. */
+function makeSigns({ id, label, options }: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const element = make("fieldset", "control signs");
+  const row = make("div", "row");
+  const inputs = options.map((option, index) => {
+    const input = make("input");
+    input.type = "radio";
+    input.name = `choice ${id.slot}`;
+    input.addEventListener("change", () => send(index));
+    const choice = make("label");
+    choice.append(input, makeSign(signOf(option)!), make("span", "", option));
+    row.append(choice);
+    return input;
+  });
+  element.append(make("legend", "", label), row);
+  return { element, show: ({ value, enabled }) => {
+    element.disabled = !enabled;
+    for (const [index, input] of inputs.entries()) input.checked = index === value;
   } };
 }
 

@@ -2,14 +2,14 @@
 // Draws springs as coils that stretch, ropes that sag when slack, and rods. A tie moves with its two ends, so it is
 // sent only once.
 
-import { Group, Matrix4, Quaternion, Vector3 } from "three";
+import { Group, Matrix4, Quaternion, Vector3, type BufferGeometry } from "three";
 import { TieKind, type TieEntity } from "../../protocol/generated.ts";
 import { placeOf } from "../anchors.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeCoil } from "../shapes/coil.ts";
-import { makeGeometry, sizeOf, type Shape } from "../shapes/shape.ts";
+import { makeGeometry, sizeOf, withSize, type Shape } from "../shapes/shape.ts";
 import { shapeKind } from "../shapes/shape_list.ts";
 import type { EntityView } from "./entity.ts";
 import type { Visuals, VisualUser } from "./visual.ts";
@@ -33,6 +33,14 @@ interface Tie {
 }
 
 const along = new Vector3(1, 0, 0);
+
+/** A torus is one turn of a spring's coil, and an ellipsoid reaches from end to end; with any other shape a tie is a thread. */
+function geometryOf(shape: Shape, kind: TieKind, radius: number, length: number): BufferGeometry {
+  if (kind === TieKind.rope) return makeGeometry({ ...shape, kind: shapeKind("capsule"), sizes: [radius, length] }, "coarse");
+  if (kind === TieKind.spring && shape.kind.name === "torus") return makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length);
+  if (shape.kind.name === "ellipsoid") return makeGeometry(withSize(shape, "size_x", length), "coarse");
+  return makeGeometry({ ...shape, kind: shapeKind("cylinder"), sizes: [radius, length, 0] }, "tiny");
+}
 
 export class TieView implements EntityView<TieEntity>, VisualUser {
   readonly root = new Group();
@@ -120,12 +128,8 @@ export class TieView implements EntityView<TieEntity>, VisualUser {
     const rope = kind === TieKind.rope;
     const pieces = rope ? ropePieces : 1;
     const radius = sizeOf(shape, "radius");
-    const length = Math.max(atRest / pieces, 2 * radius);
-    // A torus is one turn of a spring's coil; with any other shape the spring is a thread.
-    const geometry = kind === TieKind.spring && shape.kind.name === "torus"
-      ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
-      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, rope ? "coarse" : "tiny");
-    const pool = new InstancePool(geometry, materialOf(shape), 16, pieces).addTo(this.root);
+    const length = Math.max(atRest / pieces, 2 * radius, sizeOf(shape, "size_y"));
+    const pool = new InstancePool(geometryOf(shape, kind, radius, length), materialOf(shape), 16, pieces).addTo(this.root);
     return { visual, pool, length };
   }
 
