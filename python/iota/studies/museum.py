@@ -380,7 +380,10 @@ def cage(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
 
 def flag(world: iota.World, at: iota.Vec3, number: int) -> None:
     before = set(world.system.bodies)
-    weather.flag(world, at + (-0.38, 1.95, 0), COATS[number % len(COATS)])
+    cloth = weather.flag(world, at + (-0.38, 1.95, 0), COATS[number % len(COATS)])
+    world.system.field(
+        "current", group=cloth, velocity=weather.WIND, drag=weather.DRAG, speed=1.6, size=0.5, octaves=3, evolution=1.5
+    )
     world.draw([body for body in world.system.bodies if body not in before], [])  # its knots
 
 

@@ -54,8 +54,8 @@ def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> 
     return particle
 
 
-def flag(world: iota.World, corner: iota.Vec3) -> None:
-    """A cloth of springs on a pole. It tears where somebody pulls too hard."""
+def flag(world: iota.World, corner: iota.Vec3, color: str = "#c8842c") -> iota.Group:
+    """A cloth of springs on a pole. It tears where somebody pulls too hard. Returns its particles, for a wind."""
     system, cloth = world.system, iota.builder.Structure()
     row, column = np.indices((ROWS, COLUMNS))
     places = np.asarray(corner) + SPACING * np.stack([column, -row, 0 * row], axis=-1)
@@ -70,10 +70,11 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
     made = cloth.realize(system)
     cells = [(int(knots[r, c]), int(knots[r + 1, c])) for r in range(ROWS - 1) for c in range(COLUMNS - 1)]
     triangles = [t for k, below in cells for t in ((k, below, k + 1), (k + 1, below, below + 1))]
-    world.surface(list(made.points), triangles, threads=made.bonds, material="rubber", color="#c8842c")
+    world.surface(list(made.points), triangles, threads=made.bonds, material="rubber", color=color)
     world.add_strut(
         tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
     )
+    return made.groups["cloth"]
 
 
 def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
