@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import math
-
 import iota
 from iota import looks
+from iota.studies._stands import tripod
 from iota.studies._story import Story
 
 NAIL = (0.0, 2.1, 0.0)
@@ -38,18 +37,6 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     world.wall((0, 0, -1.3), (9.0, 3.4), color="#b4c2ba")
     world.stage(ground="#a98d70")
     world.camera = iota.Camera(position=(0.5, 1.35, 3.8), target=(0, 1.06, 0))
-
-
-def tripod(world: iota.World, eye: iota.Vec3) -> None:
-    """On the ground, with an eye to hang things from."""
-    x, y, z = eye
-    for foot in ((-0.8, 0, 0.5), (0.8, 0, 0.5), (0, 0, -1.0)):
-        side = math.hypot(foot[0], foot[2])
-        top = (x + 0.035 * foot[0] / side, y + 0.16, z + 0.035 * foot[2] / side)
-        world.add_strut((x + foot[0], 0, z + foot[2]), top, looks.cylinder(0.018, "wood"))
-    world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.05, "brass"))
-    world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
-    world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
 
 
 def script_break(world: iota.World, chain: list[iota.Body]) -> None:

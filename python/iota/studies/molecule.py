@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Literal
 
 import iota
-from iota import looks, shapelib
+from iota import shapelib
+from iota.studies._stands import arm
 from iota.studies._story import Story
 
 FILE = Path(__file__).with_name("cyclooctane.xyz")
@@ -62,15 +63,6 @@ def hang(world: iota.World, kind: Literal["rigid", "soft"], nail: iota.Vec3 = NA
 
 def present(world: iota.World) -> None:
     """The molecule's stand, and where one stands in front of it."""
-    stand(world)
+    arm(world, NAIL)
     world.stage("studio")
     world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=tuple(NAIL - (0, 0.53, 0.1)))
-
-
-def stand(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
-    """An arm on a post."""
-    x, y, z = nail
-    world.add_static(looks.sphere(0.03, "steel"), (x, y, z))
-    world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))
-    world.add_strut((x, 0, z - 0.5), (x, y + 0.06, z - 0.5), looks.cylinder(0.025, "wood"))
-    world.add_static(looks.box((0.7, 0.03, 0.5), "wood"), (x, 0.015, z - 0.5))

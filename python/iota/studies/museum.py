@@ -14,7 +14,6 @@ import iota
 from iota import looks, studies
 from iota.studies import (
     bucky,
-    chain,
     cradle_contact,
     crowd,
     evacuation,
@@ -25,6 +24,7 @@ from iota.studies import (
     undersea,
     weather,
 )
+from iota.studies._stands import arm, tripod
 from iota.world.levels import Level, Managed
 from iota.world.shown import Paint
 from iota.world.things import Frame
@@ -338,7 +338,7 @@ def blocks(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
 
 def hung_chain(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
     top, links = at + (0, 1.85, 0), 12 * number
-    chain.tripod(world, top)
+    tripod(world, top)
     made = iota.builder.chain(links, 1.5, top=top, direction=(-0.2, -0.9, 0.3)).realize(world.system).bodies
     world.draw(made, looks.chain_link(1.5 / links))
     return lambda: push(made[-1], (1.5, 0, 1.0))
@@ -357,14 +357,14 @@ def hung(
 def ring(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
     nail = at + (0, 1.35, 0)
     made = molecule.hang(world, "rigid", nail)
-    molecule.stand(world, nail)
+    arm(world, nail)
     return lambda: push(made.points[1].body, (0.6, 0, 0.3))
 
 
 def soft_ring(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
     nail = at + (0, 1.45, 0)
     made = soft_molecule.hang_softly(world, nail)
-    molecule.stand(world, nail)
+    arm(world, nail)
     return lambda: push(made.points[5].body, (1.5, 0, 1.0))
 
 
