@@ -30,3 +30,15 @@ it("keys of an emulated headset are not told to the script while it presents", a
   press("x");
   expect(sent).toHaveLength(4);
 });
+
+it.each([["text", "k", true], ["radio", "k", false], ["radio", "ArrowLeft", true], ["radio", " ", true], ["radio", "Enter", false]])("an input of type %s in focus keeps the key '%s': %s", async (type, key, keeps) => {
+  class Input {
+    readonly type = type;
+    closest = () => null;
+    matches = (selector: string) => selector.split(", ").some((one) => one === "input" || one === `[type=${type}]`);
+  }
+  vi.stubGlobal("HTMLElement", Input);
+  vi.stubGlobal("HTMLInputElement", Input);
+  const { keepsKey } = await import("../src/page/focus.ts");
+  expect(keepsKey({ target: new Input(), key } as never)).toBe(keeps);
+});

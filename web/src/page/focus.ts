@@ -3,6 +3,8 @@
 
 /** Keys that move a slider. */
 const sliderKeys = /^(Arrow|Home|End|Page)/;
+/** Keys that take another one of several options. */
+const radioKeys = /^(Arrow| )/;
 
 const owners: ((key: string) => boolean)[] = [];
 
@@ -17,6 +19,7 @@ export function keepsKey({ target, key }: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog[open]") !== null) return true;
   if (target instanceof HTMLInputElement && target.type === "range") return sliderKeys.test(key);
+  if (target.matches("[type=radio]")) return radioKeys.test(key);
   if (target.matches("button, summary, [type=checkbox]")) return key === " " || key === "Enter";
   return target.matches("input, select, textarea") && key !== "Escape";
 }
