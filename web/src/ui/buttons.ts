@@ -2,8 +2,7 @@
 // Buttons of commands: those of the bar, and the script's in the strip and the menu.
 
 import { isAllowed, isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
-import { keyName, make } from "./dom.ts";
-import { makeSign, signOf } from "./signs.ts";
+import { keyName, make, makeSign } from "./dom.ts";
 
 /** An element of the bar that shows the present state of an entry. */
 export interface BarItem {
@@ -98,9 +97,12 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
 export function makeActionButton(command: ScriptCommand, after?: () => void, body?: number): HTMLButtonElement {
   const button = make("button", "action");
   button.type = "button";
-  const sign = signOf(command.name.replace(/^action /, ""));
-  if (sign !== undefined) button.append(makeSign(sign));
-  button.append(make("span", "", command.title()));
+  const title = make("span", "", command.title());
+  button.append(title);
+  void import("./signs.ts").then(({ signOf }) => {
+    const sign = signOf(command.name.replace(/^action /, ""));
+    if (sign !== undefined) title.before(makeSign(sign));
+  });
   button.disabled = !isAllowed(command);
   button.title = command.refusal?.() || command.help || "";
   for (const key of command.keys ?? []) button.append(make("kbd", "", keyName(key)));

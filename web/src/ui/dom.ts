@@ -30,3 +30,16 @@ export function placeNear(element: HTMLElement, x: number, y: number, gap: numbe
   const top = y + gap + height + 8 > innerHeight ? y - gap - height : y + gap;
   element.style.transform = `translate(${Math.round(Math.max(8, left))}px, ${Math.round(Math.max(8, top))}px)`;
 }
+
+const svgNamespace = "http://www.w3.org/2000/svg";
+
+/** A sign of lines in a 24 x 24 square, as the path of an SVG. */
+export function makeSign(lines: string): SVGSVGElement {
+  const picture = document.createElementNS(svgNamespace, "svg");
+  picture.setAttribute("viewBox", "0 0 24 24");
+  picture.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(svgNamespace, "path");
+  path.setAttribute("d", lines);
+  picture.append(path);
+  return picture;
+}

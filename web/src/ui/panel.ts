@@ -4,9 +4,9 @@
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
 import { Role, WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
-import { byId, make } from "./dom.ts";
+import { byId, make, makeSign } from "./dom.ts";
 import { drawPlot } from "./plot.ts";
-import { makeSign, signOf } from "./signs.ts";
+import { signOf } from "./signs.ts";
 
 type PanelPage = Pick<Page, "world" | "session" | "viewer">;
 
