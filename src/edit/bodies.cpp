@@ -24,9 +24,6 @@ namespace iota::edit {
 
 using model::none;
 
-namespace {
-
-/// Static and scripted bodies have the velocity with which their places are set.
 void require_own_motion(BodyKind kind, const char* what, const Vec3& value) {
   if (value == Vec3{} || (kind != BodyKind::static_ && kind != BodyKind::scripted)) return;
   throw std::invalid_argument(
@@ -36,6 +33,8 @@ void require_own_motion(BodyKind kind, const char* what, const Vec3& value) {
                  ": a scripted body goes where its places are set, and has the velocity of that: set its position, or "
                  "set_pose, before each step"));
 }
+
+namespace {
 
 Mat3 to_mat3(const Matrix3& rows) {
   Mat3 m;

@@ -88,6 +88,9 @@ void apply(Editor&, const SetBodyVelocity&);
 void apply(Editor&, const SetAngularVelocity&);
 void apply(Editor&, const Destroy<BodyId>&);
 
+/// Throws std::invalid_argument for a value other than 0: static and scripted bodies have the velocity with which their places
+/// are set.
+void require_own_motion(BodyKind, const char* what, const Vec3& value);
 /// Throws std::invalid_argument for an obstacle. what: that cannot be done with it, as "have particles".
 void refuse_obstacle(const model::Model&, std::uint32_t body, const char* what);
 /// Throws if a body's points could not keep an angular velocity.

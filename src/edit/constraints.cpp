@@ -9,6 +9,7 @@
 #include "shape/shape.h"
 
 #include <cmath>
+#include <utility>
 
 namespace iota::edit {
 
@@ -101,9 +102,14 @@ void wake(Editor& e, std::uint32_t constraint) {
   if (rests) constraint_changed(e, constraint);
 }
 
-/// Bodies jump where a new stop, rope or rod asks for it.
+bool is_on_surface(ConstraintKind kind) {
+  return kind == ConstraintKind::surface || kind == ConstraintKind::inside || kind == ConstraintKind::outside ||
+         kind == ConstraintKind::touching || kind == ConstraintKind::apart;
+}
+
+/// Bodies jump where a new stop, rope, rod or surface asks for it.
 void note_jump(model::Model& model, std::uint32_t slot) {
-  constexpr double far = 1e-6;  // relative
+  constexpr double far = 1e-6, far_from_surface = 1e-3;  // relative
   const ingredient::Constraint& c = model.constraints[slot];
   const char* const kind = ingredient::info(c.kind).name;
   if (c.kind == ConstraintKind::rope || c.kind == ConstraintKind::rod) {
@@ -114,6 +120,8 @@ void note_jump(model::Model& model, std::uint32_t slot) {
       model.notes.push_back(text(kind, " ", slot, " is ", c.length, " m long and its ends are ", distance,
                                  " m apart: the next step moves them ", is_short ? "together" : "apart"));
   }
+  if (is_on_surface(c.kind) && ingredient::calc_violation(model, slot).relative > far_from_surface)
+    model.notes.push_back(text(kind, " ", slot, " does not hold yet: the next step moves its bodies until it does"));
   for (const JointCoordinate which : joint_coordinates) {
     const CoordinateOptions& o = c.options[static_cast<std::size_t>(which)];
     if (!has_coordinate(c.kind, which) || !(o.lower <= o.upper)) continue;
@@ -329,7 +337,9 @@ void apply(Editor& e, const SetLength& c) {
         text("a ", ingredient::info(kind).name, " has no length; rods, ropes and couplings have"));
   else if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
-  model.constraints[slot].length = c.value;
+  constexpr double jump = 0.1;  // of the length: a winch changes it by less in each step
+  const double before = std::exchange(model.constraints[slot].length, c.value);
+  if (std::abs(c.value - before) > jump * c.value) note_jump(model, slot);
   model.changed_constraints.note(slot);
   wake(e, slot);
 }

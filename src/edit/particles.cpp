@@ -43,6 +43,7 @@ ParticleId apply(Editor& e, const CreateParticle& c) {
   refuse_obstacle(model, body, "have particles");
   require_finite("position", c.position);
   require_finite("velocity", c.velocity);
+  require_own_motion(model.bodies[body].kind, "velocity", c.velocity);
   if (c.mass == 0) return make_marker(e, body, c.position);
   require_mass("mass", c.mass);
   const std::uint32_t before = model.bodies[body].count;
@@ -90,6 +91,7 @@ void apply(Editor& e, const SetVelocity& c) {
   model::Model& model = e.model;
   const std::uint32_t particle = e.require(c.particle);
   require_finite("velocity", c.value);
+  require_own_motion(model.bodies[model.particles[particle].body].kind, "velocity", c.value);
   model.rings[model.particles[particle].ring].velocity = c.value;
   e.mark_velocity_dirty(particle);
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import pytest
 
@@ -196,3 +197,40 @@ def test_a_rod_that_moves_its_ends_in_the_next_step_says_so(length: float, way: 
     p, q = system.body().particle((0, 0, 0)), system.body().particle((3, 0, 0))
     system.rod(p, q, length)
     assert any(w.endswith(f"the next step moves them {way}") for w in system.step(1 / 60).warnings)
+
+
+@pytest.mark.parametrize("kind", ["scripted", "static"])
+def test_a_particle_of_a_body_that_does_not_move_by_itself_has_no_velocity_of_its_own(
+    kind: Literal["scripted", "static"],
+) -> None:
+    system = iota.System()
+    body = system.body(kind)
+    particle = body.particle((0, 0, 0))
+    match = "a scripted body goes where its places are set" if kind == "scripted" else "a static body does not move"
+    with pytest.raises(ValueError, match=match):
+        particle.velocity = (1, 0, 0)
+    with pytest.raises(ValueError, match=match):
+        body.particle((1, 0, 0), velocity=(1, 0, 0))
+    particle.velocity = (0, 0, 0)
+    assert particle.velocity == (0, 0, 0)
+
+
+def test_a_rope_whose_length_changes_by_a_leap_says_that_it_moves_its_ends_and_a_winch_does_not() -> None:
+    system = iota.System()
+    top, weight = system.body().particle((0, 0, 0)), system.body().particle((0, -1, 0))
+    top.nail()
+    rope = system.rope(top, weight, 1.0)
+    for k in range(20):
+        rope.length = 1 - 0.01 * k
+        assert system.step(1 / 60).warnings == []
+    rope.length = 0.3
+    assert any(w.endswith("the next step moves them together") for w in system.step(1 / 60).warnings)
+
+
+def test_a_point_that_is_far_outside_of_its_room_says_that_it_moves_there() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    far, near = system.body().particle((5, 0, 0)), system.body().particle((0.5, 0, 0))
+    system.inside(near, iota.Sphere(1))
+    assert system.step(1 / 60).warnings == []
+    system.inside(far, iota.Sphere(1))
+    assert any(w.endswith("the next step moves its bodies until it does") for w in system.step(1 / 60).warnings)
