@@ -26,10 +26,11 @@ struct JointedWorld {
     for (int i = 0; i < 10; ++i) add_body();
   }
   void add_body() {
-    const BodyId body = system.bodies().create({.kind = index(8) == 0 ? BodyKind::static_ : BodyKind::dynamic});
+    const bool is_fixed = index(8) == 0;
+    const BodyId body = system.bodies().create({.kind = is_fixed ? BodyKind::static_ : BodyKind::dynamic});
     const std::size_t count = 1 + index(5);
     for (std::size_t i = 0; i < count; ++i)
-      system.particles().create(body, point(), std::pow(10, uniform(-1, 1)), point());
+      system.particles().create(body, point(), std::pow(10, uniform(-1, 1)), is_fixed ? Vec3{} : point());
   }
   BodyId any_body() {
     const auto all = system.bodies().ids();
