@@ -275,14 +275,15 @@ void Heap::store(Problem& problem, double h, HeapReport& report) {
   report.external_work += points.external_work, report.depth = points.depth;
 }
 
-bool Heap::is_shot(const Problem& problem, double h, double gap) const {
+bool Heap::has_diverged(const Problem& problem, double h, double gap_before, double gap) const {
   constexpr double far = 10;
   double fastest = h * norm(problem.gravity), reach = 0;
   for (const Vec3& v : problem.velocity) fastest = std::max(fastest, norm(v));
   for (const HeapBody& body : found_.all)
     for (std::uint32_t k = 0; k < body.count; ++k) reach = std::max(reach, norm(body.arms[k]));
-  const double most = far * (h * fastest + gap + reach);
-  return !std::ranges::all_of(found_.all, [&](const HeapBody& body) { return norm(body.moved) <= most; });
+  const double most = far * (h * fastest + reach) + gap_before;
+  return !(gap <= gap_before + reach) ||
+         !std::ranges::all_of(found_.all, [&](const HeapBody& body) { return norm(body.moved) <= most; });
 }
 
 HeapReport Heap::advance(Problem& problem, double h, double from, double fraction, int sub_steps) {
@@ -296,7 +297,7 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   const auto way_at = [&](int k) { return from + (fraction - from) * k / sub_steps; };
   ties_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
   forces_.refresh(problem, found_, motions_, part, way_at(0), way_at(1));
-  const double gap = ties_.worst_gap();
+  const double gap_before = ties_.worst_gap();
   for (int k = 0; k < sub_steps; ++k) {
     push(part, problem, report);
     points_.warm(motions_);
@@ -316,8 +317,10 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   points_.rebound(motions_, h * norm(problem.gravity));
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
+  const double gap = ties_.worst_gap();
+  const bool are_copies_apart = ties_.are_copies_apart();
   report.are_joints_met = ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1));
-  report.has_diverged = !report.are_joints_met && is_shot(problem, h, gap);
+  report.has_diverged = (!report.are_joints_met && are_copies_apart) || has_diverged(problem, h, gap_before, gap);
   if (report.has_diverged) return report;
   store(problem, h, report);
   return report;

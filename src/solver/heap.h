@@ -19,7 +19,7 @@ struct HeapReport {
   double depth = 0;          ///< largest overlap at the end, m
   double lifted = 0;         ///< potential energy by pushing overlaps apart, which is not motion, J
   bool are_joints_met = true;
-  bool has_diverged = false;  ///< joints that cannot be met drove the sweeps without bound: nothing has moved
+  bool has_diverged = false;  ///< joints that cannot be met drove the sweeps without bound: it has not moved anything
 };
 
 /// A problem of rigid bodies that contacts and joints connect, beyond the size at which the equations of all contacts can be
@@ -63,8 +63,9 @@ class Heap {
   void sweep(const Problem&, double h, const HeapSoftness&, int times);
   double power_of(const Vec3& gravity) const;  ///< W
   void store(Problem&, double h, HeapReport&);
-  /// Whether a body has gone much further than it could by the motions of all and to close this gap of a joint, m.
-  bool is_shot(const Problem&, double h, double gap) const;
+  /// Whether a joint has opened by more than the size of a body, from a gap of so many m, or a body has gone much further than it
+  /// could by the motions of all and to close it.
+  bool has_diverged(const Problem&, double h, double gap_before, double gap) const;
 
   HeapBodies found_;
   HeapTies ties_;

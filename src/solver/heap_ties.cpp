@@ -254,6 +254,13 @@ double HeapTies::worst_gap() const {
   return worst;
 }
 
+bool HeapTies::are_copies_apart() const {
+  constexpr double far = 1e-2;  // of the way to the point
+  return std::ranges::any_of(ties_, [](const Tie& tie) {
+    return tie.pool == of_copies && !(norm({tie.value[0], tie.value[1], tie.value[2]}) <= far * tie.size);
+  });
+}
+
 bool HeapTies::are_met() const {
   constexpr double finest = 1e-11;
   return std::all_of(equations_.begin(), equations_.end(), [&](std::uint32_t k) {

@@ -44,6 +44,8 @@ class HeapTies {
   void refresh(const Problem&, const HeapBodies&, std::span<const HeapMotion>, double h, double from, double to);
   /// The largest gap of an equation, m.
   double worst_gap() const;
+  /// Whether a body has a copy of a shared point beside it, which would be a point of it in the next step.
+  bool are_copies_apart() const;
   void warm(std::span<HeapMotion>);
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
   /// Ends a sub-step. Returns the work of rows that drive, J.
