@@ -28,7 +28,7 @@ def build(folder: Path | None = None) -> iota.World:
     """The world of the study. folder: where files go, None: the current one."""
     system = iota.System(damping=0.1)
     world = iota.World(
-        system, title="playground: click to place a box or a chain; drag, nail, tie and break", camera=CAMERA
+        system, title="playground: place boxes and balls of 0.2 m; drag, nail, tie and break", camera=CAMERA
     )
     world.stage(ground="#8a9670")
     start(world)

@@ -13,7 +13,7 @@ from iota import looks
 COLUMNS, ROWS, SPACING = 13, 8, 0.065  # of the flag; m
 BEADS, BEAD = 80, 0.03  # radius, m
 NEAR, STACKED = 0.07, 0.066  # m: so near, beads push each other away; between neighbors at the start
-BOWL, WIRE = 0.26, 0.004  # radius, and that of its wire, m
+BOWL, WIRE = 0.26, 0.008  # radius, and that of its wire, m
 MIDDLE = iota.Vec3(0.15, 1.05, 0)  # of the bowl, m
 NOZZLE = iota.Vec3(0.85, 0.6, 0.1)  # of the fountain, m
 WIND = iota.Vec3(4.0, 0.5, 0.5)  # m/s
@@ -107,7 +107,7 @@ def beads(world: iota.World, middle: iota.Vec3) -> None:
         bead.color = (0.15, 0.45 + 0.4 * number / BEADS, 0.75)
     system.pair_force("soft_repulsion", cutoff=NEAR, group=group, stiffness=400, length=NEAR)
     system.field("wind", group=group, drag=0.2)
-    world.add_static(looks.torus(BOWL, 2 * WIRE, "steel"), tuple(middle), (0.5**0.5, 0, 0, 0.5**0.5))
+    world.add_static(looks.torus(BOWL, WIRE, "steel"), tuple(middle), (0.5**0.5, 0, 0, 0.5**0.5))
     world.surface(*half_ball(BOWL), at=middle, color="#a9d0dfa0", material="glass")
     world.add_strut((middle.x, 0, middle.z), (middle.x, middle.y - BOWL, middle.z), looks.cylinder(0.02, "steel"))
 
