@@ -320,8 +320,8 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
   const double gap = ties_.worst_gap();
   const bool are_copies_apart = ties_.are_copies_apart();
   report.are_joints_met = ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1));
-  report.has_diverged = (!report.are_joints_met && are_copies_apart) || has_diverged(problem, h, gap_before, gap);
-  if (report.has_diverged) return report;
+  if ((!report.are_joints_met && are_copies_apart) || has_diverged(problem, h, gap_before, gap))
+    return {.are_joints_met = false, .has_diverged = true};
   store(problem, h, report);
   return report;
 }

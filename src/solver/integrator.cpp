@@ -290,11 +290,8 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   const bool is_free = is_alone && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   const std::optional<RigidMotion> free =
       (heap_->has_joints() || heap_->has_forces()) && is_free ? std::optional(rigid_motion_of(problem)) : std::nullopt;
-  HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
-  if (swept.has_diverged) {
-    swept = {.are_joints_met = false};
-    stay(problem, part.h, is_alone);
-  }
+  const HeapReport swept = heap_->advance(problem, part.h, part.from, part.to, sub_steps);
+  if (swept.has_diverged) stay(problem, part.h, is_alone);
   track(problem, part.to);
   // A joint that is open within the step has its forces at two places, and is closed at its end. A spring has them where it was.
   if (free) keep_momenta(problem, {*free}, part.h);
