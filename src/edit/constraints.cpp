@@ -102,16 +102,12 @@ void wake(Editor& e, std::uint32_t constraint) {
   if (rests) constraint_changed(e, constraint);
 }
 
-bool is_on_surface(ConstraintKind kind) {
-  return kind == ConstraintKind::surface || kind == ConstraintKind::inside || kind == ConstraintKind::outside ||
-         kind == ConstraintKind::touching || kind == ConstraintKind::apart;
-}
-
 /// Bodies jump where a new stop, rope, rod or surface asks for it.
 void note_jump(model::Model& model, std::uint32_t slot) {
   constexpr double far = 1e-6, far_from_surface = 1e-3;  // relative
   const ingredient::Constraint& c = model.constraints[slot];
   const char* const kind = ingredient::info(c.kind).name;
+  const auto form = ingredient::info(c.kind).form;
   if (c.kind == ConstraintKind::rope || c.kind == ConstraintKind::rod) {
     const double distance =
         norm(position_of(model, c, ingredient::a_origin) - position_of(model, c, ingredient::b_origin));
@@ -120,7 +116,9 @@ void note_jump(model::Model& model, std::uint32_t slot) {
       model.notes.push_back(text(kind, " ", slot, " is ", c.length, " m long and its ends are ", distance,
                                  " m apart: the next step moves them ", is_short ? "together" : "apart"));
   }
-  if (is_on_surface(c.kind) && ingredient::calc_violation(model, slot).relative > far_from_surface)
+  using Form = ingredient::ConstraintKindInfo::Form;
+  if ((form == Form::surface || form == Form::surface_pair) &&
+      ingredient::calc_violation(model, slot).relative > far_from_surface)
     model.notes.push_back(text(kind, " ", slot, " does not hold yet: the next step moves its bodies until it does"));
   for (const JointCoordinate which : joint_coordinates) {
     const CoordinateOptions& o = c.options[static_cast<std::size_t>(which)];

@@ -252,10 +252,7 @@ struct Resistance {
 void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Resistance& by,
                     const Contacts::Motion& motion, std::uint32_t first) {
   double push = 0;
-  for (const std::uint32_t slot : slots) {
-    const Contact& c = model.contacts[slot];
-    push += c.energy != 0 || c.is_of_sweeps ? c.push : 0;
-  }
+  for (const std::uint32_t slot : slots) push += model.contacts[slot].has_left() ? 0 : model.contacts[slot].push;
   for (const std::uint32_t slot : slots) {
     Contact& c = model.contacts[slot];
     const double radius = std::max(c.ball, c.radius - c.ball);
@@ -639,7 +636,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const double drag = std::hypot(l[1], l[2]), most = row.largest_hold(l);
     if (c.static_friction > c.friction && drag > most) l[1] *= most / drag, l[2] *= most / drag;
     row.is_strained = c.energy != 0 || !c.is_of_sweeps;
-    if (c.energy == 0 && row.is_strained) std::fill_n(l, 3, 0.0);  // it has left
+    if (c.has_left()) std::fill_n(l, 3, 0.0);
     row.unstored = c.energy - solver::strain_energy(row, l);
   });
 }

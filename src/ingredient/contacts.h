@@ -56,6 +56,8 @@ struct Contact : model::Ends {
   /// From the plane or what is round to the center, of d between the origin and the center.
   Vec3 off(const Vec3& d) const;
   bool carries() const { return push != 0 || drag != Vec3{}; }
+  /// It holds no more, though it carried in the last step. Sweeps, which strain nothing, do not end it.
+  bool has_left() const { return energy == 0 && is_of_sweeps == 0; }
   /// Also in a part of the step only.
   bool has_touched() const { return carries() || impulse != Vec3{}; }
 };
