@@ -640,6 +640,21 @@ def test_what_is_handed_over_is_on_the_disk_at_once_and_the_rest_of_a_burst_by_o
     assert synced.acquire(blocking=False) and not synced.acquire(blocking=False)
 
 
+def test_a_world_begins_when_its_first_state_is_on_the_disk_unless_the_disk_hangs(
+    make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fsync, hangs = os.fsync, threading.Event()
+    monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), fsync(file)))
+    make()
+    assert files(tmp_path / "kept"), "nothing is lost, whenever it is killed"
+    monkeypatch.setattr(os, "fsync", lambda file: (hangs.wait(), fsync(file)))
+    monkeypatch.setattr(journals, "FIRST", 0.1)
+    second = make(folder="hanging")
+    second.steps(3)
+    assert not files(tmp_path / "hanging") and second.system.time > 0
+    hangs.set()
+
+
 def test_an_error_at_any_call_of_the_disk_leaves_a_journal_that_leads_to_a_true_state(
     make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -67,11 +67,11 @@ class Writer:
         has_gap, self._is_behind = self._is_behind, False
         self._queue.put((list(records), begins, has_gap))
 
-    def flush(self) -> None:
-        """Waits until the thread has taken all records."""
+    def flush(self, longest: float | None = None) -> None:
+        """Waits until the thread has written all records, but not longer than that (s)."""
         done = threading.Event()
         self._queue.put(done)
-        done.wait()
+        done.wait(longest)
 
     def close(self) -> None:
         """Writes what waits, to the disk."""
