@@ -71,7 +71,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for_each_ingredient([&](auto& i) { i.owner = ++owner; });
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
-  for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
+  place_nodes(model);
   thread_local solver::KnownOrder order;
   orders.find(nodes_.rings, order);
   integrator_->compile(problem_, order);
@@ -86,6 +86,12 @@ bool Island::has_no_free_body(const Model& model) const {
 
 void Island::carry_along(Model& model, MovedRings& moved) {
   for_each_ingredient([&](const auto& i) { i.accept_assigned(model, nodes_); });
+  if (pass_on_assigned(model, moved)) return;
+  store_carried(model, moved);
+  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has other places
+}
+
+bool Island::pass_on_assigned(Model& model, MovedRings& moved) {
   bool differs = false;
   std::vector<Vec3> impulses;
   for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
@@ -97,13 +103,17 @@ void Island::carry_along(Model& model, MovedRings& moved) {
     for (const auto& [node, weight] : nodes_.carriers[i])
       if (weight != 0) impulses[node] += (weight * model.particles[p].mass) * ahead;
   }
-  if (differs && !idle_) {
-    load(model, 0);
-    integrator_->project_velocities(problem_, 0, impulses);
-    return store_projection(model, false, moved);
-  }
-  store_carried(model, moved);
-  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has other places
+  if (!differs || idle_) return false;
+  load(model, 0);
+  integrator_->project_velocities(problem_, 0, impulses);
+  store_projection(model, false, moved);
+  return true;
+}
+
+void Island::project_assigned(Model& model) {
+  MovedRings moved{.is_asked_for = false};
+  (void)pass_on_assigned(model, moved);
+  (void)project(model, false);
 }
 
 // Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and
@@ -337,7 +347,14 @@ void Island::commit_motion(Model& model, double h) {
   update_sleep_timer(model, h, last_);
 }
 
-void Island::forget_past() { integrator_->forget_past(problem_); }
+void Island::forget_past(const Model& model) {
+  place_nodes(model);
+  integrator_->forget_past(problem_);
+}
+
+void Island::place_nodes(const Model& model) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
+}
 
 IslandReport Island::report(const Model& model, const solver::AdvanceReport& last) const {
   IslandReport report{.points = static_cast<std::uint32_t>(nodes_.size()),
@@ -390,6 +407,7 @@ bool Island::project_all(Model& model, bool positions) {
 bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved) {
   if (nodes_.bodies.empty()) return true;  // inactive
   articulate(model).try_again();
+  (void)pass_on_assigned(model, moved);
   load(model, 0);
   const std::vector<std::uint32_t> edited = nodes_of(model, bodies);
   const bool is_local = !idle_ && !edited.empty() && integrator_->project_locally(problem_, positions, edited);

@@ -126,7 +126,7 @@ class Island {
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
 
-  void forget_past();  ///< the next step depends on the model alone
+  void forget_past(const model::Model&);  ///< the next step depends on the model alone
 
   bool is_driven(const model::Model&) const;  ///< by prescribed motion
 
@@ -149,6 +149,8 @@ class Island {
   /// Projects velocities, and before that positions on request, on the constraints. False if no position satisfies all
   /// of them.
   bool project(model::Model&, bool positions);
+  /// The same of velocities that were assigned, those of carried particles included: their momentum counts.
+  void project_assigned(model::Model&);
 
   /// The same after an edit of some bodies (all alive), only around them if that is sufficient.
   bool settle(model::Model&, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved);
@@ -171,6 +173,9 @@ class Island {
   }
 
   void clear();
+  void place_nodes(const model::Model&);
+  /// Passes the momentum of carried particles with velocities of their own to the basis. False if there are none.
+  bool pass_on_assigned(model::Model&, MovedRings&);
   Vec3 choose_origin(const model::Model&) const;
   bool has_finite_motion() const;
   void add_node(const model::Model&, std::uint32_t ring, std::uint32_t beside,

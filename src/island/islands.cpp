@@ -25,10 +25,10 @@ void Islands::renew(Model& model) {
   auto& [rings, ends, work] = model.eliminations;
   rings.clear(), ends.clear(), work.clear();
   for (const auto& home : home_of_leader_) {
-    if (!home) continue;
-    home->island.forget_past();
+    if (!home || !home->is_built) continue;
+    home->island.forget_past(model);
     // An order of few points is found again: it depends on the structure alone, unlike that of a dissection by places.
-    if (!home->is_built || home->is_small() || !home->island.keeps_order()) continue;
+    if (home->is_small() || !home->island.keeps_order()) continue;
     home->island.append_order(rings);
     ends.push_back(static_cast<std::uint32_t>(rings.size())), work.push_back(home->island.order_work());
   }

@@ -164,8 +164,10 @@ double set_reference_lengths(Problem& problem) {
 
 }  // namespace
 
+void Assembly::measure(Problem& problem) { reference_length_ = set_reference_lengths(problem); }
+
 bool Assembly::compile(Problem& problem, const KnownOrder& order) {
-  reference_length_ = set_reference_lengths(problem);
+  measure(problem);
   if (const std::uint64_t before = std::exchange(structure_, problem.structure());
       before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() &&
       pattern_ != own_pattern_) {
@@ -226,7 +228,7 @@ void Assembly::follow(Problem& problem) {
     compile(problem);
     return;
   }
-  reference_length_ = set_reference_lengths(problem);
+  measure(problem);
   factor_.grow(*pattern_);
   forget_factors();
   set_slots_of_nodes(problem);

@@ -23,15 +23,18 @@ constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<
                            std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
                            std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
 
+constexpr int unlimited = std::numeric_limits<int>::max();
+constexpr auto never = std::chrono::steady_clock::time_point::max();
+
 int most_iterations(double budget, double cost) {
   const double most = budget / std::max(cost, 1.0);
-  return most < 1e6 ? static_cast<int>(most) : std::numeric_limits<int>::max();
+  return most < 1e6 ? static_cast<int>(most) : unlimited;
 }
 
 }  // namespace
 
 void Integrator::compile(Problem& problem, const KnownOrder& order) {
-  forget_past(problem);
+  forget_steps(problem);
   is_due_ = !problem.items_of<ContactConstraint>().empty();
   if (!is_due_) return analyze(problem, order);
   if (!problem.has_slots()) problem.forget_slots();  // fit_pools resizes them
@@ -41,6 +44,12 @@ void Integrator::compile(Problem& problem, const KnownOrder& order) {
 }
 
 void Integrator::forget_past(Problem& problem) {
+  forget_steps(problem);
+  if (!is_due_) newton_.measure(problem);
+  reference_length_ = is_due_ ? mean_reference_length(problem) : newton_.reference_length();
+}
+
+void Integrator::forget_steps(Problem& problem) {
   newton_.forget_factors();
   may_be_in_pieces_ = false, pieces_.clear();
   problem.forget_acting();
@@ -95,6 +104,13 @@ void begin_strain(Problem& problem) {
 }  // namespace
 
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
+  const AdvanceReport report = advance_within_limits(problem, h, settings);
+  // Projections between steps have none. With the deadline of a step that was long ago, each of them was given up at once.
+  iterations_left_ = unlimited, settings_.deadline = never;
+  return report;
+}
+
+AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, const IntegratorSettings& settings) {
   AdvanceReport report;
   if (settings.max_turn != settings_.max_turn) least_turn_cosine_ = std::cos(settings.max_turn);
   settings_ = settings;
@@ -110,7 +126,6 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
   begin_strain(problem);
   make_ready(problem);
   newton_.add_times_to(times_of_thread());
-  constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
   constexpr double of_joints = 4;  // a blow of a machine may take longer than one of what lies about
   if (may_sweep_) {
@@ -140,7 +155,6 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
     report.cut_short = true;
     report.gap = problem.worst_gap(problem.position.data());
   }
-  iterations_left_ = unlimited;
   newton_.add_times_to(nullptr);
   return report;
 }
@@ -465,7 +479,7 @@ void Integrator::track(Problem& problem, double fraction) {
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   const int left = iterations_left_, allowed = std::max(left, resort_left_);
   iterations_left_ = allowed;
-  settings_.deadline = std::chrono::steady_clock::time_point::max();
+  settings_.deadline = never;
   has_corrected_ = is_instant_ = false;
   constexpr int pieces = IntegratorSettings::last_resort_pieces;
   int taken = 0;
@@ -619,7 +633,8 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
   }
   Stage limited = stage;
   limited.iterations_left = iterations_left_;
-  if (settings_.scheme == Scheme::end_point && !stage.is_mid_point() && !problem.items_of<ContactConstraint>().empty())
+  const bool is_end_point = !stage.is_mid_point() && !stage.is_projection();
+  if (settings_.scheme == Scheme::end_point && is_end_point && !problem.items_of<ContactConstraint>().empty())
     limited.max_iterations = IntegratorSettings::contact_iterations;
   problem.begin_forces(stage.h);
   const NewtonReport newton = newton_.solve(problem, limited);
@@ -635,8 +650,7 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
 
 // The last resort has no deadline.
 bool Integrator::is_out_of_budget() {
-  using Clock = std::chrono::steady_clock;
-  if (settings_.deadline != Clock::time_point::max() && Clock::now() > settings_.deadline) iterations_left_ = 0;
+  if (settings_.deadline != never && std::chrono::steady_clock::now() > settings_.deadline) iterations_left_ = 0;
   if (iterations_left_ <= 0) settings_.patience = 0;  // no more halving
   return iterations_left_ <= 0;
 }

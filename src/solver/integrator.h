@@ -77,7 +77,7 @@ class Integrator {
     return !is_due_ && newton_.pattern().calc_work() <= most * order_work();
   }
   double order_work() const { return newton_.pattern().usual_work(); }
-  /// The next step depends on the problem alone, to the bit.
+  /// The next step depends on the problem alone, to the bit, as of one that is compiled now.
   void forget_past(Problem&);
   double reference_length() const { return reference_length_; }  ///< of what is compiled, m
 
@@ -90,6 +90,8 @@ class Integrator {
   }
 
  private:
+  void forget_steps(Problem&);
+  AdvanceReport advance_within_limits(Problem&, double h, const IntegratorSettings&);
   /// A part of the step; the whole one is from 0 to 1.
   struct Part {
     double from = 0, to = 1;

@@ -225,12 +225,15 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
         return;
       const Mover& other = mover_at(model, outlines, body);
       const double apart = norm(other.place - mover.place) - mover.reach - other.reach;
-      if (mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
-          apart <= within(mover, &other, mover.steps) &&
-          touch_each_other(model, outlines, {std::min(body, mover.body), std::max(body, mover.body)}))
-        ingredient::Strides::note_near(model, mover.body);
-      if (apart > within(mover, &other)) return;
-      pairs_.push_back({std::min(body, mover.body), std::max(body, mover.body)});
+      const bool is_near = apart <= within(mover, &other);
+      const bool may_be_met = mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
+                              apart <= within(mover, &other, mover.steps);
+      if (!is_near && !may_be_met) return;
+      // The boxes of the tree are wider than the outlines, by their history, which a restored system does not have.
+      if (!geometry::overlap(box, contact::bounds(tree[body]))) return;
+      const Pair pair{std::min(body, mover.body), std::max(body, mover.body)};
+      if (may_be_met && touch_each_other(model, outlines, pair)) ingredient::Strides::note_near(model, mover.body);
+      if (is_near) pairs_.push_back(pair);
     });
   }
 }

@@ -74,7 +74,7 @@ void Stepper::update_islands(double dt) {
   islands.wake(model, woken_);
   islands.wake_stirred(model, dt);
   islands.plan_strides(model);
-  islands.for_each_of(model, dirty_, [&](island::Island& island) { (void)island.project(model, false); });
+  islands.for_each_of(model, dirty_, [&](island::Island& island) { island.project_assigned(model); });
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
 

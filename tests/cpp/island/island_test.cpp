@@ -112,7 +112,7 @@ struct Stepped {
     const std::vector<std::byte> before = bytes_of(core);
     for (Island* const island : awake)
       for (int i = 0; i < tries; ++i) {
-        island->forget_past();
+        island->forget_past(core.model);
         island->try_step(core.model, dt);
       }
     EXPECT_EQ(bytes_of(core), before) << "a try changes the problem alone";
