@@ -156,8 +156,9 @@ def draw_bodies(world: iota.World) -> None:
             system.rod(first, second)
 
     at = cell()
-    for row in (-0.15, 0.0, 0.15):
-        for column in (-0.15, 0.0, 0.15):
+    places = [0.06 * k for k in range(-3, 4)]
+    for row in places:
+        for column in places:
             nailed = system.body().particle(beside(at, row, column))
             nailed.nail()
             world.draw(nailed.body, looks.sphere(0.001))
