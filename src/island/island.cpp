@@ -71,7 +71,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for_each_ingredient([&](auto& i) { i.owner = ++owner; });
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
-  place_nodes(model);
+  take_positions(model);
   thread_local solver::KnownOrder order;
   orders.find(nodes_.rings, order);
   integrator_->compile(problem_, order);
@@ -348,11 +348,11 @@ void Island::commit_motion(Model& model, double h) {
 }
 
 void Island::forget_past(const Model& model) {
-  place_nodes(model);
+  take_positions(model);
   integrator_->forget_past(problem_);
 }
 
-void Island::place_nodes(const Model& model) {
+void Island::take_positions(const Model& model) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
 }
 

@@ -173,7 +173,7 @@ class Island {
   }
 
   void clear();
-  void place_nodes(const model::Model&);
+  void take_positions(const model::Model&);
   /// Passes the momentum of carried particles with velocities of their own to the basis. False if there are none.
   bool pass_on_assigned(model::Model&, MovedRings&);
   Vec3 choose_origin(const model::Model&) const;

@@ -80,7 +80,7 @@ void Integrator::follow(Problem& problem) {
 
 void Integrator::make_room(const Problem& problem) {
   has_advanced_ = is_taken_back_ = false;
-  is_heap_known_ = false;
+  is_heap_known_ = knows_tetrahedra_ = false;
   if (!is_due_) reference_length_ = newton_.reference_length();
   if (local_) local_->forget();
   lumped_mass_.clear();
@@ -429,6 +429,7 @@ bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial
                                AdvanceReport& report) {
   if (stage.compliance > exact_rows && violation_ > IntegratorSettings::largest_violation) return false;
   if (stage.is_mid_point() && turns_too_far(problem)) return false;
+  if (mirrors_a_solid(problem, problem.position, newton_.solution())) return false;
   if (stage.is_mid_point() && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
   energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
@@ -506,7 +507,8 @@ bool Integrator::coast_a_piece(Problem& problem, double h, AdvanceReport& report
     const bool keeps_momenta = spin().restore(problem) == 0;
     energy_.measure_change(problem, 1);
     const double gained = energy_.total - before.total;
-    is_taken = keeps_momenta && std::isfinite(gained) && (drives_rows_ || gained <= 0 || pay(problem, gained));
+    is_taken = keeps_momenta && std::isfinite(gained) && (drives_rows_ || gained <= 0 || pay(problem, gained)) &&
+               !mirrors_a_solid(problem, saved_position_, problem.position);
   }
   if (is_taken) {
     act_with_held_forces(problem, h, report);
@@ -592,6 +594,11 @@ bool Integrator::will_turn_too_far(const Problem& problem, double h) const {
     if (dot(moved, moved) > settings_.max_turn * settings_.max_turn * dot(d, d)) return true;
   }
   return false;
+}
+
+bool Integrator::mirrors_a_solid(const Problem& problem, std::span<const Vec3> before, std::span<const Vec3> after) {
+  if (!std::exchange(knows_tetrahedra_, true)) tetrahedra_.find(problem);
+  return tetrahedra_.are_mirrored(before, after);
 }
 
 bool Integrator::turns_too_far(const Problem& problem) const {

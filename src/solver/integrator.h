@@ -12,6 +12,7 @@
 #include "solver/runge_kutta.h"
 #include "solver/settings.h"
 #include "solver/spin.h"
+#include "solver/tetrahedra.h"
 
 #include <cmath>
 #include <limits>
@@ -132,6 +133,7 @@ class Integrator {
   double compliance_part(const Part&, Scheme) const;
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
+  bool mirrors_a_solid(const Problem&, std::span<const Vec3> before, std::span<const Vec3> after);
   static void track(Problem&, double fraction);
   static void add_impulses(Problem&, double h);
 
@@ -196,9 +198,11 @@ class Integrator {
   Newton newton_;
   bool is_due_ = false;  ///< not analyzed yet
   double reference_length_ = 1;
-  std::unique_ptr<Heap> heap_;               // if there ever were contacts
-  bool is_heap_ = false;                     // see Heap::find_bodies
-  bool is_heap_known_ = false;               // since the latest change of structure
+  std::unique_ptr<Heap> heap_;  // if there ever were contacts
+  bool is_heap_ = false;        // see Heap::find_bodies
+  bool is_heap_known_ = false;  // since the latest change of structure
+  Tetrahedra tetrahedra_;
+  bool knows_tetrahedra_ = false;            // since the latest change of structure
   bool may_sweep_ = false;                   // in this step, what its equations do not solve within the budget
   std::optional<double> heap_cost_;          // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed

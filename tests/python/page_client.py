@@ -129,6 +129,7 @@ class PageClient:
         self.notices: list[dict[str, Any]] = []
         self.effects: list[dict[str, Any]] = []
         self.closed = threading.Event()
+        self.why_closed = ""
         self._changed = threading.Condition()
         world = parse_qs(parts.query).get("world", [""])[0]
         magic, version = CONSTANTS["protocol_magic"], SCHEMA["version"]
@@ -199,7 +200,8 @@ class PageClient:
                 with self._changed:
                     self._take(name, values)
                     self._changed.notify_all()
-        except ConnectionClosed:
+        except ConnectionClosed as end:
+            self.why_closed = end.rcvd.reason if end.rcvd else "without a reason"
             self.closed.set()
 
     def _take(self, name: str, values: dict[str, Any]) -> None:

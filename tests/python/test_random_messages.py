@@ -39,7 +39,7 @@ def send_at_random(page: PageClient, seed: int) -> int:
         sender.send(AT_ONCE)
         sent += AT_ONCE
         hear_back(page)
-        assert not page.closed.is_set(), f"after {sent} messages of seed {seed}"
+        assert not page.closed.is_set(), f"after {sent} messages of seed {seed}: {page.why_closed}"
         time.sleep(0.2 if SECONDS else 0.0)
     return sent
 

@@ -88,7 +88,9 @@ TEST(FastBodies, do_not_get_through_walls_and_make_no_energy) {
       const int steps = static_cast<int>((distance + 0.3) / shot.speed * shot.hz) + 3;
       for (int k = 0; k < steps; ++k) {
         const Vec3 from = in_frame();
-        EXPECT_EQ(system.step(1 / shot.hz).unconverged, 0) << i;
+        // What turns ten times in a step may be given up: its points were mirrored before, which passed for solved.
+        const bool whirls = norm(system.bodies().angular_velocity(body)) > 60 * shot.hz;
+        EXPECT_LE(system.step(1 / shot.hz).unconverged, whirls ? 1 : 0) << i;
         const Vec3 to = in_frame();
         EXPECT_LE(system.energy().kinetic, before * (1 + 1e-9)) << i;
         behind += from.z * to.z < 0 && from.z * shot.way.z < 0 && std::max(std::abs(to.x), std::abs(to.y)) < 0.5;
@@ -209,6 +211,32 @@ TEST(FastBodies, are_told_with_the_impulse_of_the_whole_step) {
   EXPECT_NEAR(speed, 90, 1e-6);
   EXPECT_NEAR(impulse, 1.5 * 90 * system.bodies().mass(ball), 1e-4 * 90 * system.bodies().mass(ball));
   EXPECT_NEAR(system.bodies().velocity(ball).z, 45, 1e-6);
+}
+
+/// The mirror image of a solid's points meets all rows between them: 28 of 400 such plates ended as theirs.
+TEST(FastBodies, that_are_thin_plates_are_not_turned_inside_out_by_a_fall) {
+  for (unsigned i = 0; i < 200; ++i) {
+    Random random(i);
+    const double hz = i % 3 == 0 ? 30 : 60;
+    System system;
+    system.set_mode(i % 2 == 0 ? IntegrationMode::robust : IntegrationMode::plausible);
+    system.set_usual_material(Material{.friction = 0.5, .restitution = i % 4 < 2 ? 0.5 : 0});
+    (void)system.bodies().create_obstacle(Box{{100, 1, 100}}, {0, -0.5, 0});
+    const BodyId plate = system.bodies().create(Box{{1, random.decade(0.003, 0.03), random.number(0.2, 1)}},
+                                                {.position = {0, random.number(0.5, 1.2), 0},
+                                                 .orientation = random.turn(),
+                                                 .velocity = random.vector(3),
+                                                 .spin = random.vector(random.decade(0.03, 2) * hz)});
+    const auto volume = [&] {
+      const std::vector<ParticleId> points = system.bodies().particles(plate);
+      const Vec3 first = system.particles().position(points[0]);
+      const auto arm = [&](int k) { return system.particles().position(points[k]) - first; };
+      return dot(arm(1), cross(arm(2), arm(3)));
+    };
+    const double before = volume();
+    for (int k = 0; k < 60; ++k) (void)system.step(1 / hz);
+    EXPECT_NEAR(volume() / before, 1, 1e-3) << i;
+  }
 }
 
 }  // namespace
