@@ -9,6 +9,19 @@
 
 namespace iota::edit {
 
+namespace {
+
+/// From the center of a body, in world axes. How a rod has turned about its axis depends on when its frame was looked at, which a
+/// replay does not repeat: its places are those of the axis.
+Vec3 arm_of(const model::Model& model, std::uint32_t slot, const Vec3& local_point) {
+  const model::Body& body = model.bodies[slot];
+  if (body.rank != 2 || body.first_solid != model::none) return rotate(body.orientation, local_point);
+  const Vec3 along = model.position(body.basis[1]) - model.position(body.basis[0]);
+  return local_point.x * unit_or(along, Vec3{}, 0);
+}
+
+}  // namespace
+
 GripId apply(Editor& e, const CreateGrip& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
@@ -23,8 +36,7 @@ GripId apply(Editor& e, const CreateGrip& c) {
   grip.client = c.options.client, grip.hold = c.options.hold;
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
   grip.target = c.target;
-  const Vec3 place = model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point);
-  ingredient::Grips::anchor(model, grip, place);
+  ingredient::Grips::anchor(model, grip, model.center_of_mass(body) + arm_of(model, body, c.local_point));
   ingredient::Grips::mark(model, body);
   return model.grips.create(grip);
 }

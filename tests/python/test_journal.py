@@ -644,6 +644,7 @@ def test_a_world_begins_when_its_first_state_is_on_the_disk_unless_the_disk_hang
     make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fsync, hangs = os.fsync, threading.Event()
+    monkeypatch.setattr(journals, "FIRST", 20.0)
     monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.3), fsync(file)))
     make()
     assert files(tmp_path / "kept"), "nothing is lost, whenever it is killed"

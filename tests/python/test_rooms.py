@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 from urllib.error import HTTPError
 from urllib.parse import urlencode
 from urllib.request import Request, urlopen
@@ -93,10 +93,9 @@ def join(url: str, name: str = "") -> PageClient:
 
 
 def number(rooms: Rooms, name: str) -> int:
-    """Of the process of a room."""
-    found = rooms.rooms[name].number
-    assert found is not None
-    return found
+    """Of the process of a room: it may answer a page before the list has heard of it."""
+    wait_until(lambda: rooms.rooms[name].number is not None)
+    return cast(int, rooms.rooms[name].number)
 
 
 def test_a_room_wakes_with_a_visitor_sleeps_without_one_and_goes_on_where_it_was(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ from iota.world.pictures import Portrait
 from iota.world.state import State
 from iota.world.widgets import Button, Choice, Widget
 
-FIRST = 2.0  # s, at most, that a world waits for its first state to be on the disk
+FIRST = 0.15  # s, at most, that a world, and who joins it, waits for its first state to be on the disk
 HAND_OVER = 0.1  # s, between two hand-overs to the thread that writes: what a killed process loses
 CHECKPOINT = 1.0  # s of steps, after which a new snapshot is cheaper than to repeat them
 GENERATION = (10.0, 60.0)  # s, between two files, at least and at most
