@@ -35,6 +35,8 @@ def build() -> iota.World:
         for name, ring, label in zip(rings, atoms, labels, strict=True):
             label.text = f"{name}: {0.77 * (NAIL.y - ring.positions[:, 1].min()):.2f} nm"
 
+    tell_lengths()
+
     @world.action("nudge", key="n", help="pushes the soft ring to the side", on="world")
     def nudge() -> None:
         # About the nail, as a rigid one would turn: a push of single atoms makes the springs ring.
