@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from amount import TRIES_ALL
 from penetration import Drawn
+from repeatable import REPEATABLE
 
 import iota
 from iota import studies
@@ -100,10 +101,9 @@ def goes_on_from(log: Log, system: iota.System, step: Callable[[], object], coun
 # whose boxes depend on their history; by a length of springs that was measured when their equations were set up; by velocities that
 # were given to the last acrobat.
 RESTORED = {"ragdolls": 300, "cloth": 60, "crowd": 0}
-HAVE_FUNCTIONS = {"appendix-e2", "evacuation", "shoal", "undersea"}  # of forces; another system has none
 
 
-@pytest.mark.parametrize("name", sorted(set(studies.names()) - HAVE_FUNCTIONS))
+@pytest.mark.parametrize("name", REPEATABLE)
 def test_its_states_go_on_with_the_same_bits_in_another_system(name: str) -> None:
     world = studies.module(name).build()
     world._begin()
