@@ -9,7 +9,8 @@ runs no test counts as one failure. The output of a suite is in build/logs/test-
 shown. Exit code 0 only if nothing failed.
 
 Lanes: suites run beside each other on as many cores as each keeps busy, the longest first. The suites that draw, since
-software rendering needs several cores, and those that a busy machine fails run one after another.
+software rendering needs several cores, and those that a busy machine fails run one after another; with --all each of them
+alone.
 
 Amounts: tests that sample (random scenes, edits, damaged bytes) try a tenth of what they try with --all, which sets
 IOTA_TEST_ALL (tests/cpp/amount.h, tests/python/amount.py). A suite with `inputs` runs when one of them has changed since
@@ -440,8 +441,8 @@ def chosen(names: list[str], all_of_them: bool) -> list[Suite]:
     """The named suites, or those with something new to test; the others are told."""
     if names:
         return [suite for suite in SUITES if suite.name in names]
-    if all_of_them:
-        return SUITES
+    if all_of_them:  # there is time: what a busy machine fails runs alone
+        return [replace(suite, cores=CORES) if suite.in_turn else suite for suite in SUITES]
     usual = [suite for suite in SUITES if not suite.only_with_all]
     unchanged = [suite for suite in usual if is_unchanged(suite)]
     for suite in unchanged:

@@ -70,6 +70,13 @@ def test_what_takes_long_runs_with_all_or_by_name(runner: ModuleType) -> None:
     assert runner.chosen(["long"], False) == [long]
 
 
+def test_what_a_busy_machine_fails_runs_alone_with_all(runner: ModuleType) -> None:
+    draws, other = runner.Suite("draws", [], 1, in_turn=True), runner.Suite("other", [], 1)
+    runner.SUITES = [draws, other]
+    assert [suite.cores for suite in runner.chosen([], False)] == [1, 1]
+    assert [suite.cores for suite in runner.chosen([], True)] == [runner.CORES, 1]
+
+
 def test_a_failed_test_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     made = suite(runner, writes(gtest(PASSED, FAILED)) + "; raise SystemExit(1)", runner.read_gtest)
     assert closing_line(runner, made, capsys) == (1, "1 passed, 1 failed")
