@@ -110,6 +110,7 @@ bool Island::pass_on_assigned(Model& model, MovedRings& moved) {
   return true;
 }
 
+// Both, as of an island that is made for this step, to the bit.
 void Island::project_assigned(Model& model) {
   MovedRings moved{.is_asked_for = false};
   (void)pass_on_assigned(model, moved);

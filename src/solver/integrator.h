@@ -198,10 +198,10 @@ class Integrator {
   Newton newton_;
   bool is_due_ = false;  ///< not analyzed yet
   double reference_length_ = 1;
-  std::unique_ptr<Heap> heap_;  // if there ever were contacts
-  bool is_heap_ = false;        // see Heap::find_bodies
-  bool is_heap_known_ = false;  // since the latest change of structure
-  Tetrahedra tetrahedra_;
+  std::unique_ptr<Heap> heap_;               // if there ever were contacts
+  bool is_heap_ = false;                     // see Heap::find_bodies
+  bool is_heap_known_ = false;               // since the latest change of structure
+  Tetrahedra tetrahedra_;                    // see mirrors_a_solid
   bool knows_tetrahedra_ = false;            // since the latest change of structure
   bool may_sweep_ = false;                   // in this step, what its equations do not solve within the budget
   std::optional<double> heap_cost_;          // of a factor
