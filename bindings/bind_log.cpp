@@ -100,11 +100,19 @@ void bind_log(nb::module_& module) {
           "stop", [](const LogObject& self) { self.use("stop").stop(); }, "Logs no more.")
       .def(
           "take",
-          [](const LogObject& self) {
-            const LogPiece piece = self.use("take").take();
-            return std::pair(as_bytes(piece.commands), piece.is_broken);
+          [](const LogObject& self)
+              -> std::optional<std::tuple<nb::bytes, bool, double, std::uint64_t, std::uint32_t>> {
+            System& system = self.system->use_between_steps("take");
+            if (system.edits().is_open()) return std::nullopt;
+            const LogPiece piece = system.log().take();
+            return std::tuple(as_bytes(piece.commands), piece.is_broken, piece.time, piece.hash,
+                              piece.structure_version);
           },
-          "The commands since the last call; and whether the state was replaced, so that a snapshot has to follow.")
+          "None while a batch of edits is open. Else the commands since the last call; whether the state was replaced, so that a snapshot has to follow; the time (s), "
+          "the hash and the structure version of the state.")
+      .def_prop_ro(
+          "hash", [](const LogObject& self) { return self.use("hash").hash(); },
+          "A hash of the state, found in a fifth of the time of `System.state_hash`.")
       .def(
           "snapshot", [](const LogObject& self) { return as_bytes(self.use("snapshot").snapshot().bytes); },
           "As `System.snapshot`.")

@@ -16,6 +16,9 @@ namespace iota {
 /// The commands of some time, for a journal.
 struct LogPiece {
   std::vector<std::byte> commands;  ///< as in a `Recording`
+  double time = 0;                  ///< of the system after them, s
+  std::uint64_t hash = 0;           ///< `Log::hash` after them; 0 without commands
+  std::uint32_t structure_version = 0;
   /// The state was replaced by a `restore`, or more was logged than `Log::most_bytes`: a snapshot has to come before what is
   /// logged next. Then there are no commands.
   bool is_broken = false;
@@ -43,6 +46,8 @@ class Log : public View {
   void stop();
   /// The commands since the last call.
   LogPiece take();
+  /// A hash of the state, found in a fifth of the time of `System::state_hash`.
+  std::uint64_t hash() const;
   /// As `System::snapshot`, but later it does not keep functions of the script alive for a `restore`.
   Snapshot snapshot();
   /// As `snapshot`, without a change of what the steps after it do: a system restored from it may differ in the last bits.

@@ -57,7 +57,7 @@ class Door {
   LogPiece take_log() { return log_ ? std::exchange(*log_, {}) : LogPiece{}; }
   /// The state was replaced, which no command repeats.
   void break_log() {
-    if (log_) *log_ = {{}, true};
+    if (log_) *log_ = {.is_broken = true};
   }
   void repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute);
   ///@}

@@ -68,7 +68,15 @@ void Log::give_function(std::uint64_t key, ScriptedLaw law) {
 
 void Log::stop() { core_.door.stop_log(); }
 
-LogPiece Log::take() { return core_.door.take_log(); }
+LogPiece Log::take() {
+  LogPiece piece = core_.door.take_log();
+  piece.time = core_.model.time;
+  piece.structure_version = core_.model.structure_version;
+  if (!piece.commands.empty()) piece.hash = hash();
+  return piece;
+}
+
+std::uint64_t Log::hash() const { return core_.model.quick_hash(); }
 
 Snapshot Log::snapshot() { return core_.door.take_snapshot(edit::Door::For::journal); }
 

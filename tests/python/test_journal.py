@@ -495,6 +495,7 @@ def test_a_damaged_snapshot_is_bridged_by_the_generation_before(
     first.steps(5)
     monkeypatch.setattr(journals, "GENERATION", (0.0, 0.0))
     first.steps(1)
+    first.world._stepper.journal.hand_over()
     monkeypatch.undo()
     monkeypatch.setattr(journals, "HAND_OVER", 0.0)
     first.steps(5)
@@ -708,7 +709,7 @@ def test_a_disk_that_is_too_slow_takes_no_memory_and_the_journal_goes_on_when_it
     monkeypatch.setattr(writer, "MOST_WAITING", 10)
     monkeypatch.setattr(writer, "write_all", lambda file, data: (waiting.wait(10), write_all(file, data)))
     first.steps(30)
-    assert first.world._stepper.journal._writer._queue.qsize() <= 10
+    assert len(first.world._stepper.journal._writer._waiting) <= 10
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert "is too slow" in line
     waiting.set()
@@ -722,7 +723,7 @@ def test_an_error_in_the_journal_itself_does_not_end_the_world(
 ) -> None:
     first = make()
     first.steps(2)
-    monkeypatch.setattr(journals.Journal, "_piece", lambda *_: 1 / 0)
+    monkeypatch.setattr(writer.Writer, "put", lambda *_: 1 / 0)
     first.steps(3)
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert "this world is no longer kept in" in line and "ZeroDivisionError" in line

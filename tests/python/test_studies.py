@@ -21,6 +21,7 @@ from iota._core import Log
 
 SECONDS = float(os.environ.get("IOTA_STUDY_SECONDS", "5" if TRIES_ALL else "3"))  # tools/soak.py asks for ten minutes
 USUAL_LOOK = 0.25 if TRIES_ALL else 0.5  # s, between two looks
+USUALLY_LOOKED_AT = 8.0 if TRIES_ALL else 5.0  # s
 LOOKS = {"lab": 1.0, "museum": 1.0}  # a room of 65 000 triangles; 900 bodies
 DEEPEST = 0.03  # share of the smaller shape
 # A fish that feeds is between leaves, and fish do not know of weed. Blocks that are hit and turn fast may get into each
@@ -37,9 +38,9 @@ DEEPER = {
 }
 LOOKED_AT = {
     "museum": 3.0,
-    "undersea": 16.0 if TRIES_ALL else 8.0,
+    "undersea": 16.0 if TRIES_ALL else 4.0,
     "molecule": 13.0,
-    "lab": 5.0,
+    "lab": 5.0 if TRIES_ALL else 3.0,
     "pour": 4.0,
     "capstan": 3.0,
     "knot": 2.0,
@@ -56,7 +57,7 @@ def test_it_goes_on_and_nothing_passes_through_anything(name: str) -> None:
     world = studies.module(name).build()
     system, unconverged = world.system, 0
     styles = [] if name in NOT_LOOKED_AT else [Drawn(world, style) for style in STYLES.get(name, ("",))]
-    looked_at = round((LOOKED_AT.get(name, 8.0) if styles else 0.0) / world.dt)
+    looked_at = round((LOOKED_AT.get(name, USUALLY_LOOKED_AT) if styles else 0.0) / world.dt)
     steps = max(looked_at, round(SECONDS / world.dt))
     for step in range(steps):
         if step < looked_at and step % round(LOOKS.get(name, USUAL_LOOK) / world.dt) == 0:
@@ -91,7 +92,9 @@ def goes_on_from(log: Log, system: iota.System, step: Callable[[], object], coun
     log.take()
     for number in range(count):
         step()
-        Log(other).repeat(log.take()[0])
+        taken = log.take()
+        assert taken is not None
+        Log(other).repeat(taken[0])
         if other.state_hash() != system.state_hash():
             return number
     return None

@@ -20,6 +20,8 @@ import zlib
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from iota._core import Log, System
+
 FORMAT = 1
 MAGIC = b"iota journal %d\n" % FORMAT
 ANY_MAGIC = b"iota journal "
@@ -74,6 +76,10 @@ class Commands(NamedTuple):
 
     def to_bytes(self) -> bytes:
         return COMMANDS.pack(self.time, self.hash, self.seconds) + self.commands
+
+    def leads_to(self, system: System) -> bool:
+        """Whether a system is in the state after it. Versions before December 2026 logged `System.state_hash`."""
+        return self.hash == Log(system).hash or self.hash == system.state_hash()
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Commands:

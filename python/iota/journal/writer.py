@@ -4,33 +4,47 @@
 from __future__ import annotations
 
 import os
-import queue
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from iota.journal.folder import File, Folder
-from iota.journal.records import MAGIC, pack
+from iota.journal.records import MAGIC, Commands, pack
 from iota.saving import sync
 
+HAND_OVER = 0.1  # s, between two calls of `put` of a world that steps: what a killed process loses
+LOOK, LOOK_AGAIN, LOOK_UNTIL = 0.12, 0.02, 0.25  # s after a `put`: when the thread looks for the next one unasked
 SYNC_TIME = 0.08  # s, between two syncs: less than between two hand-overs, so that each is on the disk at once
 RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
 MOST_WAITING = 300  # records that wait for a slow disk; then a new generation begins when it is done with them
 GAP = 1000  # in the numbers of records, after some that were not written
 
-Content = tuple[str, bytes]  # kind, content
-Item = tuple[list[Content], bool, bool]  # whether it begins a generation, whether others before it were left out
+Content = tuple[str, bytes | tuple[float, int, float, bytes]]  # kind, content; that of `Commands` as a tuple
+Item = tuple[Sequence[Content], bool, bool]  # whether it begins a generation, whether others before it were left out
 
 
 class Writer:
     """Puts records into the files of a folder. It never raises: what cannot be written is told once, by `tell(text)` on
-    its thread, and tried again. wants_all: the next records must begin a generation. bytes: of the present generation."""
+    its thread, and tried again. `written()` is called there, too, after each `put` that it has dealt with. wants_all: the next records must begin a generation. bytes: of the present generation.
 
-    def __init__(self, folder: Folder, tell: Callable[[str], None], aside: Sequence[File] = ()) -> None:
-        self._folder, self._tell, self._aside = folder, tell, list(aside)
-        self._queue: queue.SimpleQueue[Item | threading.Event | None] = queue.SimpleQueue()
+    A `put` of commands wakes the thread only if it sleeps: to wake one takes longer than all else that the thread of a small
+    world does for its journal. So the thread looks by itself when the next `put` is due."""
+
+    def __init__(
+        self,
+        folder: Folder,
+        tell: Callable[[str], None],
+        aside: Sequence[File] = (),
+        written: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._folder, self._tell, self._aside, self._written = folder, tell, list(aside), written
+        self._waiting: deque[Item | threading.Event | None] = deque()
+        self._wake = threading.Event()
+        self._sleeps = False  # until it is woken
+        self._put_at = 0.0  # s
         self._file: int | None = None
         self._number = self._generation = self.bytes = 0
         self._retry_at: float | None = 0.0  # s; None while all is well
@@ -45,7 +59,7 @@ class Writer:
         if self._is_fenced:
             return False
         if self._is_behind:
-            return self._queue.empty()
+            return not self._waiting
         return self._retry_at is not None and time.monotonic() >= self._retry_at
 
     @property
@@ -57,7 +71,7 @@ class Writer:
         """From the thread of the world. begins: these are all that a new generation needs."""
         if begins:
             self._retry_at = None  # not again until this one has failed
-        elif self._queue.qsize() >= MOST_WAITING:
+        elif len(self._waiting) >= MOST_WAITING:
             if not self._is_behind:
                 self._tell(
                     f"the disk of {self._folder.path} is too slow: what happens until it has caught up is not kept"
@@ -65,29 +79,34 @@ class Writer:
             self._is_behind = True
             return
         has_gap, self._is_behind = self._is_behind, False
-        self._queue.put((list(records), begins, has_gap))
+        self._put_at = time.monotonic()
+        self._waiting.append((records, begins, has_gap))
+        if self._sleeps or begins:
+            self._wake.set()
 
     def flush(self, longest: float | None = None) -> None:
         """Waits until the thread has written all records, but not longer than that (s)."""
         done = threading.Event()
-        self._queue.put(done)
+        self._ask(done)
         done.wait(longest)
 
     def close(self) -> None:
         """Writes what waits, to the disk."""
-        self._queue.put(None)
+        self._ask(None)
         self._thread.join()
+
+    def _ask(self, item: threading.Event | None) -> None:
+        self._waiting.append(item)
+        self._wake.set()
 
     # --- on its thread ------------------------------------------------------------------------------------------------
 
     def _run(self) -> None:
         while True:
-            try:
-                wait = max(0.0, self._sync_at - time.monotonic()) if self._is_dirty else None
-                item = self._queue.get(timeout=wait)
-            except queue.Empty:
-                self._attempt(self._sync)
+            if not self._waiting:
+                self._rest()
                 continue
+            item = self._waiting.popleft()
             if item is None:
                 break
             if isinstance(item, threading.Event):
@@ -102,9 +121,27 @@ class Writer:
                 self._begin(records)
             elif self._file is not None:
                 self._attempt(lambda records=records: self._append(records))  # type: ignore[misc]
+            self._written()
         if self._is_dirty:
             self._attempt(self._sync)
         self._forget_file()
+
+    def _rest(self) -> None:
+        """Until the next record is due, or what is written has to be on the disk."""
+        now = time.monotonic()
+        if self._is_dirty and now >= self._sync_at:
+            self._attempt(self._sync)
+            return
+        age = now - self._put_at
+        ends = [self._sync_at - now] if self._is_dirty else []
+        if age < LOOK_UNTIL:
+            ends.append(max(LOOK - age, LOOK_AGAIN))
+        else:
+            self._sleeps = True
+        if not self._waiting:  # what comes now sees that it sleeps
+            self._wake.wait(min(ends, default=None))
+        self._sleeps = False
+        self._wake.clear()
 
     def _attempt(self, work: Callable[[], None]) -> bool:
         """False if it failed: the present file is then left as it is."""
@@ -125,7 +162,7 @@ class Writer:
                 "what it had kept stays, and it is tried again"
             )
 
-    def _begin(self, records: list[Content]) -> None:
+    def _begin(self, records: Sequence[Content]) -> None:
         """A new generation, under its name only when it is complete and on the disk."""
         before, number = self._file, self._number
         part: Path | None = None
@@ -138,7 +175,7 @@ class Writer:
             path = self._folder.file(self._generation + 1)
             part = path.with_suffix(".part")
             fresh = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o644)
-            data = MAGIC + b"".join(pack(kind, number + n, content) for n, (kind, content) in enumerate(records, 1))
+            data = MAGIC + packed(records, number)
             write_all(fresh, data)
             os.fsync(fresh)
             part.rename(path)
@@ -173,7 +210,7 @@ class Writer:
         assert self._file is not None
         if not self._check_epoch():
             return
-        data = b"".join(pack(kind, self._number + n, content) for n, (kind, content) in enumerate(records, 1))
+        data = packed(records, self._number)
         write_all(self._file, data)
         self._number += len(records)
         self.bytes += len(data)
@@ -205,6 +242,12 @@ class Writer:
             self._file = None
             self._number += GAP
         self._is_dirty = False
+
+
+def packed(records: Sequence[Content], number: int) -> bytes:
+    """The bytes of records after the one with this number."""
+    contents = ((kind, Commands(*each).to_bytes() if isinstance(each, tuple) else each) for kind, each in records)
+    return b"".join(pack(kind, number + n, content) for n, (kind, content) in enumerate(contents, 1))
 
 
 def write_all(file: int, data: bytes) -> None:

@@ -21,8 +21,8 @@ from iota.arguments import SHORT
 from iota.errors import WrongThreadError
 from iota.journal.folder import Folder
 from iota.journal.reader import Found, JournalError, find, recover
-from iota.journal.records import FORMAT, Commands, schema_of, without_schema
-from iota.journal.writer import Content, Writer
+from iota.journal.records import FORMAT, schema_of, without_schema
+from iota.journal.writer import HAND_OVER, Content, Writer
 from iota.world.callbacks import one_line, print_on_terminal
 from iota.world.going_on import ask_to_go_on, people_in
 from iota.world.pictures import Portrait
@@ -30,7 +30,6 @@ from iota.world.state import State
 from iota.world.widgets import Button, Choice, Widget
 
 FIRST = 0.15  # s, at most, that a world, and who joins it, waits for its first state to be on the disk
-HAND_OVER = 0.1  # s, between two hand-overs to the thread that writes: what a killed process loses
 CHECKPOINT = 1.0  # s of steps, after which a new snapshot is cheaper than to repeat them
 GENERATION = (10.0, 60.0)  # s, between two files, at least and at most
 MOST_LOG = 64 << 20  # bytes of a file
@@ -73,6 +72,11 @@ class Journal:
         self._schema = ""  # of the snapshots of this file
         self._owed = 0.0  # s of steps since the last snapshot
         self._checked_at = self._next = self._began_at = self._quick_at = 0.0
+        self._is_broken = False  # what was taken from the log
+        self._is_quick_behind = False  # the last quick snapshot: there were commands since
+        self._are_commands_all = (
+            False  # that has to be written at the next hand-over, unless the thread that writes sees more
+        )
         self._read()
 
     # --- what the script keeps ----------------------------------------------------------------------------------------
@@ -138,9 +142,9 @@ class Journal:
         told, aside = self._take_back()
         self._log.start()
         files = self._folder.files() if aside else []
-        self._writer = Writer(self._folder, self._tell, files)
+        self._writer = Writer(self._folder, self._tell, files, self._look)
         atexit.register(self._end)  # for loops of a script's own
-        self._checked_at = time.monotonic()
+        self._checked_at = time.perf_counter()
         self.hand_over()
         # A process that is killed before its first state is written would lose all that it has stepped, however slow its disk is.
         self._writer.flush(FIRST)
@@ -225,42 +229,75 @@ class Journal:
 
     # --- while it runs --------------------------------------------------------------------------------------------------
 
-    def note_step(self, seconds: float, is_exact: bool) -> None:
-        """seconds: that a step took. is_exact: it was not cut short by the clock, so that it can be repeated."""
+    def note_step(self, ended: float, seconds: float, is_exact: bool) -> None:
+        """After a step that took some seconds. ended: when, by `perf_counter`. is_exact: it was not cut short by the clock, so that it
+        can be repeated."""
         self._owed += seconds if is_exact else CHECKPOINT
-        self.check()
+        if ended >= self._next:
+            self.check()
 
     def check(self) -> None:
         """Between steps, at any time. The world goes on whatever happens here."""
-        if time.monotonic() < self._next:
+        now = time.perf_counter()
+        if now < self._next:
             return
         try:
-            self.hand_over()
+            if not (self._are_commands_all and self._owed < CHECKPOINT and self._put_commands(now)):
+                self.hand_over()
         except Exception as error:
             if self._writer is not None:
                 self._stop(self._writer)
             self._tell(f"this world is no longer kept in {self._folder.path}: {one_line(error)}. It goes on without")
+
+    def _put_commands(self, now: float) -> bool:
+        """Gives commands alone to the thread that writes, which costs a third of `hand_over`. False: there is more to give."""
+        writer, taken = self._writer, self._log.take()
+        if writer is None or taken is None:
+            return True
+        commands, is_broken, of_world, hash, structure = taken
+        if not commands:
+            self._is_broken = self._is_broken or is_broken
+            return False
+        self._is_quick_behind = True
+        writer.put((("C", (of_world, hash, now - self._checked_at, commands)),))
+        if structure != self._structure:
+            return False
+        self._checked_at, self._next = now, now + HAND_OVER
+        return True
+
+    def _look(self) -> None:
+        """On the thread that writes, after it has written: whether there is more than commands to write."""
+        writer = self._writer
+        if writer is None or not self._are_commands_all:
+            return
+        if not writer.takes or self._is_file_old(writer, time.perf_counter()) or self._world_version() != self._version:
+            self._are_commands_all, self._next = False, 0.0
 
     def hand_over(self) -> None:
         """Gives what has happened since the last call to the thread that writes."""
         writer = self._writer
         if writer is None or self._log.is_editing:
             return
-        now = time.monotonic()
+        now = time.perf_counter()
         self._next = now + HAND_OVER
         seconds, self._checked_at = now - self._checked_at, now
-        begins = writer.wants_all or (writer.takes and self._is_file_old(writer, now))
+        takes = writer.takes
+        begins = self._is_file_old(writer, now) if takes else writer.wants_all
         # Before the log is taken: a snapshot is a command, too, which a way round a damaged one repeats.
-        snapshot = self._log.snapshot() if begins or (writer.takes and self._owed >= CHECKPOINT) else None
-        commands, is_broken = self._log.take()
-        if not (begins or writer.takes):
+        snapshot = self._log.snapshot() if begins or (takes and self._owed >= CHECKPOINT) else None
+        taken = self._log.take()
+        assert taken is not None
+        commands, is_broken, of_world, hash, _ = taken
+        is_broken, self._is_broken = is_broken or self._is_broken, False
+        if not (begins or takes):
             return
         if is_broken and snapshot is None:
             snapshot = self._log.snapshot()
             self._log.take()
         records: list[Content] = []
-        if commands and writer.takes:  # the file before leads up to the snapshot
-            records.append(self._piece(commands, seconds))
+        if commands and takes and not is_broken:  # the file before leads up to the snapshot
+            records.append(("C", (of_world, hash, seconds, commands)))
+            self._is_quick_behind = True
         if begins:
             if records:
                 writer.put(records)
@@ -268,13 +305,15 @@ class Journal:
             return
         if snapshot is not None:
             records += self._checkpoint(snapshot)
-        elif commands and now >= self._quick_at and self._uses_functions():
+        elif self._is_quick_behind and now >= self._quick_at and self._uses_functions():
             records += self._quick(now)
+        uses_functions = self._uses_functions()
         if (version := self._world_version()) != self._version:
             self._version = version
             records.append(("W", self._world_now()))
         if records:
             writer.put(records)
+        self._are_commands_all = not uses_functions
 
     def close(self) -> None:
         """The world has ended in an orderly way: nothing is lost."""
@@ -286,9 +325,10 @@ class Journal:
         if not writer.takes:  # its disk is behind, and will have caught up
             writer.flush()
             self.hand_over()
-        commands, _ = self._log.take()
-        if writer.takes:
-            records = [self._piece(commands, 0.0)] if commands else []
+        taken = self._log.take()
+        if writer.takes and taken is not None:
+            commands, _, of_world, hash, _ = taken
+            records: list[Content] = [("C", (of_world, hash, 0.0, commands))] if commands else []
             writer.put([*records, ("E", b"")])
         self._log.stop()
         self._stop(writer)
@@ -318,6 +358,7 @@ class Journal:
 
     def _begin_file(self, writer: Writer, now: float, snapshot: bytes) -> None:
         self._began_at = now
+        self._uses_functions()
         self._marks.clear()
         self._schema = schema_of(snapshot)
         header = {
@@ -329,12 +370,8 @@ class Journal:
             "written": time.strftime("%Y-%m-%d %H:%M:%S"),
         }
         self._version = self._world_version()
-        records = [("H", json.dumps(header).encode()), ("W", self._world_now()), *self._checkpoint(snapshot)]
-        writer.put(records, begins=True)
-
-    def _piece(self, commands: bytes, seconds: float) -> Content:
-        system = self._state.system
-        return "C", Commands(system.time, system.state_hash(), seconds, commands).to_bytes()
+        about: list[Content] = [("H", json.dumps(header).encode()), ("W", self._world_now())]
+        writer.put([*about, *self._checkpoint(snapshot)], begins=True)
 
     def _checkpoint(self, snapshot: bytes) -> list[Content]:
         """A snapshot from which the commands after it lead to the same bits."""
@@ -345,6 +382,7 @@ class Journal:
         """For worlds with functions of the script, whose results may depend on what the script alone knows."""
         began = time.perf_counter()
         records = self._history()
+        self._is_quick_behind = False
         snapshot = without_schema(self._log.quick_snapshot(), self._schema)
         records.append(("Q", snapshot))
         took = time.perf_counter() - began
@@ -382,11 +420,9 @@ class Journal:
 
     def _world_version(self) -> tuple[Any, ...]:
         """Another one if `_world_now` may tell something else: that takes long with many things."""
-        state = self._state
-        self._uses_functions()
-        changes = sum(count for kind, count in state.things.changes.items() if issubclass(kind, Widget))
-        people = tuple(state.clients.by_id)
-        return state.clock.paused, state.clock.speed, changes, people, self._values_version, self._functions_version
+        state, clock = self._state, self._state.clock
+        widgets, people = state.things.changes[Widget.kind], tuple(state.clients.by_id)
+        return clock.paused, clock.speed, widgets, people, self._values_version, self._functions_version
 
     def _world_now(self) -> bytes:
         state = self._state

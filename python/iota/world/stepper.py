@@ -133,7 +133,7 @@ class Stepper:
                 state.notices.warn_once(warning)
         self._tell_what_happened()
         if self.journal is not None:
-            self.journal.note_step(seconds, not 0 < state.system.budget_seconds <= seconds)
+            self.journal.note_step(began + seconds, seconds, not 0 < state.system.budget_seconds <= seconds)
         return report
 
     def _tell_author(self, dt: float) -> None:

@@ -186,7 +186,7 @@ class Things:
         self._gone: list[tuple[str, int, int]] = []
         self._told: dict[Thing, bytes] = {}
         self._structure = -1
-        self.changes: Counter[type[Thing]] = Counter()  # of each kind: rises when one comes, changes or goes
+        self.changes: Counter[str] = Counter()  # of each kind: rises when one comes, changes or goes
         self.effect: Callable[[str, Vec3, float], object] | None = None  # while the world is served
 
     def __iter__(self) -> Iterator[Thing]:
@@ -208,7 +208,7 @@ class Things:
         self.mark(thing)
 
     def remove(self, thing: Thing) -> None:
-        self.changes[type(thing)] += 1
+        self.changes[thing.kind] += 1
         slot, generation = self._ids.pop(thing)
         self._dirty.pop(thing, None)
         self.images.use(thing, None)
@@ -224,7 +224,7 @@ class Things:
 
     def mark(self, thing: Thing) -> None:
         """Marks it to be sent again."""
-        self.changes[type(thing)] += 1
+        self.changes[thing.kind] += 1
         self._dirty[thing] = None
 
     def mark_attached(self) -> None:

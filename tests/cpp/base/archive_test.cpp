@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
+#include <set>
 #include <string_view>
 
 namespace iota {
@@ -108,6 +110,20 @@ TEST(Hasher, tells_zero_from_minus_zero_since_it_compares_bits) {
   Hasher plus, minus;
   plus.value(0.0), minus.value(-0.0);
   EXPECT_NE(plus.result(), minus.result());
+}
+
+TEST(WordHasher, differs_by_each_bit_of_each_value_and_by_their_order) {
+  std::set<std::uint64_t> results;
+  const auto add = [&](std::uint64_t a, std::uint32_t b, double c) {
+    WordHasher hasher;
+    hasher.value(a), hasher.value(b), hasher.value(c);
+    results.insert(hasher.result());
+  };
+  add(0, 0, 0.0), add(0, 0, -0.0);
+  for (int bit = 0; bit < 64; ++bit) add(std::uint64_t{1} << bit, 0, 0.0);
+  for (int bit = 0; bit < 32; ++bit) add(0, std::uint32_t{1} << bit, 0.0);
+  for (int bit = 0; bit < 63; ++bit) add(0, 0, std::bit_cast<double>(std::uint64_t{1} << bit));
+  EXPECT_EQ(results.size(), 2u + 64u + 32u + 63u);
 }
 
 }  // namespace

@@ -68,6 +68,8 @@ TEST(Log, repeats_in_another_system_what_was_done_to_the_last_bit) {
     EXPECT_FALSE(taken.is_broken);
     other.log().repeat(taken.commands);
     EXPECT_EQ(other.state_hash(), scene.system.state_hash()) << piece;
+    EXPECT_EQ(other.log().hash(), taken.hash) << piece;
+    EXPECT_EQ(other.time(), taken.time) << piece;
   }
   EXPECT_TRUE(other.edits().redo()) << "undo reaches what was done before";
   EXPECT_FALSE(other.bodies().contains(scene.bodies[2]));
