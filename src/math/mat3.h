@@ -89,6 +89,8 @@ Quaternion turn_by(const Vec3& v);
 Quaternion shortest_turn(const Vec3& from, const Vec3& to);
 /// The rotation whose columns are the orthonormal, right-handed axes.
 Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z);
+/// Along axis 0 (x), 1 (y) or 2 (z).
+inline Vec3 unit_vector(int axis) { return {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0}; }
 /// The direction of v, or `other` if v is not longer than `least`.
 inline Vec3 unit_or(const Vec3& v, const Vec3& other, double least = 0) {
   const double length = norm(v);

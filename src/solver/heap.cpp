@@ -17,8 +17,6 @@ namespace {
 constexpr int sweeps = 2;
 constexpr int first_sweeps = 8;  // where contacts begin
 
-Vec3 unit_vector(int k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
-
 }  // namespace
 
 bool Heap::find_bodies(const Problem& problem) {

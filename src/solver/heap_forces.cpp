@@ -64,7 +64,7 @@ void HeapForces::refresh(Problem& problem, const HeapBodies& bodies, std::span<c
     }
     item.changes = {};
     for (int column = 0; column < 3; ++column) {
-      const Vec3 unit{column == 0 ? 1.0 : 0, column == 1 ? 1.0 : 0, column == 2 ? 1.0 : 0};
+      const Vec3 unit = unit_vector(column);
       Vec3 change;
       for (std::uint32_t i = 0; i < item.count; ++i) {
         const Side& side = item.sides[i];

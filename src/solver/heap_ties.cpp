@@ -138,7 +138,7 @@ void HeapTies::refresh(const Problem& problem, const HeapBodies& bodies, std::sp
     const Vec3 place = b.center_now() + b.arm_now(copy.place), off = x_[copy.node] - place;
     const Vec3 arm_a = x_[copy.node] - a.center_now(), arm_b = place - b.center_now();
     for (int r = 0; r < 3; ++r) {
-      const Vec3 unit{r == 0 ? 1.0 : 0, r == 1 ? 1.0 : 0, r == 2 ? 1.0 : 0};
+      const Vec3 unit = unit_vector(r);
       tie.value[r] = dot(off, unit);
       one.way[r] = unit, one.turn[r] = cross(arm_a, unit);
       other.way[r] = -1.0 * unit, other.turn[r] = -1.0 * cross(arm_b, unit);
@@ -169,10 +169,7 @@ void HeapTies::weigh(Tie& tie, std::span<const HeapMotion> motions) const {
     return;
   }
   for (int r = 0; r < 3; ++r) matrix.m[r][r] += 1e-12 * size;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 column = solve(matrix, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});
-    tie.mass.m[0][k] = column.x, tie.mass.m[1][k] = column.y, tie.mass.m[2][k] = column.z;
-  }
+  for (int k = 0; k < 3; ++k) tie.mass.set_column(k, solve(matrix, unit_vector(k)));
 }
 
 double HeapTies::rate_of(const Tie& tie, int r, std::span<const HeapMotion> motions) const {

@@ -14,7 +14,7 @@ from amount import TRIES_ALL
 
 import iota
 
-CALLS = int(os.environ.get("IOTA_FUZZ_CALLS", "3000" if TRIES_ALL else "1000"))
+CALLS = int(os.environ.get("IOTA_FUZZ_CALLS", "3000" if TRIES_ALL else "500"))
 ROUNDS = 10
 ITERATIONS = 0 if TRIES_ALL else 300  # of a step: a search for what has no solution takes seconds
 # Slow, and swept elsewhere; threads: a crash in a worker thread is no finding that a seed repeats.

@@ -60,44 +60,57 @@ it.each(runsAll ? kinds : ["line", "light", "paint"])("a missing and a displaced
   await change("root.position.x -= 0.2");
 });
 
-it("sparks glow: around a ball, which covers what is behind it, is light that only adds to that, and fades", async () => {
-  const rings = await tab.page.evaluate(() => {
-    const { viewer: { renderer, scene, camera }, world: { entities: { particleSet } } } = iota.page;
-    const radius = 0.03;
-    const at = [0, 30, 0] as const;  // before the sky alone
-    particleSet.takeSparks({ count: 1, position: Float32Array.from(at), radius: Float32Array.of(radius), color: Uint32Array.of(0xffa020) } as Parameters<typeof particleSet.takeSparks>[0]);
-    const eye = camera.clone();
-    eye.position.set(at[0], at[1], at[2] + 12 * radius);
-    eye.rotation.set(0, 0, 0);
-    eye.near = radius;
-    eye.updateProjectionMatrix();
-    const gl = renderer.getContext();
-    const pixelsOf = (visible: boolean) => {
-      particleSet.root.visible = visible;
-      renderer.render(scene, eye);
-      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-      return pixels;
-    };
-    const [before, after] = [pixelsOf(false), pixelsOf(true)];
-    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-    const ball = height / 2 / (12 * Math.tan((eye.fov * Math.PI) / 360));  // px
-    const within = (from: number, to: number) => {
-      const changes: number[] = [];
-      for (let pixel = 0; pixel < width * height; pixel++) {
-        const away = Math.hypot((pixel % width) + 0.5 - width / 2, Math.floor(pixel / width) + 0.5 - height / 2) / ball;
-        if (away > from && away < to) changes.push(...[0, 1, 2].map((channel) => after[4 * pixel + channel] - before[4 * pixel + channel]));
-      }
-      const [sum, least, most] = changes.reduce(([total, low, high], change) => [total + change, Math.min(low, change), Math.max(high, change)], [0, 255, -255]);
-      return { mean: sum / changes.length, least, most };
-    };
-    return { ball: within(0, 0.8), near: within(1.15, 1.6), far: within(2, 2.6), beyond: within(3.1, 3.4) };
-  });
+/** Changes of the picture by one spark before the sky, by the distance from its middle in radii. */
+const ringsOf = (theme: "light" | "dark", hex: number, channels: number[]) => tab.page.evaluate(({ theme, hex, channels }) => {
+  const { viewer: { renderer, scene, camera }, world: { entities: { particleSet } } } = iota.page;
+  const radius = 0.03;
+  const at = [0, 30, 0] as const;
+  particleSet.setTheme(theme);
+  particleSet.takeSparks({ count: 1, position: Float32Array.from(at), radius: Float32Array.of(radius), color: Uint32Array.of(hex) } as Parameters<typeof particleSet.takeSparks>[0]);
+  const eye = camera.clone();
+  eye.position.set(at[0], at[1], at[2] + 12 * radius);
+  eye.rotation.set(0, 0, 0);
+  eye.near = radius;
+  eye.updateProjectionMatrix();
+  const gl = renderer.getContext();
+  const pixelsOf = (visible: boolean) => {
+    particleSet.root.visible = visible;
+    renderer.render(scene, eye);
+    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return pixels;
+  };
+  const [before, after] = [pixelsOf(false), pixelsOf(true)];
+  particleSet.setTheme("light");
+  const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  const ball = height / 2 / (12 * Math.tan((eye.fov * Math.PI) / 360));  // px
+  const within = (from: number, to: number) => {
+    const changes: number[] = [];
+    for (let pixel = 0; pixel < width * height; pixel++) {
+      const away = Math.hypot((pixel % width) + 0.5 - width / 2, Math.floor(pixel / width) + 0.5 - height / 2) / ball;
+      if (away > from && away < to) changes.push(...channels.map((channel) => after[4 * pixel + channel] - before[4 * pixel + channel]));
+    }
+    const [sum, least, most] = changes.reduce(([total, low, high], change) => [total + change, Math.min(low, change), Math.max(high, change)], [0, 255, -255]);
+    return { mean: sum / changes.length, least, most };
+  };
+  return { ball: within(0, 0.8), edge: within(0.2, 1.15), near: within(1.15, 1.6), far: within(2, 2.6), beyond: within(3.1, 3.4) };
+}, { theme, hex, channels });
+
+it("sparks glow at night: around a ball, which covers what is behind it, is light that only adds to that, and fades", async () => {
+  const rings = await ringsOf("dark", 0xffa020, [0, 1, 2]);
   expect(Math.max(-rings.ball.least, rings.ball.most), "the ball is seen").toBeGreaterThan(40);
   expect(rings.near.least, "nothing about it is darker").toBeGreaterThanOrEqual(-1);
   expect(rings.near.mean).toBeGreaterThan(4);
   expect(rings.far.mean).toBeGreaterThan(0.3);
   expect(rings.far.mean).toBeLessThan(0.7 * rings.near.mean);
+  expect([rings.beyond.least, rings.beyond.most]).toEqual([0, 0]);
+});
+
+it("a spark by day has no rim: edge and halo are between its own color and that of the sky", async () => {
+  const rings = await ringsOf("light", 0x2060ff, [0, 1]);  // less red and green than the sky
+  expect(rings.ball.mean, "the ball is seen").toBeLessThan(-40);
+  expect(rings.edge.most).toBeLessThanOrEqual(1);
+  expect(rings.near.most).toBeLessThanOrEqual(1);
   expect([rings.beyond.least, rings.beyond.most]).toEqual([0, 0]);
 });
 

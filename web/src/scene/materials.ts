@@ -67,8 +67,9 @@ function makeBase(name: string): MeshStandardMaterial {
       set({ color: "#8fc9bd", roughness: 0.18, transparent: true, opacity: 0.72 });
       break;
     default:
-      // As glossy plastic: a sharp highlight and a faint mirror at grazing angles, at the cost of a matte one.
-      set({ color: "#c9c4ba", roughness: 0.3 });
+      // As plastic under a clear coat, which mirrors sharply; the color below it is soft.
+      set({ color: "#c9c4ba", roughness: 0.5 });
+      Object.assign(material.defines ?? {}, { USE_CLEARCOAT: "" });
   }
   return material;
 }
@@ -95,7 +96,7 @@ if (fade > 0.5 && (fade < 32.5 ? grain > fade : grain < fade - 32.0)) discard;`;
 
 function tint(material: MeshStandardMaterial, light: number, fades: boolean): void {
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, { meanLight: { value: light }, openness });
+    Object.assign(shader.uniforms, { meanLight: { value: light }, openness, clearcoat: { value: 1 }, clearcoatRoughness: { value: 0.08 } });
     shader.vertexShader = shader.vertexShader.replace(...seenNormal("vertex"));
     shader.fragmentShader = shader.fragmentShader.replace(...seenNormal("fragment"));
     shader.vertexShader = shader.vertexShader

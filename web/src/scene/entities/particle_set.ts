@@ -17,11 +17,14 @@ const mostReserved = 4096;
 /** Linear values of the 256 values of a channel. */
 const linear = Float32Array.from({ length: 256 }, (_, value) => new Color().setHex(value).b);
 
-/** A bright ball with a halo: the ball covers the background, the halo only adds light. */
+/**
+ * A bright ball with a halo. At night the ball covers the background, and the halo only adds light. By day light that is added to a bright
+ * sky would be a rim around the ball, so the halo covers, too. Pictures are mixed in the screen's colors: edges cover as much as is seen.
+ */
 function makeGlow(): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, depthWrite: false, fog: false, toneMapped: false,
-    uniforms: { glow: { value: 0.3 } },
+    uniforms: { day: { value: 1 } },
     blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor,
     vertexShader: `
       varying vec2 vPlace;
@@ -34,17 +37,18 @@ function makeGlow(): ShaderMaterial {
         gl_Position = projectionMatrix * center;
       }`,
     fragmentShader: `
-      uniform float glow;
+      uniform float day;
       varying vec2 vPlace;
       varying vec3 vColor;
+      vec3 onScreen(vec3 light) { return linearToOutputTexel(vec4(light, 1.0)).rgb; }
       void main() {
         float radius = length(vPlace);
-        float ball = 1.0 - smoothstep(0.2, 1.1, radius);
-        float halo = glow * pow(max(1.0 - radius / 3.0, 0.0), 2.5);
+        float ball = pow(1.0 - smoothstep(0.2, 1.1, radius), 1.0 + day);
+        float halo = pow(max(1.0 - radius / 3.0, 0.0), 2.5);
         float hot = max(1.0 - radius, 0.0);
-        vec3 shown = ball * mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r) + halo * vColor;
-        gl_FragColor = vec4(shown, 0.92 * ball);
-        #include <colorspace_fragment>
+        vec3 color = mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r);
+        float cover = onScreen(vec3(ball)).r, veil = 0.6 * day * halo * (1.0 - cover);
+        gl_FragColor = vec4(onScreen(ball * color + 0.32 * (1.0 - day) * halo * vColor) + veil * onScreen(vColor), cover + veil);
       }`,
   });
 }
@@ -65,9 +69,8 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     this.reserve_(64);
   }
 
-  /** On a bright ground the halo is weaker. */
   setTheme(theme: "light" | "dark"): void {
-    this.mesh_.material.uniforms["glow"].value = theme === "dark" ? 0.32 : 0.07;
+    this.mesh_.material.uniforms["day"].value = theme === "light" ? 1 : 0;
   }
 
   /** Number of shown sparks. */
