@@ -108,8 +108,8 @@ void bind_log(nb::module_& module) {
             return std::tuple(as_bytes(piece.commands), piece.is_broken, piece.time, piece.hash,
                               piece.structure_version);
           },
-          "None while a batch of edits is open. Else the commands since the last call; whether the state was replaced, so that a snapshot has to follow; the time (s), "
-          "the hash and the structure version of the state.")
+          "None while a batch of edits is open. Else the commands since the last call; whether the state was replaced, so that "
+          "a snapshot has to follow; the time (s), the hash and the structure version of the state.")
       .def_prop_ro(
           "hash", [](const LogObject& self) { return self.use("hash").hash(); },
           "A hash of the state, found in a fifth of the time of `System.state_hash`.")

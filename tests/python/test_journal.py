@@ -730,6 +730,35 @@ def test_an_error_in_the_journal_itself_does_not_end_the_world(
     assert abs(first.system.time - 5 / 120) < 1e-9
 
 
+def test_steps_and_controls_of_a_running_world_are_in_its_file_within_a_fifth_of_a_second(
+    make: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """In real time, with the usual pace of the thread that writes, which nobody wakes."""
+    monkeypatch.setattr(journals, "HAND_OVER", 0.1)
+    first = make(lambda kept: setattr(kept, "slider", kept.world.controls.slider("gain", 0, 9, 0)))
+
+    def run(seconds: float) -> None:
+        end = time.perf_counter() + seconds
+        while time.perf_counter() < end:
+            first.steps(1)
+            time.sleep(1 / 120)
+
+    def in_file() -> tuple[float, float]:
+        found = find(Folder(tmp_path / "kept"))
+        assert found is not None
+        return found.end, found.world["controls"]["Slider gain 1"]
+
+    late = 0
+    for value in range(1, 5):
+        run(0.35)
+        first.slider.value = value  # type: ignore[attr-defined]
+        when = first.system.time
+        run(0.2)
+        end, kept_value = in_file()
+        late += end < when or kept_value != value
+    assert late <= 1, "unless the machine was busy for a moment"
+
+
 UNSHARE = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
 DISKS = {
     "read-only": ('mount --bind "$0" "$0" && mount -o remount,ro,bind "$0"', "Read-only file system"),

@@ -122,7 +122,9 @@ describe("the page of a chain", () => {
     });
     expect(parts.filter(Boolean)).toHaveLength(12);
     await tab.goOn(0.3);
+    await tab.pause(true);  // what has fallen to the ground is joined by other ends
     await tab.picture("broken");
+    await tab.pause(false);
     await tab.page.keyboard.press("c");
     await tab.until("there is one part", () => new Set(iota.articulates().values()).size === 1);
     await inPython(1);

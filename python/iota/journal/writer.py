@@ -16,7 +16,7 @@ from iota.journal.records import MAGIC, Commands, pack
 from iota.saving import sync
 
 HAND_OVER = 0.1  # s, between two calls of `put` of a world that steps: what a killed process loses
-LOOK, LOOK_AGAIN, LOOK_UNTIL = 0.12, 0.02, 0.25  # s after a `put`: when the thread looks for the next one unasked
+LOOK, LOOK_AGAIN, LOOK_UNTIL = 0.12, 0.04, 0.25  # s after a `put`: when the thread looks for the next one unasked
 SYNC_TIME = 0.08  # s, between two syncs: less than between two hand-overs, so that each is on the disk at once
 RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
 MOST_WAITING = 300  # records that wait for a slow disk; then a new generation begins when it is done with them
@@ -28,10 +28,8 @@ Item = tuple[Sequence[Content], bool, bool]  # whether it begins a generation, w
 
 class Writer:
     """Puts records into the files of a folder. It never raises: what cannot be written is told once, by `tell(text)` on
-    its thread, and tried again. `written()` is called there, too, after each `put` that it has dealt with. wants_all: the next records must begin a generation. bytes: of the present generation.
-
-    A `put` of commands wakes the thread only if it sleeps: to wake one takes longer than all else that the thread of a small
-    world does for its journal. So the thread looks by itself when the next `put` is due."""
+    its thread, and tried again. `written()` is called there, too, after each `put` that it has dealt with. wants_all: the next records
+    must begin a generation. bytes: of the present generation."""
 
     def __init__(
         self,
@@ -67,8 +65,9 @@ class Writer:
         """Whether records are written at present."""
         return self._retry_at is None and not self._is_fenced and not self._is_behind
 
-    def put(self, records: Sequence[Content], begins: bool = False) -> None:
-        """From the thread of the world. begins: these are all that a new generation needs."""
+    def put(self, records: Sequence[Content], begins: bool = False, is_due: bool = False) -> None:
+        """From the thread of the world. begins: these are all that a new generation needs. is_due: each HAND_OVER, when this thread looks
+        by itself. To wake it takes longer than all else that the thread of a small world does for its journal."""
         if begins:
             self._retry_at = None  # not again until this one has failed
         elif len(self._waiting) >= MOST_WAITING:
@@ -81,7 +80,7 @@ class Writer:
         has_gap, self._is_behind = self._is_behind, False
         self._put_at = time.monotonic()
         self._waiting.append((records, begins, has_gap))
-        if self._sleeps or begins:
+        if self._sleeps or not is_due:
             self._wake.set()
 
     def flush(self, longest: float | None = None) -> None:

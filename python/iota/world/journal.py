@@ -74,9 +74,7 @@ class Journal:
         self._checked_at = self._next = self._began_at = self._quick_at = 0.0
         self._is_broken = False  # what was taken from the log
         self._is_quick_behind = False  # the last quick snapshot: there were commands since
-        self._are_commands_all = (
-            False  # that has to be written at the next hand-over, unless the thread that writes sees more
-        )
+        self._are_commands_all = False  # there was nothing else to write, when last seen
         self._read()
 
     # --- what the script keeps ----------------------------------------------------------------------------------------
@@ -259,7 +257,7 @@ class Journal:
             self._is_broken = self._is_broken or is_broken
             return False
         self._is_quick_behind = True
-        writer.put((("C", (of_world, hash, now - self._checked_at, commands)),))
+        writer.put((("C", (of_world, hash, now - self._checked_at, commands)),), is_due=True)
         if structure != self._structure:
             return False
         self._checked_at, self._next = now, now + HAND_OVER
