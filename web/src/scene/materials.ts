@@ -68,7 +68,7 @@ function makeBase(name: string): MeshStandardMaterial {
       break;
     default:
       // As plastic under a clear coat, which mirrors sharply; the color below it is soft.
-      set({ color: "#c9c4ba", roughness: 0.5 });
+      set({ color: "#c9c4ba", roughness: 0.4 });
       Object.assign(material.defines ?? {}, { USE_CLEARCOAT: "" });
   }
   return material;
