@@ -723,7 +723,7 @@ def test_an_error_in_the_journal_itself_does_not_end_the_world(
 ) -> None:
     first = make()
     first.steps(2)
-    monkeypatch.setattr(writer.Writer, "put", lambda *_: 1 / 0)
+    monkeypatch.setattr(writer.Writer, "put", lambda *_, **named: 1 / 0)
     first.steps(3)
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert "this world is no longer kept in" in line and "ZeroDivisionError" in line
