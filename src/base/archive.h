@@ -107,8 +107,8 @@ class Hasher {
   std::uint64_t state_ = 14695981039346656037ull;
 };
 
-/// As `Hasher`, but takes a value at once and not a byte after the other, in a fifth of its time. Equal states and values
-/// of another bit never meet, since each step is a permutation of the states.
+/// As `Hasher`, but takes a whole value at once and not its bytes, in a fifth of the time. Two runs that differ in one value
+/// give different results, since each value permutes the states.
 class WordHasher {
  public:
   template <class T>

@@ -22,7 +22,7 @@ RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
 MOST_WAITING = 300  # records that wait for a slow disk; then a new generation begins when it is done with them
 GAP = 1000  # in the numbers of records, after some that were not written
 
-Content = tuple[str, bytes | tuple[float, int, float, bytes]]  # kind, content; that of `Commands` as a tuple
+Content = tuple[str, bytes | Commands]  # kind, content
 Item = tuple[Sequence[Content], bool, bool]  # whether it begins a generation, whether others before it were left out
 
 
@@ -245,7 +245,7 @@ class Writer:
 
 def packed(records: Sequence[Content], number: int) -> bytes:
     """The bytes of records after the one with this number."""
-    contents = ((kind, Commands(*each).to_bytes() if isinstance(each, tuple) else each) for kind, each in records)
+    contents = ((kind, each.to_bytes() if isinstance(each, Commands) else each) for kind, each in records)
     return b"".join(pack(kind, number + n, content) for n, (kind, content) in enumerate(contents, 1))
 
 

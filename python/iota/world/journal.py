@@ -21,7 +21,7 @@ from iota.arguments import SHORT
 from iota.errors import WrongThreadError
 from iota.journal.folder import Folder
 from iota.journal.reader import Found, JournalError, find, recover
-from iota.journal.records import FORMAT, schema_of, without_schema
+from iota.journal.records import FORMAT, Commands, schema_of, without_schema
 from iota.journal.writer import HAND_OVER, Content, Writer
 from iota.world.callbacks import one_line, print_on_terminal
 from iota.world.going_on import ask_to_go_on, people_in
@@ -257,7 +257,7 @@ class Journal:
             self._is_broken = self._is_broken or is_broken
             return False
         self._is_quick_behind = True
-        writer.put((("C", (of_world, hash, now - self._checked_at, commands)),), is_due=True)
+        writer.put((("C", Commands(of_world, hash, now - self._checked_at, commands)),), is_due=True)
         if structure != self._structure:
             return False
         self._checked_at, self._next = now, now + HAND_OVER
@@ -294,18 +294,18 @@ class Journal:
             self._log.take()
         records: list[Content] = []
         if commands and takes and not is_broken:  # the file before leads up to the snapshot
-            records.append(("C", (of_world, hash, seconds, commands)))
+            records.append(("C", Commands(of_world, hash, seconds, commands)))
             self._is_quick_behind = True
         if begins:
             if records:
                 writer.put(records)
             self._begin_file(writer, now, snapshot or b"")
             return
+        uses_functions = self._uses_functions()
         if snapshot is not None:
             records += self._checkpoint(snapshot)
-        elif self._is_quick_behind and now >= self._quick_at and self._uses_functions():
+        elif uses_functions and self._is_quick_behind and now >= self._quick_at:
             records += self._quick(now)
-        uses_functions = self._uses_functions()
         if (version := self._world_version()) != self._version:
             self._version = version
             records.append(("W", self._world_now()))
@@ -326,7 +326,7 @@ class Journal:
         taken = self._log.take()
         if writer.takes and taken is not None:
             commands, _, of_world, hash, _ = taken
-            records: list[Content] = [("C", (of_world, hash, 0.0, commands))] if commands else []
+            records: list[Content] = [("C", Commands(of_world, hash, 0.0, commands))] if commands else []
             writer.put([*records, ("E", b"")])
         self._log.stop()
         self._stop(writer)
@@ -424,7 +424,6 @@ class Journal:
 
     def _world_now(self) -> bytes:
         state = self._state
-        self._uses_functions()
         clock = state.clock
         now = {
             "clock": {"paused": clock.paused, "speed": clock.speed},
