@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 from iota import studies
+from iota._core import Log
 from iota.journal.folder import Folder
 from iota.journal.reader import find, recover
 from iota.world import World
@@ -30,16 +31,24 @@ BEGIN = 3.0  # s: by then what comes to rest is there
 spent = [0.0]  # s, on the thread of the world
 
 
-def clock_steps() -> None:
-    """Adds up what a journal does after each step, without the time of the clock itself."""
-    note_step = Journal.note_step
+def clock_hand_overs() -> None:
+    """Adds up what a journal does on the thread of the world but for the native part, without the time of the clock itself."""
+    hand_over = Journal.hand_over
 
-    def call(self: Journal, ended: float, seconds: float, is_exact: bool) -> None:
+    def call(self: Journal) -> None:
         before, began = time.perf_counter(), time.perf_counter()
-        note_step(self, ended, seconds, is_exact)
+        hand_over(self)
         spent[0] += time.perf_counter() - began - (began - before)
 
-    Journal.note_step = call  # type: ignore[method-assign]
+    Journal.hand_over = call  # type: ignore[method-assign]
+
+
+def cut_time(log: Log, does: bool) -> float:
+    """Time of the native part, which reads all of the state once in a tenth of a second, after a step that has used the caches, s. does: or
+    only of the call of it, which that part does not have."""
+    before, began = time.perf_counter(), time.perf_counter()
+    _ = log.hash if does else log.is_editing
+    return time.perf_counter() - began - (began - before)
 
 
 def written(world: World) -> float:
@@ -49,11 +58,15 @@ def written(world: World) -> float:
     return time.clock_gettime(time.pthread_getcpuclockid(journal._writer._thread.ident or 0))
 
 
-def turn(world: World) -> float:
-    """Processor time of a step, s, in real time."""
+def turn(world: World, cuts: dict[bool, list[float]] | None = None) -> float:
+    """Processor time of a step, s, in real time. cuts: gets what `cut_time` tells."""
     began, due = time.process_time(), time.perf_counter()
-    for _ in range(TURN):
+    log = Log(world.system)
+    for step in range(TURN):
         world.step()
+        if cuts is not None and step % 4 == 0:
+            does = step % 8 == 0
+            cuts[does].append(cut_time(log, does))
         due += world.dt
         time.sleep(max(0.0, due - time.perf_counter()))
     return (time.process_time() - began) / TURN
@@ -66,13 +79,20 @@ def measure(name: str, seconds: float) -> None:
         times: dict[bool, list[float]] = {True: [], False: []}
         while kept.system.time < BEGIN:
             turn(kept), turn(plain)
-        spent[0], wrote = 0.0, written(kept)
         turns = max(1, round(seconds / TURN / kept.dt / 2))
         for _ in range(turns):
             times[True].append(turn(kept))
             times[False].append(turn(plain))
+        cuts: dict[bool, list[float]] = {True: [], False: []}
+        for _ in range(4):
+            turn(plain, cuts)
         with_it, without = (statistics.median(times[is_kept]) for is_kept in (True, False))
+        turn(kept)  # goes on without a pause, after which a world hands over
+        spent[0], wrote = 0.0, written(kept)
+        for _ in range(turns):
+            turn(kept)
         hands, writes = (1e6 * each / turns / TURN for each in (spent[0], written(kept) - wrote))
+        hands += 1e6 * (statistics.mean(cuts[True]) - statistics.mean(cuts[False])) * kept.dt / 0.1
         state = kept.system.state_hash()
         kept.close()
         size = sum(file.stat().st_size for file in Path(folder).glob("*.journal"))
@@ -96,7 +116,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=6.0, help="of each study (default: 6)")
     parser.add_argument("studies", nargs="*", default=STUDIES)
     given = parser.parse_args()
-    clock_steps()
+    clock_hand_overs()
     print("a step, us: without  with journal   handing over      %    writing    files, kB  comes back, ms")
     for name in given.studies:
         measure(name, given.seconds)

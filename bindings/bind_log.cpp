@@ -4,6 +4,7 @@
 #include <nanobind/stl/set.h>
 #include <nanobind/stl/tuple.h>
 
+#include <chrono>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -95,21 +96,34 @@ void bind_log(nb::module_& module) {
           [](LogObject* self, nb::handle system) { new (self) LogObject{nb::borrow(system), to_system(system)}; },
           "system"_a, nb::sig("def __init__(self, system: System) -> None"))
       .def(
-          "start", [](const LogObject& self) { self.use("start").start(); }, "Logs from now on.")
+          "start", [](const LogObject& self, double cut_each) { self.use("start").start(cut_each); },
+          "cut_each"_a = 0.0, "Logs from now on. cut_each: see `take_cut`, s of real time; 0: never.")
       .def(
           "stop", [](const LogObject& self) { self.use("stop").stop(); }, "Logs no more.")
       .def(
           "take",
-          [](const LogObject& self)
-              -> std::optional<std::tuple<nb::bytes, bool, double, std::uint64_t, std::uint32_t>> {
+          [](const LogObject& self) -> std::optional<std::tuple<nb::bytes, bool, double, std::uint64_t, double>> {
             System& system = self.system->use_between_steps("take");
             if (system.edits().is_open()) return std::nullopt;
             const LogPiece piece = system.log().take();
-            return std::tuple(as_bytes(piece.commands), piece.is_broken, piece.time, piece.hash,
-                              piece.structure_version);
+            return std::tuple(as_bytes(piece.commands), piece.is_broken, piece.time, piece.hash, piece.seconds);
           },
-          "None while a batch of edits is open. Else the commands since the last call; whether the state was replaced, so that "
-          "a snapshot has to follow; the time (s), the hash and the structure version of the state.")
+          "None while a batch of edits is open. Else the commands that were not taken yet; whether the state was replaced, so that "
+          "a snapshot has to follow; the time (s) and the hash of the state; the seconds of real time.")
+      .def(
+          "take_cut",
+          [](const LogObject& self) -> std::optional<std::tuple<nb::bytes, double, std::uint64_t, double, double>> {
+            const LogPiece piece = self.system->engine.log().take_cut();
+            if (piece.commands.empty()) return std::nullopt;
+            const std::chrono::duration<double> age = std::chrono::steady_clock::now() - piece.ended;
+            return std::tuple(as_bytes(piece.commands), piece.time, piece.hash, piece.seconds, age.count());
+          },
+          "On any thread: the commands until the log was last cut, as of `take`, and the seconds since then. The log is cut from time "
+          "to time after a step: not after a change of the structure, nor before the first call of `take`, until its next. None if it "
+          "was not cut.")
+      .def(
+          "hold_cuts", [](const LogObject& self) { self.use("hold_cuts").hold_cuts(); },
+          "The log is not cut until the next call of `take`.")
       .def_prop_ro(
           "hash", [](const LogObject& self) { return self.use("hash").hash(); },
           "A hash of the state, found in a fifth of the time of `System.state_hash`.")

@@ -4,6 +4,7 @@
 #include <iota/forces.h>
 #include <iota/record.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,7 +19,8 @@ struct LogPiece {
   std::vector<std::byte> commands;  ///< as in a `Recording`
   double time = 0;                  ///< of the system after them, s
   std::uint64_t hash = 0;           ///< `Log::hash` after them; 0 without commands
-  std::uint32_t structure_version = 0;
+  double seconds = 0;               ///< of real time in which they were given
+  std::chrono::steady_clock::time_point ended;
   /// The state was replaced by a `restore`, or more was logged than `Log::most_bytes`: a snapshot has to come before what is
   /// logged next. Then there are no commands.
   bool is_broken = false;
@@ -42,10 +44,17 @@ class Log : public View {
 
   explicit Log(Core& core) : View(core) {}
 
-  void start();
+  /// cut_each: see `take_cut`, s of real time; 0: never.
+  void start(double cut_each = 0);
   void stop();
-  /// The commands since the last call.
+  /// The commands that were not taken yet.
   LogPiece take();
+  /// The commands until the log was last cut, which it is from time to time after a step: not in a batch of edits, not
+  /// after a change of the structure, nor before the first call of `take`, until its next. May be called on any thread while
+  /// the system runs. Empty if it was not cut.
+  LogPiece take_cut();
+  /// It is not cut until the next call of `take`.
+  void hold_cuts();
   /// A hash of the state, found in a fifth of the time of `System::state_hash`.
   std::uint64_t hash() const;
   /// As `System::snapshot`, but later it does not keep functions of the script alive for a `restore`.

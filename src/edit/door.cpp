@@ -89,7 +89,7 @@ Snapshot Door::take_snapshot(For reader) {
 void Door::start_recording() {
   editor_.forget_history();  // a replay would not have this history
   recording_ = Recording{editor_.snapshot(), {}, {}};
-  break_log();
+  log_.break_off();
   editor_.keeps_functions = true;
 }
 
@@ -103,6 +103,7 @@ Recording Door::stop_recording() {
 
 void Door::record_step(const Step& step) {
   record(step);
+  if (!editor_.batch) log_.cut_if_due(editor_.model);
   if (recording_) recording_->hashes.push_back(editor_.model.hash());
 }
 
@@ -140,7 +141,7 @@ std::optional<std::uint64_t> Door::replay(const Recording& recording,
     if (steps >= recording.hashes.size() || editor_.model.hash() != recording.hashes[steps++])
       differs = editor_.model.step;
   });
-  break_log();
+  log_.break_off();
   return differs;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "edit/command_log.h"
 #include "edit/commands.h"
 
-#include <iota/log.h>
 #include <iota/reports.h>
 
 #include <functional>
@@ -52,13 +52,7 @@ class Door {
 
   /// @name Logs: see `Log`
   ///@{
-  void start_log() { log_.emplace(); }
-  void stop_log() { log_.reset(); }
-  LogPiece take_log() { return log_ ? std::exchange(*log_, {}) : LogPiece{}; }
-  /// The state was replaced, which no command repeats.
-  void break_log() {
-    if (log_) *log_ = {.is_broken = true};
-  }
+  CommandLog& log() { return log_; }
   void repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute);
   ///@}
 
@@ -79,11 +73,9 @@ class Door {
   bool is_stepping_ = false;
   std::vector<std::byte> queue_;  // requested during the step, as in a recording
   std::optional<Recording> recording_;
-  std::optional<LogPiece> log_;
+  CommandLog log_;
 };
 
-/// Appends a command as recordings have it. A `Command` is not made of it: each file that executes commands would compile
-/// that for all of them.
 template <class C>
 void write(std::vector<std::byte>& bytes, const C& command) {
   Writer writer(bytes);
@@ -151,9 +143,7 @@ void Door::note_edit() {
 template <class C>
 void Door::record(const C& command) {
   if (recording_) write(recording_->commands, command);
-  if (!log_ || log_->is_broken) return;
-  write(log_->commands, command);
-  if (log_->commands.size() > Log::most_bytes) break_log();
+  log_.record(command);
 }
 
 }  // namespace iota::edit

@@ -47,11 +47,11 @@ bool is_there(const Core& core, FunctionUse::Kind kind, std::uint64_t key) {
 }  // namespace
 
 // A function that is registered from now on must not be taken for one that another process has registered.
-void Log::start() {
+void Log::start(double cut_each) {
   std::uint64_t& next = core_.held.functions.next_key;
   for_each_function(core_,
                     [&](FunctionUse::Kind, std::uint64_t key, const std::string&) { next = std::max(next, key + 1); });
-  core_.door.start_log();
+  core_.door.log().start(cut_each);
 }
 
 std::vector<FunctionUse> Log::functions() const {
@@ -66,15 +66,13 @@ void Log::give_function(std::uint64_t key, ScriptedLaw law) {
   core_.held.functions.of_bonds.insert_or_assign(key, std::move(law));
 }
 
-void Log::stop() { core_.door.stop_log(); }
+void Log::stop() { core_.door.log().stop(); }
 
-LogPiece Log::take() {
-  LogPiece piece = core_.door.take_log();
-  piece.time = core_.model.time;
-  piece.structure_version = core_.model.structure_version;
-  if (!piece.commands.empty()) piece.hash = hash();
-  return piece;
-}
+LogPiece Log::take() { return core_.door.log().take(core_.model); }
+
+LogPiece Log::take_cut() { return core_.door.log().take_cut(); }
+
+void Log::hold_cuts() { core_.door.log().hold_cuts(); }
 
 std::uint64_t Log::hash() const { return core_.model.quick_hash(); }
 

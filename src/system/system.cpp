@@ -161,7 +161,7 @@ void System::restore(const Snapshot& snapshot) {
   if (core_->door.is_recording()) throw std::logic_error("restore: stop the recording first");
   core_->editor.restore(snapshot);
   core_->editor.forget_history();
-  core_->door.break_log();
+  core_->door.log().break_off();
 }
 
 }  // namespace iota

@@ -65,7 +65,7 @@ class Found:
 
 @dataclass
 class Recovered:
-    """time: of the world, s. lost: at most, s. is_equal: all logged hashes were reached."""
+    """time: of the world, s. lost: at most, s. is_equal: it is the last state that was logged."""
 
     time: float
     lost: float
@@ -199,6 +199,7 @@ def recover(system: System, found: Found, passed: Callable[[Log], object] = lamb
         if quick is not None and quick.place > done:
             system.restore(quick.snapshot)
             set_history(log, quick.undo, quick.redo, found.schema)
+            is_equal = quick.place == len(found.pieces)
         else:
             repeat(system, log, found, done, lambda log: None)
     log.let_go()

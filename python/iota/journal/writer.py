@@ -15,8 +15,8 @@ from iota.journal.folder import File, Folder
 from iota.journal.records import MAGIC, Commands, pack
 from iota.saving import sync
 
-HAND_OVER = 0.1  # s, between two calls of `put` of a world that steps: what a killed process loses
-LOOK, LOOK_AGAIN, LOOK_UNTIL = 0.12, 0.04, 0.25  # s after a `put`: when the thread looks for the next one unasked
+HAND_OVER = 0.1  # s, between two pieces of the log of a world that steps: what a killed process loses
+LOOK = 0.12  # s after a piece: when the next one is there
 SYNC_TIME = 0.08  # s, between two syncs: less than between two hand-overs, so that each is on the disk at once
 RETRY_TIME = 5.0  # s, between tries on a disk that cannot be written
 MOST_WAITING = 300  # records that wait for a slow disk; then a new generation begins when it is done with them
@@ -28,21 +28,21 @@ Item = tuple[Sequence[Content], bool, bool]  # whether it begins a generation, w
 
 class Writer:
     """Puts records into the files of a folder. It never raises: what cannot be written is told once, by `tell(text)` on
-    its thread, and tried again. `written()` is called there, too, after each `put` that it has dealt with. wants_all: the next records
-    must begin a generation. bytes: of the present generation."""
+    its thread, and tried again. cut: called there, too, some time after records, once unless it returns some more and their age (s). wants_all:
+    the next records must begin a generation. bytes: of the present generation."""
 
     def __init__(
         self,
         folder: Folder,
         tell: Callable[[str], None],
         aside: Sequence[File] = (),
-        written: Callable[[], object] = lambda: None,
+        cut: Callable[[], tuple[Commands, float] | None] = lambda: None,
     ) -> None:
-        self._folder, self._tell, self._aside, self._written = folder, tell, list(aside), written
+        self._folder, self._tell, self._aside, self._cut = folder, tell, list(aside), cut
         self._waiting: deque[Item | threading.Event | None] = deque()
+        self._order = threading.Lock()  # what is cut is younger than all that waits
         self._wake = threading.Event()
-        self._sleeps = False  # until it is woken
-        self._put_at = 0.0  # s
+        self._look_at: float | None = None  # s, when to ask for what was cut
         self._file: int | None = None
         self._number = self._generation = self.bytes = 0
         self._retry_at: float | None = 0.0  # s; None while all is well
@@ -65,9 +65,8 @@ class Writer:
         """Whether records are written at present."""
         return self._retry_at is None and not self._is_fenced and not self._is_behind
 
-    def put(self, records: Sequence[Content], begins: bool = False, is_due: bool = False) -> None:
-        """From the thread of the world. begins: these are all that a new generation needs. is_due: each HAND_OVER, when this thread looks
-        by itself. To wake it takes longer than all else that the thread of a small world does for its journal."""
+    def put(self, records: Sequence[Content], begins: bool = False) -> None:
+        """From the thread of the world. begins: these are all that a new generation needs."""
         if begins:
             self._retry_at = None  # not again until this one has failed
         elif len(self._waiting) >= MOST_WAITING:
@@ -78,10 +77,7 @@ class Writer:
             self._is_behind = True
             return
         has_gap, self._is_behind = self._is_behind, False
-        self._put_at = time.monotonic()
-        self._waiting.append((records, begins, has_gap))
-        if self._sleeps or not is_due:
-            self._wake.set()
+        self._ask((records, begins, has_gap))
 
     def flush(self, longest: float | None = None) -> None:
         """Waits until the thread has written all records, but not longer than that (s)."""
@@ -94,8 +90,9 @@ class Writer:
         self._ask(None)
         self._thread.join()
 
-    def _ask(self, item: threading.Event | None) -> None:
-        self._waiting.append(item)
+    def _ask(self, item: Item | threading.Event | None) -> None:
+        with self._order:
+            self._waiting.append(item)
         self._wake.set()
 
     # --- on its thread ------------------------------------------------------------------------------------------------
@@ -104,6 +101,7 @@ class Writer:
         while True:
             if not self._waiting:
                 self._rest()
+                self._look()
                 continue
             item = self._waiting.popleft()
             if item is None:
@@ -120,7 +118,7 @@ class Writer:
                 self._begin(records)
             elif self._file is not None:
                 self._attempt(lambda records=records: self._append(records))  # type: ignore[misc]
-            self._written()
+            self._look_at = time.monotonic() + LOOK
         if self._is_dirty:
             self._attempt(self._sync)
         self._forget_file()
@@ -131,16 +129,26 @@ class Writer:
         if self._is_dirty and now >= self._sync_at:
             self._attempt(self._sync)
             return
-        age = now - self._put_at
-        ends = [self._sync_at - now] if self._is_dirty else []
-        if age < LOOK_UNTIL:
-            ends.append(max(LOOK - age, LOOK_AGAIN))
-        else:
-            self._sleeps = True
-        if not self._waiting:  # what comes now sees that it sleeps
-            self._wake.wait(min(ends, default=None))
-        self._sleeps = False
+        ends = [self._sync_at] if self._is_dirty else []
+        if self._look_at is not None:
+            ends.append(self._look_at)
+        self._wake.wait(max(0.0, min(ends) - now) if ends else None)
         self._wake.clear()
+
+    def _look(self) -> None:
+        """For what was cut, when it is due."""
+        if self._look_at is None or (now := time.monotonic()) < self._look_at:
+            return
+        with self._order:
+            if self._waiting:
+                return
+            cut = self._cut()
+        self._look_at = None
+        if cut is not None:
+            commands, age = cut
+            self._look_at = now + max(LOOK - age, 0.0)
+            if self._file is not None:
+                self._attempt(lambda: self._append([("C", commands)]))
 
     def _attempt(self, work: Callable[[], None]) -> bool:
         """False if it failed: the present file is then left as it is."""

@@ -37,6 +37,10 @@ EARLIER_EVERY, MOST_EARLIER = 1.0, 11  # s of the world, states before the end o
 MOST_HISTORY = 16 << 20  # bytes of states of undo in a journal
 SHARE = 0.01  # of the time, that quick snapshots take
 QUICK_RATE = 0.5e6  # bytes/s of quick snapshots
+CUT, LATEST = (
+    0.9,
+    2.0,
+)  # of HAND_OVER: when the log is cut by itself, and when the world hands over if the writer is busy
 
 Call = Callable[[Callable[[], None]], None]  # calls a function on the thread that runs the world
 
@@ -70,11 +74,13 @@ class Journal:
         self._marks: set[int] = set()  # of the states of undo in the present file
         self._marks_told: tuple[list[int], list[int]] = ([], [])
         self._schema = ""  # of the snapshots of this file
-        self._owed = 0.0  # s of steps since the last snapshot
-        self._checked_at = self._next = self._began_at = self._quick_at = 0.0
+        self.next = 0.0
+        """When to hand over, by `perf_counter`: the thread that writes puts it off."""
+        self._snapshot_time = 0.0  # of the world, s
+        self._is_exact = True  # what came after that snapshot can be repeated
+        self._handed_over_at = self._began_at = self._quick_at = 0.0
         self._is_broken = False  # what was taken from the log
         self._is_quick_behind = False  # the last quick snapshot: there were commands since
-        self._are_commands_all = False  # there was nothing else to write, when last seen
         self._read()
 
     # --- what the script keeps ----------------------------------------------------------------------------------------
@@ -138,12 +144,11 @@ class Journal:
         if not recovers:
             self._found, self._why_anew = None, ""
         told, aside = self._take_back()
-        self._log.start()
+        self._log.start(CUT * HAND_OVER)
         files = self._folder.files() if aside else []
-        self._writer = Writer(self._folder, self._tell, files, self._look)
+        self._writer = Writer(self._folder, self._tell, files, self._cut)
         atexit.register(self._end)  # for loops of a script's own
-        self._checked_at = time.perf_counter()
-        self.hand_over()
+        self._hand_over()
         # A process that is killed before its first state is written would lose all that it has stepped, however slow its disk is.
         self._writer.flush(FIRST)
         return told
@@ -227,65 +232,70 @@ class Journal:
 
     # --- while it runs --------------------------------------------------------------------------------------------------
 
-    def note_step(self, ended: float, seconds: float, is_exact: bool) -> None:
-        """After a step that took some seconds. ended: when, by `perf_counter`. is_exact: it was not cut short by the clock, so that it
-        can be repeated."""
-        self._owed += seconds if is_exact else CHECKPOINT
-        if ended >= self._next:
-            self.check()
+    def note_cut_step(self) -> None:
+        """After a step that the clock cut short, so that it cannot be repeated."""
+        self._is_exact = False
+        self._log.hold_cuts()
+        self.next = min(self.next, self._handed_over_at + HAND_OVER)
 
     def check(self) -> None:
-        """Between steps, at any time. The world goes on whatever happens here."""
+        """Between steps, at any time: a world that is paused is edited, too."""
         now = time.perf_counter()
-        if now < self._next:
-            return
+        if now >= self.next or (self._state.clock.paused and now >= self._handed_over_at + HAND_OVER):
+            self.hand_over()
+
+    def hand_over(self) -> None:
+        """Gives what has happened since the last call to the thread that writes. The world goes on whatever happens here."""
         try:
-            if not (self._are_commands_all and self._owed < CHECKPOINT and self._put_commands(now)):
-                self.hand_over()
+            self._hand_over()
         except Exception as error:
             if self._writer is not None:
                 self._stop(self._writer)
             self._tell(f"this world is no longer kept in {self._folder.path}: {one_line(error)}. It goes on without")
 
-    def _put_commands(self, now: float) -> bool:
-        """Gives commands alone to the thread that writes, which costs a third of `hand_over`. False: there is more to give."""
-        writer, taken = self._writer, self._log.take()
-        if writer is None or taken is None:
-            return True
-        commands, is_broken, of_world, hash, structure = taken
-        if not commands:
-            self._is_broken = self._is_broken or is_broken
-            return False
-        self._is_quick_behind = True
-        writer.put((("C", Commands(of_world, hash, now - self._checked_at, commands)),), is_due=True)
-        if structure != self._structure:
-            return False
-        self._checked_at, self._next = now, now + HAND_OVER
-        return True
-
-    def _look(self) -> None:
-        """On the thread that writes, after it has written: whether there is more than commands to write."""
+    def _cut(self) -> tuple[Commands, float] | None:
+        """On the thread that writes: commands that the log has cut, and their age. While there is nothing else to write, this spares the
+        thread of the world to hand over, which is most of what a journal would cost a small one."""
         writer = self._writer
-        if writer is None or not self._are_commands_all:
-            return
-        if not writer.takes or self._is_file_old(writer, time.perf_counter()) or self._world_version() != self._version:
-            self._are_commands_all, self._next = False, 0.0
+        if writer is None or not writer.takes:
+            return None
+        cut = self._log.take_cut()
+        now = time.perf_counter()
+        if (
+            cut is None
+            or (owed := self._owed(cut[1])) >= CHECKPOINT
+            or self._is_file_old(writer, now, owed)
+            or self._world_version() != self._version
+        ):
+            self.next = 0.0
+        else:
+            self.next = now + LATEST * HAND_OVER
+        if cut is None:
+            return None
+        self._is_quick_behind = True
+        commands, of_world, hash, seconds, age = cut
+        return Commands(of_world, hash, seconds, commands), age
 
-    def hand_over(self) -> None:
-        """Gives what has happened since the last call to the thread that writes."""
+    def _owed(self, of_world: float) -> float:
+        """Seconds that it takes to repeat what came after the last snapshot."""
+        state = self._state
+        steps = abs(of_world - self._snapshot_time) / state.clock.dt
+        return steps * state.step_ms * 1e-3 if self._is_exact else CHECKPOINT
+
+    def _hand_over(self) -> None:
         writer = self._writer
         if writer is None or self._log.is_editing:
             return
-        now = time.perf_counter()
-        self._next = now + HAND_OVER
-        seconds, self._checked_at = now - self._checked_at, now
+        now = self._handed_over_at = time.perf_counter()
+        self.next = now + LATEST * HAND_OVER
         takes = writer.takes
-        begins = self._is_file_old(writer, now) if takes else writer.wants_all
+        owed = self._owed(self._state.system.time)
+        begins = self._is_file_old(writer, now, owed) if takes else writer.wants_all
         # Before the log is taken: a snapshot is a command, too, which a way round a damaged one repeats.
-        snapshot = self._log.snapshot() if begins or (takes and self._owed >= CHECKPOINT) else None
+        snapshot = self._log.snapshot() if begins or (takes and owed >= CHECKPOINT) else None
         taken = self._log.take()
         assert taken is not None
-        commands, is_broken, of_world, hash, _ = taken
+        commands, is_broken, of_world, hash, seconds = taken
         is_broken, self._is_broken = is_broken or self._is_broken, False
         if not (begins or takes):
             return
@@ -301,7 +311,9 @@ class Journal:
                 writer.put(records)
             self._begin_file(writer, now, snapshot or b"")
             return
-        uses_functions = self._uses_functions()
+        if uses_functions := self._uses_functions():  # see `_quick`
+            self._log.hold_cuts()
+            self.next = now + HAND_OVER
         if snapshot is not None:
             records += self._checkpoint(snapshot)
         elif uses_functions and self._is_quick_behind and now >= self._quick_at:
@@ -311,7 +323,6 @@ class Journal:
             records.append(("W", self._world_now()))
         if records:
             writer.put(records)
-        self._are_commands_all = not uses_functions
 
     def close(self) -> None:
         """The world has ended in an orderly way: nothing is lost."""
@@ -319,10 +330,11 @@ class Journal:
         if writer is None:
             self._folder.unlock()
             return
-        self.hand_over()
+        self._quick_at = 0.0  # functions of the script may give something else next time
+        self._hand_over()
         if not writer.takes:  # its disk is behind, and will have caught up
             writer.flush()
-            self.hand_over()
+            self._hand_over()
         taken = self._log.take()
         if writer.takes and taken is not None:
             commands, _, of_world, hash, _ = taken
@@ -333,7 +345,7 @@ class Journal:
 
     def _stop(self, writer: Writer) -> None:
         atexit.unregister(self._end)
-        self._writer = None
+        self._writer, self.next = None, math.inf
         writer.close()
         self._folder.unlock()
 
@@ -345,13 +357,11 @@ class Journal:
             if self._writer is not None:
                 self._stop(self._writer)
 
-    def _is_file_old(self, writer: Writer, now: float) -> bool:
+    def _is_file_old(self, writer: Writer, now: float, owed: float) -> bool:
         age = now - self._began_at
         least, most = GENERATION
         return (
-            (age > most and self._owed > 0)
-            or (age > least and self._owed >= CHECKPOINT)
-            or (age > 1 and writer.bytes > MOST_LOG)
+            (age > most and owed > 0) or (age > least and owed >= CHECKPOINT) or (age > 1 and writer.bytes > MOST_LOG)
         )
 
     def _begin_file(self, writer: Writer, now: float, snapshot: bytes) -> None:
@@ -373,7 +383,7 @@ class Journal:
 
     def _checkpoint(self, snapshot: bytes) -> list[Content]:
         """A snapshot from which the commands after it lead to the same bits."""
-        self._owed = 0.0
+        self._snapshot_time, self._is_exact = self._state.system.time, True
         return [*self._history(), ("S", without_schema(snapshot, self._schema))]
 
     def _quick(self, now: float) -> list[Content]:

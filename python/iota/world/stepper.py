@@ -132,8 +132,11 @@ class Stepper:
             else:
                 state.notices.warn_once(warning)
         self._tell_what_happened()
-        if self.journal is not None:
-            self.journal.note_step(began + seconds, seconds, not 0 < state.system.budget_seconds <= seconds)
+        if self.journal is not None:  # without a call, which takes longer than all else that most steps cost for it
+            if 0 < state.system.budget_seconds <= seconds:
+                self.journal.note_cut_step()
+            if began + seconds >= self.journal.next:
+                self.journal.hand_over()
         return report
 
     def _tell_author(self, dt: float) -> None:
