@@ -26,6 +26,7 @@ def poured() -> tuple[iota.World, pour.Pour, np.ndarray]:
         report = world.step()
         times.append(time.perf_counter() - began)
         assert report is not None and report.unconverged == 0
+        assert report.warnings == [], "what comes to rest has not gained energy"
         places.append([tuple(grain.center_of_mass) for grain in made.grains])
     p50, p99 = np.quantile(times, [0.5, 0.99]) * 1e3
     print(f"{GRAINS} grains: {p50:.1f} ms a step, {p99:.1f} ms in one of a hundred")

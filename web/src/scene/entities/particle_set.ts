@@ -19,7 +19,7 @@ const linear = Float32Array.from({ length: 256 }, (_, value) => new Color().setH
 
 /**
  * A bright ball with a halo. At night the ball covers the background, and the halo only adds light. By day light that is added to a bright
- * sky would be a rim around the ball, so the halo covers, too. Pictures are mixed in the screen's colors: edges cover as much as is seen.
+ * sky would be a rim around the ball, so the halo covers, too, and only hot sparks have a white middle. Pictures are mixed in the screen's colors: edges cover as much as is seen.
  */
 function makeGlow(): ShaderMaterial {
   return new ShaderMaterial({
@@ -45,8 +45,8 @@ function makeGlow(): ShaderMaterial {
         float radius = length(vPlace);
         float ball = pow(1.0 - smoothstep(0.2, 1.1, radius), 1.0 + day);
         float halo = pow(max(1.0 - radius / 3.0, 0.0), 2.5);
-        float hot = max(1.0 - radius, 0.0);
-        vec3 color = mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r);
+        float hot = 1.0 - smoothstep(0.0, 1.0, radius);
+        vec3 color = mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r * mix(1.0, vColor.g, day));
         float cover = onScreen(vec3(ball)).r, veil = 0.6 * day * halo * (1.0 - cover);
         gl_FragColor = vec4(onScreen(ball * color + 0.32 * (1.0 - day) * halo * vColor) + veil * onScreen(vColor), cover + veil);
       }`,
