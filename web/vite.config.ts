@@ -88,7 +88,8 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,
-    modulePreload: { polyfill: false },
+    // What is imported later needs nothing that is not there by then, but its styles: a list of it would be a part of the first chunk.
+    modulePreload: { polyfill: false, resolveDependencies: (_, files, { hostType }) => (hostType === "html" ? files : files.filter((file) => file.endsWith(".css"))) },
     chunkSizeWarningLimit: 1200,
     // The minifier drops notices: the license texts of all bundled packages are in a separate file.
     rolldownOptions: {

@@ -216,8 +216,9 @@ void Stepper::apply_edits(StepReport& report) {
 void Stepper::fill(StepReport& report) {
   model::Model& model = editor_.model;
   constexpr double worth_telling = 1e-4;  // of the kinetic energy, in a step
-  constexpr double worth_in_all = 1e-3;   // of the energy that motion has had, since the start: less than sweeps need to close gaps
-  constexpr double round_off = 1e-12;     // of all energy: what rests drifts by, until its rows are closed
+  constexpr double worth_in_all =
+      1e-3;  // of the energy that motion has had, since the start: less than sweeps need to close gaps
+  constexpr double round_off = 1e-12;  // of all energy: what rests drifts by, until its rows are closed
   const auto [energies, worst_gap] = editor_.islands.book(model);
   if (made_ > worth_telling * energies.kinetic + round_off * (energies.kinetic + std::abs(energies.potential)) &&
       model.made > worth_in_all * (energies.kinetic + model.dissipated))

@@ -43,9 +43,11 @@ export async function drawn(tab: Tab, what: readonly (typeof everything)[number]
         if ((entities.membership.articulateOf(slot) >= 0) === (kind === "body")) for (const { mesh } of instances) mesh.visible = on;
       }
     };
+    const intensities = new Map<DirectionalLight, number>();
+    viewer.scene.traverse((light) => { if ("isDirectionalLight" in light) intensities.set(light as DirectionalLight, (light as DirectionalLight).shadow.intensity); });
     const show = (on: boolean) => {
       if (hiding !== "shadows") for (const kind of hiding) showKind(kind, on);
-      else viewer.scene.traverse((light) => { if ("isDirectionalLight" in light) (light as DirectionalLight).shadow.intensity = on ? 1 : 0; });
+      else for (const [{ shadow }, intensity] of intensities) shadow.intensity = on ? intensity : 0;
     };
     renderer.shadowMap.autoUpdate = false;
     const shown = take();

@@ -2,6 +2,7 @@
 // The first picture shows the whole scene: drawn pixels are counted for studies, examples, and one scene at sizes from
 // a molecule to a valley.
 
+import type { DirectionalLight } from "three";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser, runsAll, type Tab } from "./browser.ts";
 import { drawn } from "./drawn.ts";
@@ -83,6 +84,21 @@ it("shadows on a ground far below what falls are in the first picture, and in no
     await tab.pause(false);
     await tab.page.goto("about:blank");
     expect((await drawn(await open(server.url), "shadows")).share).toBe(0);
+  } finally {
+    await server.stop();
+  }
+});
+
+it("what is small and near in a wide world has a shadow of its own, sharper than that of the whole world", async () => {
+  const server = await WorldServer.start(["web/e2e/wide_probe.py"], await freePort());
+  try {
+    const tab = await open(server.url, true);
+    const shadows = async () => (await drawn(tab, "shadows")).share;
+    await expect.poll(shadows).toBeGreaterThan(0.002);
+    // In the picture of the whole world, with 26 mm a pixel, there is next to nothing of it.
+    await tab.page.evaluate(() => iota.page.viewer.scene.traverse((light) => { if ("isDirectionalLight" in light && (light as DirectionalLight).intensity === 0) light.visible = false; }));
+    expect(await shadows()).toBeLessThan(0.0005);
+    expect(tab.complaints).toEqual([]);
   } finally {
     await server.stop();
   }

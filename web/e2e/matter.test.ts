@@ -95,6 +95,34 @@ function bandOf({ rows: all, horizon }: { rows: number[]; horizon: number }): nu
   return Math.max(...most(near), ...most(near.map((value) => -value)));
 }
 
+it("a face that is lit from the side has the color that was given to it", async () => {
+  await chooseLook("light");
+  const seen = await tab.page.evaluate(() => {
+    const { renderer, camera } = iota.page.viewer;
+    iota.page.viewer.drawFilmFrame();
+    const gl = renderer.getContext();
+    const pixel = new Uint8Array(4);
+    const clip = new iota.three.Vector3(0.45, 0.08, 0.9).project(camera);
+    gl.readPixels(((clip.x + 1) / 2) * gl.drawingBufferWidth, ((clip.y + 1) / 2) * gl.drawingBufferHeight, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    return Array.from(pixel.subarray(0, 3));
+  });
+  // It is "#2f6fb0". With too much light from all around it was as pale as "#4688bf".
+  for (const [channel, given] of [0x2f, 0x6f, 0xb0].entries()) expect(Math.abs(seen[channel] - given), seen.join()).toBeLessThan(16);
+});
+
+it("is shown in a world in which nothing can move, too, with what metal mirrors", async () => {
+  const still = await WorldServer.start(["web/e2e/still_probe.py"], await freePort());
+  const page = await browser.context.newPage();
+  try {
+    await page.goto(still.url);
+    await page.waitForFunction(() => globalThis.iota?.connected && !iota.page.viewer.hidden);
+    expect(await page.evaluate(() => iota.page.viewer.scene.environment === null)).toBe(false);
+  } finally {
+    await page.close();
+    await still.stop();
+  }
+});
+
 it("plastic has a highlight, in which the soft box above it is mirrored", async () => {
   await chooseLook("light");
   const [brightest, usual] = await tab.page.evaluate(() => {

@@ -73,7 +73,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
     setTheme: (theme) => themes.set(theme),
     start: () => {
       session.connection.open();
-      viewer.start(() => world.entities.body.pickableCount > 0, () => events.ready());
+      viewer.start(() => world.described && !world.entities.body.unposed, () => events.ready());
     },
   };
 }

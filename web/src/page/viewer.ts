@@ -79,7 +79,7 @@ export class Viewer {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     allowAnisotropy(this.renderer);
-    this.stage = new Stage(this.scene, this.renderer);
+    this.stage = new Stage(this.scene, this.renderer, () => this.invalidate());
     this.rig.add(this.camera, this.room);
     this.scene.add(this.rig);
   }

@@ -8,6 +8,7 @@ import {
 } from "three";
 import { ContactShadow } from "./contact_shadow.ts";
 import { openness } from "./materials.ts";
+import type { NearShadow } from "./near_shadow.ts";
 import { makeSky, Reflections, type SkyColors } from "./reflections.ts";
 import { makeFloorColor } from "./textures.ts";
 
@@ -22,6 +23,7 @@ interface Theme {
   readonly fill: number;
   /** Soft boxes that surfaces mirror. */
   readonly lamps: number;
+  /** Share of the surroundings' diffuse light: by day as much as leaves a face that is lit from the side in the color that it was given. */
   readonly openness: number;
 }
 
@@ -35,7 +37,7 @@ export interface Surroundings {
 }
 
 const themes: Record<"light" | "dark", Theme> = {
-  light: { horizon: "#d5d7d7", zenith: "#8ea7bb", ground: "#c9c0b2", pool: 0.04, key: 3.2, fill: 0.3, lamps: 1, openness: 0.8 },
+  light: { horizon: "#d5d7d7", zenith: "#8ea7bb", ground: "#c9c0b2", pool: 0.04, key: 3.2, fill: 0.3, lamps: 1, openness: 0.5 },
   dark: { horizon: "#2f3338", zenith: "#0d1013", ground: "#5a5651", pool: 0.3, key: 2.4, fill: 0.22, lamps: 0.7, openness: 1 },
 };
 
@@ -52,6 +54,8 @@ const floorMean = 0.912;
 const keyDirection = new Vector3(0.55, 1.35, 0.75);
 /** Shadows are drawn on a ground that is so far below, in sizes of the scene. */
 const farGround = 3;
+/** Sizes of the lit ball in distances of the camera: from the larger on, what is near has a shadow of its own, down to the smaller. */
+const wide = [3, 5] as const;
 const fogNear = 1.5;
 const fogFar = 24;
 
@@ -133,6 +137,7 @@ export class Stage {
   readonly ground: Mesh<CircleGeometry, MeshLambertMaterial>;
 
   private readonly scene_: Scene;
+  private readonly invalidate_: () => void;
   private readonly skyColors_: SkyColors = { horizon: { value: new Color() }, zenith: { value: new Color() } };
   private readonly sky_ = new Mesh(new SphereGeometry(1, 16, 12), makeSky(this.skyColors_));
   private readonly reflections_: Reflections;
@@ -146,14 +151,19 @@ export class Stage {
   private readonly middle_ = new Vector3(0, 1, 0);
   /** The ball in which things are lit with shadows. */
   private readonly lit_ = new Sphere();
+  /** Fetched once a camera is near a part of a wide scene. */
+  private near_: NearShadow | null = null;
+  private isWide_ = false;
   private size_ = 1;
   private hasGround_ = true;
   private passthrough_ = false;
   private theme_: Theme = themes.light;
   private surroundings_: Surroundings = { sky: null, horizon: null, ground: null, light: 1 };
 
-  constructor(scene: Scene, renderer: WebGLRenderer) {
+  /** invalidate: requests a new picture. */
+  constructor(scene: Scene, renderer: WebGLRenderer, invalidate: () => void) {
     this.scene_ = scene;
+    this.invalidate_ = invalidate;
     this.reflections_ = new Reflections(renderer, this.skyColors_);
     scene.fog = this.fog_;
     const material = new MeshLambertMaterial({ map: makeFloorColor(), dithering: true });
@@ -275,7 +285,7 @@ export class Stage {
     // A scene that leaves the light, as one that falls does, takes along what was lit, so that no shadow ends.
     const both = scene.clone().union(lit);
     lit.copy(!isLit && both.radius < 2 * scene.radius ? both : scene);
-    this.contact_.aim(lit.center.x, this.ground.position.y, lit.center.z, lit.radius);
+    this.aimContacts_();
     this.light_(this.key_);
   }
 
@@ -284,6 +294,7 @@ export class Stage {
     const apart = camera.getWorldPosition(this.sky_.position).distanceTo(this.middle_);
     this.fog_.near = apart + fogNear * this.size_;
     this.fog_.far = 2 * apart + fogFar * this.size_;
+    this.sharpen_(camera, distance);
     const near = 0.01 * Math.min(Math.max(distance, 0.02 * this.size_), this.size_);
     const far = apart + 1.5 * groundRadius * this.size_;
     if (camera.near === near && camera.far === far) return;
@@ -302,6 +313,7 @@ export class Stage {
     const apart = this.sky_.position.copy(head).distanceTo(this.middle_);
     this.fog_.near = this.passthrough_ ? 1e6 * this.size_ : apart + fogNear * this.size_;
     this.fog_.far = 2 * this.fog_.near + fogFar * this.size_;
+    this.setWide_(false);
   }
 
   /** Renders what surfaces mirror, if it has changed; call it before each picture of the scene. */
@@ -318,6 +330,35 @@ export class Stage {
   /** None in a headset, where they would need a pass for each frame. */
   hideContacts(): void {
     this.contact_.strength.value = 0;
+  }
+
+  /** Shadows of what is near the camera, `distance` from its pivot, in a wide scene. */
+  private sharpen_(camera: PerspectiveCamera, distance: number): void {
+    const { near_: near, lit_: lit } = this;
+    this.setWide_(lit.radius > (this.isWide_ ? wide[0] : wide[1]) * distance);
+    if (!this.isWide_ || near === null) return;
+    near.follow(camera, distance, keyDirection, lit);
+    this.aimContacts_();
+  }
+
+  private setWide_(isWide: boolean): void {
+    if (isWide === this.isWide_) return;
+    this.isWide_ = isWide;
+    if (this.near_ !== null) this.near_.light.visible = isWide;
+    else
+      void import("./near_shadow.ts").then(({ NearShadow }) => {
+        this.near_ ??= new NearShadow();
+        this.near_.light.visible = this.isWide_;
+        this.root.add(this.near_.light, this.near_.light.target);
+        this.invalidate_();
+      });
+    this.aimContacts_();
+  }
+
+  private aimContacts_(): void {
+    const { near_: near, lit_: lit, ground: { position: { y } } } = this;
+    if (this.isWide_ && near !== null && near.reach > 0) this.contact_.aim(near.center.x, y, near.center.z, near.reach);
+    else this.contact_.aim(lit.center.x, y, lit.center.z, lit.radius);
   }
 
   private light_(light: DirectionalLight): void {

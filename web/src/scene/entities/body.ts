@@ -264,6 +264,11 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     this.bodyGone_(slot);
   }
 
+  /** Whether there are bodies to pick, but no pose of them yet. */
+  get unposed(): boolean {
+    return this.pickableCount === 0 && this.dynamicCount_ > 0;
+  }
+
   /** Interpolates poses; to be called before picking. */
   update(seconds: number, now: number): void {
     this.poses.sample(now, seconds);
