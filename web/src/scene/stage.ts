@@ -56,6 +56,8 @@ const keyDirection = new Vector3(0.55, 1.35, 0.75);
 const farGround = 3;
 /** Sizes of the lit ball in distances of the camera: from the larger on, what is near has a shadow of its own, down to the smaller. */
 const wide = [3, 5] as const;
+/** Triangles of a picture up to which it is so, and up to which it stays so: all are drawn once more for it. */
+const few = [100_000, 250_000] as const;
 const fogNear = 1.5;
 const fogFar = 24;
 
@@ -137,6 +139,7 @@ export class Stage {
   readonly ground: Mesh<CircleGeometry, MeshLambertMaterial>;
 
   private readonly scene_: Scene;
+  private readonly renderer_: WebGLRenderer;
   private readonly invalidate_: () => void;
   private readonly skyColors_: SkyColors = { horizon: { value: new Color() }, zenith: { value: new Color() } };
   private readonly sky_ = new Mesh(new SphereGeometry(1, 16, 12), makeSky(this.skyColors_));
@@ -163,6 +166,7 @@ export class Stage {
   /** invalidate: requests a new picture. */
   constructor(scene: Scene, renderer: WebGLRenderer, invalidate: () => void) {
     this.scene_ = scene;
+    this.renderer_ = renderer;
     this.invalidate_ = invalidate;
     this.reflections_ = new Reflections(renderer, this.skyColors_);
     scene.fog = this.fog_;
@@ -335,7 +339,8 @@ export class Stage {
   /** Shadows of what is near the camera, `distance` from its pivot, in a wide scene. */
   private sharpen_(camera: PerspectiveCamera, distance: number): void {
     const { near_: near, lit_: lit } = this;
-    this.setWide_(lit.radius > (this.isWide_ ? wide[0] : wide[1]) * distance);
+    const [size, most] = this.isWide_ ? [wide[0], few[1]] : [wide[1], few[0]];
+    this.setWide_(lit.radius > size * distance && this.renderer_.info.render.triangles < most);
     if (!this.isWide_ || near === null) return;
     near.follow(camera, distance, keyDirection, lit);
     this.aimContacts_();
