@@ -58,6 +58,8 @@ const farGround = 3;
 const wide = [3, 5] as const;
 /** Triangles of a picture up to which it is so, and up to which it stays so: all are drawn once more for it. */
 const few = [100_000, 250_000] as const;
+/** Frames for which it has to be so first: the first pictures of a page have few triangles. */
+const settled = 30;
 const fogNear = 1.5;
 const fogFar = 24;
 
@@ -157,6 +159,7 @@ export class Stage {
   /** Fetched once a camera is near a part of a wide scene. */
   private near_: NearShadow | null = null;
   private isWide_ = false;
+  private wideFrames_ = 0;
   private size_ = 1;
   private hasGround_ = true;
   private passthrough_ = false;
@@ -340,7 +343,9 @@ export class Stage {
   private sharpen_(camera: PerspectiveCamera, distance: number): void {
     const { near_: near, lit_: lit } = this;
     const [size, most] = this.isWide_ ? [wide[0], few[1]] : [wide[1], few[0]];
-    this.setWide_(lit.radius > size * distance && this.renderer_.info.render.triangles < most);
+    const { triangles } = this.renderer_.info.render;
+    this.wideFrames_ = lit.radius > size * distance && triangles > 0 && triangles < most ? this.wideFrames_ + 1 : 0;
+    this.setWide_(this.isWide_ ? this.wideFrames_ > 0 : this.wideFrames_ > settled);
     if (!this.isWide_ || near === null) return;
     near.follow(camera, distance, keyDirection, lit);
     this.aimContacts_();
