@@ -353,12 +353,18 @@ def test_a_function_that_cannot_be_found_is_named_in_one_line(make: Make) -> Non
     assert "the script has no function" in line and "attach.<locals>.pull" in line and "switched off" in line
 
 
-def test_where_a_function_gives_something_else_the_world_goes_on_from_a_snapshot(make: Make) -> None:
-    strength = [0.0]
+def pulled_by(strength: list[float]) -> Callable[[Kept], None]:
+    """Binds the ball by a function that gives something else as soon as the number has changed."""
 
     def pull(kept: Kept) -> None:
         kept.system.bond(kept.ball.particles[0], kept.chain[0].particles[0], lambda bond: (strength[0], 0.0, 0.0))
 
+    return pull
+
+
+def test_where_a_function_gives_something_else_the_world_goes_on_from_a_snapshot(make: Make) -> None:
+    strength = [0.0]
+    pull = pulled_by(strength)
     first = make(pull)
     for _ in range(20):
         strength[0] += 1
@@ -381,10 +387,7 @@ def test_where_a_function_gives_something_else_the_world_goes_on_from_a_snapshot
 
 def test_an_orderly_end_loses_nothing_even_if_a_function_gives_something_else(make: Make) -> None:
     strength = [0.0]
-
-    def pull(kept: Kept) -> None:
-        kept.system.bond(kept.ball.particles[0], kept.chain[0].particles[0], lambda bond: (strength[0], 0.0, 0.0))
-
+    pull = pulled_by(strength)
     first = make(pull)
     for _ in range(20):
         strength[0] += 1

@@ -37,10 +37,8 @@ EARLIER_EVERY, MOST_EARLIER = 1.0, 11  # s of the world, states before the end o
 MOST_HISTORY = 16 << 20  # bytes of states of undo in a journal
 SHARE = 0.01  # of the time, that quick snapshots take
 QUICK_RATE = 0.5e6  # bytes/s of quick snapshots
-CUT, LATEST = (
-    0.9,
-    2.0,
-)  # of HAND_OVER: when the log is cut by itself, and when the world hands over if the writer is busy
+CUT = 0.9  # of HAND_OVER: when the log is cut by itself
+LATEST = 2.0  # of HAND_OVER: when the world hands over if the writer is busy
 
 Call = Callable[[Callable[[], None]], None]  # calls a function on the thread that runs the world
 

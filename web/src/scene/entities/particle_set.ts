@@ -19,7 +19,8 @@ const linear = Float32Array.from({ length: 256 }, (_, value) => new Color().setH
 
 /**
  * A bright ball with a halo. At night the ball covers the background, and the halo only adds light. By day light that is added to a bright
- * sky would be a rim around the ball, so the halo covers, too, and only hot sparks have a white middle. Pictures are mixed in the screen's colors: edges cover as much as is seen.
+ * sky would be a rim around the ball, so the halo covers, too, and only hot sparks have a white middle. Pictures are mixed in the screen's
+ * colors: edges cover as much as is seen.
  */
 function makeGlow(): ShaderMaterial {
   return new ShaderMaterial({
