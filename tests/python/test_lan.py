@@ -41,6 +41,14 @@ def trust(world: iota.World, state: Path) -> ssl.SSLContext:
     return ssl.create_default_context(cafile=str(state / "certificate.pem"))
 
 
+@pytest.fixture
+def socket_trust(trust: ssl.SSLContext) -> ssl.SSLContext:
+    """For WebSockets, whose client reads and writes in two threads: with TLS 1.3, Python's ssl then loses one of 700
+    requests, as tickets arrive while it writes (python/cpython#137583). A browser's client does not."""
+    trust.maximum_version = ssl.TLSVersion.TLSv1_2
+    return trust
+
+
 def place(url: str | None) -> tuple[str, int]:
     assert url is not None
     host, port = url.split("/")[2].split(":")
@@ -65,9 +73,9 @@ def test_the_printed_fingerprint_is_that_of_the_certificate(world: iota.World, s
     assert fingerprint(sent) == fingerprint((state / "certificate.pem").read_text())
 
 
-def test_poses_come_by_wss_too(world: iota.World, trust: ssl.SSLContext) -> None:
+def test_poses_come_by_wss_too(world: iota.World, socket_trust: ssl.SSLContext) -> None:
     assert world.pages.lan_url is not None
-    with PageClient(world.pages.lan_url, trust=trust) as client:
+    with PageClient(world.pages.lan_url, trust=socket_trust) as client:
         frames = client.pose_frames
         for _ in range(30):
             world.step()
@@ -80,12 +88,12 @@ def test_this_machine_needs_no_https(world: iota.World) -> None:
         assert answer.status == 200
 
 
-def test_a_page_of_http_may_not_open_the_socket_of_https(world: iota.World, trust: ssl.SSLContext) -> None:
+def test_a_page_of_http_may_not_open_the_socket_of_https(world: iota.World, socket_trust: ssl.SSLContext) -> None:
     assert world.pages.lan_url is not None
     socket_url = world.pages.lan_url.replace("https://", "wss://").replace("/?", "/ws?")
     origin = world.pages.lan_url.split("/?")[0]
-    with connect(socket_url, ssl=trust, origin=origin), pytest.raises(WebSocketException):  # type: ignore[arg-type]
-        connect(socket_url, ssl=trust, origin=origin.replace("https", "http"))  # type: ignore[arg-type]
+    with connect(socket_url, ssl=socket_trust, origin=origin), pytest.raises(WebSocketException):  # type: ignore[arg-type]
+        connect(socket_url, ssl=socket_trust, origin=origin.replace("https", "http"))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("rubbish", [b"\x16", b"\x16\x03\x01\x02\x00" + bytes(600), b"\x16\x03\x01\xff\xff", bytes(64)])
