@@ -185,7 +185,7 @@ void bind_body(nb::module_& module) {
           "How many steps are taken at once: 1 (at first) to 16; 0: frozen, with its velocities kept. Places and velocities\n"
           "are interpolated in between, so that all that reads them sees the present time. Of bodies that are solved together the\n"
           "shortest one counts, and all get it. It is 1 again as soon as an edit, a hand or a force of the script touches the\n"
-          "articulate. Free particles take every step. Raises ValueError for other numbers.")
+          "articulate. Free particles take every step unless they are frozen. Raises ValueError for other numbers.")
       .def_prop_rw(
           "radius", [](const BodyHandle& self) { return self.use().bodies().radius(self.id); },
           [](const BodyHandle& self, double value) {

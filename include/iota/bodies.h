@@ -130,7 +130,7 @@ class Bodies : public View {
   /// How many steps the island of the body takes at once: 1 (at first) to 16, 0: it is frozen, and keeps its velocities. Between
   /// its solutions places and velocities are interpolated, so that all that reads them sees the present time. Of bodies
   /// that are solved together the shortest one counts, and all get it. It is 1 again as soon as an edit, a hand or a force of
-  /// the script touches the articulate. Free particles take every step. Single steps are taken by what touches something, and
+  /// the script touches the articulate. Free particles take every step unless they are frozen. Single steps are taken by what touches something, and
   /// where a body would turn by more than 0.7 rad at once.
   int stride(BodyId) const;
   void set_stride(BodyId, int steps);

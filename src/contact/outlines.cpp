@@ -5,6 +5,8 @@
 #include "model/solid.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace iota::contact {
@@ -14,6 +16,11 @@ using model::none;
 namespace {
 
 /// Steps without an edit do not move it.
+void sort_unique(std::vector<std::uint32_t>& slots) {
+  std::ranges::sort(slots);
+  slots.erase(std::ranges::unique(slots).begin(), slots.end());
+}
+
 bool is_still(BodyKind kind) { return kind == BodyKind::static_ || kind == BodyKind::resting; }
 
 }  // namespace
@@ -27,24 +34,47 @@ const OutlineTree& Outlines::refresh(std::uint64_t steps) {
   if (!is_edited_ && steps == steps_ && is_described() && !is_stale_) return tree_;
   steps_ = steps, edits_ = structure_.edits, version_ = version;
   describe_changed();
+  take_out_frozen();
   if (is_edited_ && knows_edited) expect_flagged();
-  for (std::uint32_t body = 0; body < tree_.count(); ++body) {
-    if (!tree_.has(body)) continue;
-    const bool is_frozen = structure_.is_frozen(body);
-    const BodyKind kind = is_frozen ? BodyKind::resting : structure_.bodies[body].kind;
-    // An obstacle that was moved has been described anew.
-    const bool may_be_edited = is_edited_ && !(is_frozen && knows_edited) && !structure_.obstacles.has(body);
-    if (!may_be_edited && kind == kinds_[body] && is_still(kind)) continue;
-    kinds_[body] = kind;
-    place(body);
-    if (kind == BodyKind::inactive)
-      tree_.hide(body);
-    else
-      tree_.show(body);
+  if (is_edited_ && !knows_edited) {
+    for (std::uint32_t body = 0; body < tree_.count(); ++body) look_for(body, false);
+  } else {
+    scratch_ = due_.slots();
+    scratch_.insert(scratch_.end(), movable_.begin(), movable_.end());
+    if (is_edited_) scratch_.insert(scratch_.end(), fixed_.begin(), fixed_.end());
+    if (scratch_.size() > movable_.size()) sort_unique(scratch_);  // the tree hears of them in order
+    for (const std::uint32_t body : scratch_) look_for(body, true);
   }
+  due_.clear();
   tree_.update();
   is_stale_ = false;
   return tree_;
+}
+
+/// Looks where a body is that may have moved.
+void Outlines::look_for(std::uint32_t body, bool spares_frozen) {
+  if (!tree_.has(body)) return;
+  const bool is_frozen = movers_[body] == Mover::nothing;
+  const BodyKind kind = is_frozen ? BodyKind::resting : structure_.bodies[body].kind;
+  // An obstacle that was moved has been described anew.
+  const bool may_be_edited = is_edited_ && !(is_frozen && spares_frozen) && !structure_.obstacles.has(body);
+  if (!may_be_edited && kind == kinds_[body] && is_still(kind)) return;
+  kinds_[body] = kind;
+  place(body);
+  if (kind == BodyKind::inactive)
+    tree_.hide(body);
+  else
+    tree_.show(body);
+}
+
+/// What was frozen within a stride has moved until its end, and is looked for once more.
+void Outlines::take_out_frozen() {
+  std::erase_if(movable_, [&](std::uint32_t body) {
+    if (!structure_.is_frozen(body)) return false;
+    movers_[body] = Mover::nothing;
+    due_.note(body);
+    return true;
+  });
 }
 
 /// Edits may have moved these.
@@ -52,14 +82,15 @@ void Outlines::expect_flagged() {
   for (const std::uint32_t articulate : structure_.flagged()) {
     if (!structure_.articulates.is_alive(articulate)) continue;
     structure_.for_each_body_of(articulate, [&](std::uint32_t body) {
-      if (body < kinds_.size()) kinds_[body] = BodyKind::dynamic;
+      if (body < kinds_.size()) kinds_[body] = BodyKind::dynamic, due_.note(body);
     });
   }
 }
 
 bool Outlines::is_described() const {
   const model::ChangedSlots& changed = structure_.changed_outlines;
-  return changed.is_on && changed.slots().empty() && usual_radius_ == model::usual_radius(structure_);
+  return changed.is_on && changed.slots().empty() && structure_.changed_freezes.slots().empty() &&
+         usual_radius_ == model::usual_radius(structure_);
 }
 
 void Outlines::describe() {
@@ -71,21 +102,48 @@ void Outlines::describe() {
 void Outlines::describe_changed() {
   model::ChangedSlots& changed = structure_.changed_outlines;
   const double usual_radius = model::usual_radius(structure_);
+  scratch_ = structure_.changed_freezes.slots();
+  const std::size_t frozen = scratch_.size();
   // A restored structure has no log yet.
   if (!changed.is_on || usual_radius != usual_radius_) {
     usual_radius_ = usual_radius;
     tree_.clear();
     aging_.clear();
-    structure_.bodies.for_each([&](std::uint32_t body, const model::Body&) { describe(body); });
+    structure_.bodies.for_each([&](std::uint32_t body, const model::Body&) { scratch_.push_back(body); });
+    movable_.clear(), fixed_.clear();
     is_edited_ = true;
   } else {
-    for (const std::uint32_t body : std::exchange(aging_, {})) describe(body);
-    for (const std::uint32_t body : changed.slots()) describe(body);
+    scratch_.insert(scratch_.end(), aging_.begin(), aging_.end());
+    scratch_.insert(scratch_.end(), changed.slots().begin(), changed.slots().end());
+    aging_.clear();
   }
-  std::ranges::sort(aging_);
-  aging_.erase(std::ranges::unique(aging_).begin(), aging_.end());
-  changed.clear();
-  changed.is_on = true;
+  for (std::size_t i = frozen; i < scratch_.size(); ++i) describe(scratch_[i]), described_.note(scratch_[i]);
+  list(scratch_);
+  sort_unique(aging_);
+  for (model::ChangedSlots* const log : {&changed, &structure_.changed_freezes}) log->clear(), log->is_on = true;
+}
+
+Outlines::Mover Outlines::mover_of(std::uint32_t body) const {
+  if (!tree_.has(body) || structure_.is_frozen(body)) return Mover::nothing;
+  return structure_.bodies[body].kind == BodyKind::static_ ? Mover::edits : Mover::steps;
+}
+
+void Outlines::list(std::span<const std::uint32_t> changed) {
+  if (changed.empty()) return;
+  movers_.resize(structure_.bodies.slot_count(), Mover::nothing);
+  for (const std::uint32_t body : changed) {
+    movers_[body] = mover_of(body);
+    if (movers_[body] != Mover::steps) due_.note(body);  // the others are looked for in any case
+  }
+  for (const auto& [bodies, mover] : {std::pair(&movable_, Mover::steps), std::pair(&fixed_, Mover::edits)}) {
+    std::erase_if(*bodies, [&](std::uint32_t body) { return movers_[body] != mover; });
+    const auto before = static_cast<std::ptrdiff_t>(bodies->size());
+    std::ranges::copy_if(changed, std::back_inserter(*bodies),
+                         [&](std::uint32_t body) { return movers_[body] == mover; });
+    std::sort(bodies->begin() + before, bodies->end());
+    std::inplace_merge(bodies->begin(), bodies->begin() + before, bodies->end());
+    bodies->erase(std::unique(bodies->begin(), bodies->end()), bodies->end());
+  }
 }
 
 void Outlines::describe(std::uint32_t body) {

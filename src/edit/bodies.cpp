@@ -272,6 +272,7 @@ void apply(Editor& e, const SetMaterial& c) {
     model.materials.make(body) = c.value;
   else
     model.materials.erase(body), ingredient::Contacts::end(model, body);
+  model.changed_outlines.note(body);
   if (model::is_free(model.bodies[body].kind)) model.wake(model.bodies[body].articulate);
 }
 

@@ -105,7 +105,9 @@ std::uint32_t Strides::of(const Model& model, std::uint32_t body) {
 }
 
 void Strides::set(Model& model, std::uint32_t body, std::uint32_t steps) {
-  if (of(model, body) == (steps == 0 ? frozen : steps)) return;
+  const std::uint32_t before = of(model, body);
+  if (before == (steps == 0 ? frozen : steps)) return;
+  if (steps == 0 || before == frozen) model.changed_freezes.note(body);
   if (steps == 1)
     model.strides.erase(body);
   else

@@ -118,12 +118,16 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
   const std::size_t chunks = (awake_.size() + chunk - 1) / chunk;
   shares_.assign(chunks, {});
-  const bool robust = model.steps_to_end_point();
+  const bool robust = model.steps_to_end_point(), has_strides = ingredient::Strides::any(model);
   const Vec3 gravity = model.acting_gravity();
   parallel.for_each(chunks, 1, [&](std::size_t c) {
     Share share;
     for (std::size_t i = c * chunk; i < std::min(awake_.size(), (c + 1) * chunk); ++i) {
       const FreeParticle& free = awake_[i];
+      if (has_strides && ingredient::Strides::is_frozen(model, free.body)) [[unlikely]] {
+        ingredient::Strides::drop_forces(model, free.body);
+        continue;
+      }
       model::Ring& ring = model.rings[free.ring];
       ingredient::Push* const push = model.pushes.find(free.ring);
       if (push) push->before = std::exchange(push->force, Vec3{});

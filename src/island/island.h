@@ -144,6 +144,8 @@ class Island {
     if (book_epoch_ != epoch) still_book_ = ingredient::calc_book(model, bodies()), book_epoch_ = epoch;
     return still_book_;
   }
+  /// Whether it has been still, as it is, since its book of this epoch, which is not 0.
+  bool has_stayed_still(std::uint64_t epoch) const { return is_still_ && book_epoch_ == epoch; }
   std::size_t body_count() const { return nodes_.bodies.size(); }
 
   /// Projects velocities, and before that positions on request, on the constraints. False if no position satisfies all

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace iota::island {
 
@@ -17,7 +18,7 @@ void Islands::forget() {
   entries_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
   free_bodies_.forget();
   ++epoch_;
-  knows_all_ = false, order_is_old_ = true;
+  knows_all_ = false, order_is_old_ = awake_is_old_ = true;
 }
 
 void Islands::renew(Model& model) {
@@ -529,26 +530,52 @@ void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const 
 
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
-    in_order_.clear();
-    for (const auto& home : home_of_leader_)
-      if (home) in_order_.push_back(&home->island);
+    in_order_.clear(), stills_.swap(stills_before_), stills_.clear(), changed_stills_.clear(), awake_places_.clear();
+    for (const auto& home : home_of_leader_) {
+      if (!home) continue;
+      const auto place = static_cast<std::uint32_t>(in_order_.size()), before = std::exchange(home->place, place);
+      in_order_.push_back(&home->island);
+      const Still* const known = before < stills_before_.size() ? &stills_before_[before] : nullptr;
+      const bool is_same = known && known->book_epoch != 0 && home->island.has_stayed_still(known->book_epoch);
+      stills_.push_back(is_same ? *known : Still{});
+      if (!is_same) changed_stills_.push_back(place);
+    }
     order_is_old_ = false;
   }
   return in_order_;
 }
 
+// The island of an articulate is not still any more, or is so in another way.
+void Islands::note_still(std::uint32_t articulate) {
+  awake_is_old_ = true;
+  if (!order_is_old_) changed_stills_.push_back(entries_[articulate].home->place);
+}
+
+void Islands::look_whether_still(const Model& model, std::uint32_t place) {
+  Island& island = *in_order_[place];
+  Still& still = stills_[place];
+  still = {.is = island.is_still(), .bodies = static_cast<std::uint32_t>(island.body_count())};
+  if (!still.is) return;
+  still.is_asleep = island.is_asleep(model);
+  island.skip_step();
+}
+
 void Islands::refresh_awake(const Model& model) {
-  awake_.clear();
+  (void)all();
+  for (const auto& places : {&awake_places_, &changed_stills_})
+    for (const std::uint32_t place : *places) look_whether_still(model, place);
+  changed_stills_.clear(), awake_.clear(), awake_places_.clear();
   still_book_.reset();
   total_size_ = largest_size_ = asleep_ = still_bodies_ = 0;
-  for (Island* const island : all()) {
-    if (island->is_still()) {
-      island->skip_step();
-      still_bodies_ += static_cast<std::uint32_t>(island->body_count());
-      if (island->is_asleep(model)) asleep_ += static_cast<std::uint32_t>(island->body_count());
+  for (std::uint32_t place = 0; place < in_order_.size(); ++place) {
+    const Still& still = stills_[place];
+    if (still.is) {
+      still_bodies_ += still.bodies;
+      if (still.is_asleep) asleep_ += still.bodies;
       continue;
     }
-    awake_.push_back(island);
+    Island* const island = in_order_[place];
+    awake_.push_back(island), awake_places_.push_back(place);
     total_size_ += island->size();
     largest_size_ = std::max(largest_size_, island->size());
   }
@@ -566,8 +593,10 @@ void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
     Island* const island = of_articulate(articulate);
     if (!island)
       free_bodies_.wake(model, articulate);
+    else if (island->is_still())
+      note_still(articulate), island->wake();
     else
-      awake_is_old_ = awake_is_old_ || island->is_still(), island->wake();
+      island->wake();
   }
 }
 
@@ -588,7 +617,7 @@ void Islands::wake_stirred(Model& model, double h) {
 
 void Islands::put_to_rest(Model& model, std::uint32_t articulate) {
   if (Island* const island = of_articulate(articulate))
-    island->put_to_rest(model);
+    note_still(articulate), island->put_to_rest(model);
   else if (FreeBodies::is_particle(model, articulate))
     free_bodies_.put_to_rest(model, articulate);
   else
@@ -650,8 +679,11 @@ void Islands::plan_strides(Model& model) {
   if (!ingredient::Strides::any(model) && model.changed_strides.empty()) return;
   for (const std::uint32_t body : std::exchange(model.changed_strides, {})) {
     if (!model.bodies.is_alive(body)) continue;
-    if (Island* const island = of_articulate(model.bodies[body].articulate))
-      awake_is_old_ = awake_is_old_ || island->is_still(), island->read_stride();
+    const std::uint32_t articulate = model.bodies[body].articulate;
+    if (Island* const island = of_articulate(articulate)) {
+      if (island->is_still()) note_still(articulate);
+      island->read_stride();
+    }
   }
   for (Island* const island : awake(model)) (void)island->agree_on_stride(model);
   model.changed_strides.clear();  // by agreement
@@ -698,12 +730,13 @@ ingredient::Book Islands::book(const Model& model) {
     return ingredient::calc_book(model);
   if (!still_book_ || book_version_ != free_bodies_.version()) {
     still_book_.emplace();
-    auto awake = awake_.begin();
-    for (Island* const island : in_order_)
-      if (awake != awake_.end() && *awake == island)
-        ++awake;
-      else
-        still_book_->add(island->still_book(model, book_epoch_));
+    for (std::size_t place = 0; place < stills_.size(); ++place) {
+      Still& still = stills_[place];
+      if (!still.is) continue;
+      if (std::exchange(still.book_epoch, book_epoch_) != book_epoch_)
+        still.book = in_order_[place]->still_book(model, book_epoch_);
+      still_book_->add(still.book);
+    }
     free_bodies_.for_each_still(
         [&](std::uint32_t body) { still_book_->add(ingredient::calc_book(model, {&body, 1})); });
     book_version_ = free_bodies_.version();

@@ -217,6 +217,7 @@ class Structure {
   std::vector<std::string> notes;      ///< of edits that have no report, for the next step's; not saved
   SceneLog scene;                      ///< log for viewers; not saved
   ChangedSlots changed_outlines;       ///< bodies whose outline may be another one; not saved
+  ChangedSlots changed_freezes;        ///< bodies that were frozen, or are not any more; not saved
   /// The usual radius as it would be chosen now, as of some edits; not saved. See outline.h.
   struct ExpectedRadius {
     std::uint64_t edits = 0;

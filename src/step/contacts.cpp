@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -92,9 +93,8 @@ double ContactFinder::Obstacle::distance(const Vec3& place) const {
 
 void ContactFinder::list_obstacles(const model::Model& model, const contact::Outlines& outlines) {
   obstacles_.clear();
-  model.bodies.for_each([&](std::uint32_t body, const model::Body& record) {
-    if (record.kind == BodyKind::static_ && outlines.has(body) && model.material(body)) obstacles_.push_back(body);
-  });
+  std::ranges::copy_if(outlines.fixed(), std::back_inserter(obstacles_),
+                       [&](std::uint32_t body) { return model.material(body) != nullptr; });
 }
 
 const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& model, contact::Outlines& outlines,
@@ -133,15 +133,27 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, const c
   return mover;
 }
 
-// Resting ones are looked at only where one of the others comes near.
-void ContactFinder::list_movers(model::Model& model, const contact::Outlines& outlines) {
-  movers_.clear();
-  is_any_extended_ = false;
-  model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
+// What may touch changes with outlines and materials. A body with a new one is described anew.
+void ContactFinder::note_changes(model::Model& model, contact::Outlines& outlines) {
+  const auto look_at = [&](std::uint32_t slot, const model::Body& body) {
     if (body.kind == BodyKind::static_) return;
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
-    is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot);
-    if (body.kind != BodyKind::resting && !ingredient::Strides::skips(model, slot)) movers_.push_back(slot);
+    is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot) || model.materials.has(slot);
+  };
+  if (std::exchange(had_usual_material_, model.has_usual_material != 0) != (model.has_usual_material != 0))
+    model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) { look_at(slot, body); });
+  else
+    for (const std::uint32_t slot : outlines.described())
+      if (model.bodies.is_alive(slot)) look_at(slot, model.bodies[slot]);
+  outlines.forget_described();
+}
+
+// Resting ones are looked at only where one of the others comes near.
+void ContactFinder::list_movers(const model::Model& model, const contact::Outlines& outlines) {
+  movers_.clear();
+  std::ranges::copy_if(outlines.movable(), std::back_inserter(movers_), [&](std::uint32_t slot) {
+    return model.bodies[slot].kind != BodyKind::resting && may_touch(model, outlines, slot) &&
+           !ingredient::Strides::skips(model, slot);
   });
 }
 
@@ -210,7 +222,7 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
   }
 }
 
-// Particles alone do not touch each other: see are_plain.
+// Plain particles alone do not touch each other.
 void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines) {
   if (movers_.empty() || !is_any_extended_) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
@@ -272,7 +284,7 @@ bool is_held_within(model::Model& model, contact::Outlines& outlines, std::uint3
   return any;
 }
 
-/// Two particles do not touch, unless they have materials of their own.
+/// Two particles do not touch, unless both have materials of their own.
 bool are_plain(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   return !model.materials.has(a) || !model.materials.has(b);
 }
@@ -309,6 +321,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   step_ = h, shortest_ = h / Heap::most_sub_steps;
   begin_look(model, h);
   pairs_.clear(), sensed_.clear();
+  note_changes(model, outlines);
   list_obstacles(model, outlines);
   list_movers(model, outlines);
   find_obstacles(model, outlines);

@@ -69,7 +69,8 @@ class ContactFinder {
   /// A body at the time of this look, the begin of the step or of a part of it.
   Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void begin_look(const model::Model&, double h);
-  void list_movers(model::Model&, const contact::Outlines&);
+  void note_changes(model::Model&, contact::Outlines&);
+  void list_movers(const model::Model&, const contact::Outlines&);
   void find_obstacles(model::Model&, contact::Outlines&);
   void find_pairs(model::Model&, contact::Outlines&);
   /// A pair as it moves now, measured once for a step or a part of it.
@@ -106,7 +107,8 @@ class ContactFinder {
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
-  bool is_any_extended_ = false;    ///< more than a particle
+  bool had_usual_material_ = false;
+  bool is_any_extended_ = false;    ///< more than a plain particle, now or earlier
   double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s
   double h_ = 0, fall_ = 0;         ///< of the step or the rest of it, s; speed that gravity gives in this time, m/s
   /// The contacts of pairs. Those of one body are looked at together: pairs are in order.

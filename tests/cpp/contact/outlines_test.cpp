@@ -50,7 +50,7 @@ struct Scene {
       return;
     }
     const BodyId body = any(all);
-    switch (random() % 10) {
+    switch (random() % 12) {
       case 0: return bodies.destroy(body);
       case 1: return bodies.set_kind(body, any(std::array{BodyKind::static_, BodyKind::dynamic, BodyKind::inactive}));
       case 2: return bodies.set_pose(body, place(), {0, 0, 0, 1});
@@ -63,10 +63,23 @@ struct Scene {
         const std::vector<ParticleId> own = bodies.particles(body);
         return void(CosmeticBonds(core).create(any(own), any(own)));
       }
+      case 9:
+      case 10: return bodies.set_stride(body, any(std::array{0, 0, 1, 5}));
       default: return void(Edits(core).separate(any(bodies.particles(body)), any(bodies.particles(body))));
     }
   }
 };
+
+/// The bodies that are listed as movable and fixed, and those that are so.
+void expect_right_lists(const Outlines& outlines, const model::Model& model) {
+  std::vector<std::uint32_t> movable, fixed;
+  model.bodies.for_each([&](std::uint32_t body, const model::Body& record) {
+    if (!outlines.has(body) || model.is_frozen(body)) return;
+    (record.kind == BodyKind::static_ ? fixed : movable).push_back(body);
+  });
+  EXPECT_EQ(outlines.movable(), movable);
+  EXPECT_EQ(outlines.fixed(), fixed);
+}
 
 TEST(Outlines, that_have_followed_edits_and_steps_are_those_described_anew) {
   Scene scene;
@@ -77,7 +90,7 @@ TEST(Outlines, that_have_followed_edits_and_steps_are_those_described_anew) {
   Emitters emitters(core);
   (void)emitters.create({.rate = 300, .lifetime = 0.2, .mass = 0.1});
   int refused = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < 600; ++round) {
     for (int i = round % 4; i > 0; --i) {
       try {
         scene.edit();
@@ -89,6 +102,7 @@ TEST(Outlines, that_have_followed_edits_and_steps_are_those_described_anew) {
     if (round == 200) core.editor.restore(start);
     if (round == 300) core.execute(edit::SetUsualRadius{0.07});
     const std::string followed = text(core.outlines.refresh(core.model.step));
+    expect_right_lists(core.outlines, core.model);
     // Another reader describes everything; the first one goes on from its own state.
     core.model.changed_outlines.is_on = false;
     Outlines fresh(core.model);

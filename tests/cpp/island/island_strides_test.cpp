@@ -111,6 +111,28 @@ TEST(IslandStrides, a_frozen_island_stays_and_goes_on_as_it_would_have) {
   EXPECT_LT(farthest(full.ends(), frozen.ends()), 1e-9);
 }
 
+TEST(IslandStrides, a_frozen_particle_stays_and_goes_on_as_it_would_have) {
+  System system;
+  const auto drop = [&](double x) {
+    const BodyId body = system.bodies().create();
+    return system.particles().create(body, {x, 1, 0}, 1, {0, 2, 0});
+  };
+  const ParticleId full = drop(0), frozen = drop(1);
+  system.bodies().set_stride(system.particles().body(frozen), 0);
+  system.particles().apply_force(frozen, {5, 0, 0});  // an edit frees it
+  (void)system.step(0.01);
+  EXPECT_GT(system.particles().velocity(frozen).x, 0.04);
+  system.bodies().set_stride(system.particles().body(frozen), 0);
+  const Vec3 place = system.particles().position(frozen), velocity = system.particles().velocity(frozen);
+  for (int i = 0; i < 20; ++i) (void)system.step(0.01);
+  EXPECT_EQ(system.particles().position(frozen), place);
+  EXPECT_EQ(system.particles().velocity(frozen), velocity);
+  EXPECT_LT(system.particles().position(full).y, 1.22);
+  system.bodies().set_stride(system.particles().body(frozen), 1);
+  for (int i = 0; i < 20; ++i) (void)system.step(0.01);
+  EXPECT_NEAR(system.particles().velocity(frozen).y, velocity.y - 0.2 * 9.81, 1e-9);
+}
+
 TEST(IslandStrides, give_the_same_bits_for_any_number_of_threads) {
   Swinging one(4, 1), four(4, 4);
   one.run(50), four.run(50);

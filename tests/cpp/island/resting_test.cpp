@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include <cmath>
 
 namespace iota {
@@ -313,6 +315,35 @@ TEST(Still, bodies_have_the_energies_and_gaps_that_all_have_when_measured) {
   const StepReport woken = c.system.step(0.01);
   EXPECT_EQ(woken.resting, 0u);
   c.expect_the_same_book(woken);
+}
+
+TEST(Still, bodies_are_counted_and_booked_whatever_freezes_wakes_and_ties_them) {
+  Crowd c;
+  Bodies bodies = c.system.bodies();
+  std::mt19937 random(3);
+  const auto any_body = [&] { return bodies.ids().at(random() % bodies.ids().size()); };
+  for (int i = 0; i < 300; ++i) {
+    try {
+      switch (random() % 8) {
+        case 0: bodies.set_stride(any_body(), 0); break;
+        case 1: bodies.set_stride(any_body(), 1); break;
+        case 2: bodies.set_stride(any_body(), 4); break;
+        case 3: bodies.set_kind(any_body(), BodyKind::resting); break;
+        case 4: bodies.set_kind(any_body(), BodyKind::dynamic); break;
+        case 5: c.system.particles().apply_force(bodies.particles(any_body())[0], {0, 3, 1}); break;
+        case 6: bodies.set_kind(any_body(), BodyKind::inactive); break;
+        default: break;
+      }
+    } catch (const std::invalid_argument&) {  // a part of a chain alone can't rest, for example
+    }
+    const StepReport report = c.system.step(0.01);
+    std::uint32_t resting = 0;
+    for (const BodyId body : bodies.ids()) resting += bodies.kind(body) == BodyKind::resting;
+    ASSERT_EQ(report.resting, resting) << "step " << i;
+    const Energy now = c.system.energy();
+    ASSERT_NEAR(report.energy.kinetic + report.energy.potential, now.kinetic + now.potential, 1e-9) << "step " << i;
+    ASSERT_EQ(report.worst_gap, c.system.worst_gap());
+  }
 }
 
 TEST(Still, bodies_are_the_same_bits_after_a_snapshot) {
