@@ -79,6 +79,23 @@ def test_all_is_full_again_within_a_second_after_the_load_falls(made: tuple[iota
     assert all(len(root.articulate.bodies) == 5 for root in roots), "what was stiff came apart"
 
 
+def test_little_time_is_given_to_many_things_at_strides_before_a_few_are_full(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    world, _ = made
+    world.levels.budget_ms = LITTLE
+    run(world, 120)
+    arrays = world.levels._arrays
+    rows = np.nonzero(arrays.level > 0)[0]
+    arrays.significance[rows] = 1.0
+    at, level, gain, cost = arrays.steps_up(rows, np.full(len(rows), 8.0))
+    order = np.argsort(-gain / cost, kind="stable")
+    names = [world.levels.things[rows[at[i]]].levels[level[i]].name for i in order]
+    assert names == ["1/8"] * 5 + ["1/4"] * 5 + ["1/2"] * 5 + ["full"] * 5
+    assert np.allclose(np.bincount(at, cost), 8.0), "up to the cost of all in full"
+    assert np.allclose(np.bincount(at, gain), 1 - 0.05), "and to all of the significance"
+
+
 def test_a_viewer_who_comes_finds_all_in_full(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     place = [0.0, 0.0, 2.0]

@@ -34,7 +34,7 @@ SLICES = (8, 64)  # steps in which each thing is looked at once: with few and wi
 PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
-FULL, AIM, LOW = 0.75, 0.1, 0.25  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
+FULL, AIM, LOW = 0.75, 0.05, 0.15  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
 LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
 SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes from other programs
 LONGEST_STRIDE = 16  # steps, as in the engine
@@ -692,29 +692,29 @@ class Levels(Part):
                     self._change(each, index, significance, 0.0, "over budget")
 
     def _restore(self, rows: NDArray[np.intp], room: float) -> None:
-        """The most significance for each millisecond first."""
+        """The most significance for each millisecond first: many things at strides rather than few in full."""
         arrays = self._arrays
         if not len(rows):
             return
         unit = self._ms_of_work * arrays.full_load[rows]
-        here, quality = arrays.share_now(rows), arrays.qualities[rows, arrays.level[rows]]
-        gain = arrays.significance[rows] * (1 - quality)
-        order = np.argsort(-(gain + 1e-12) / (unit * np.maximum(1 - here, 0.0) + 1e-9), kind="stable")
-        for i in order[: max(MOST, len(self._things) // 60)]:
-            row = int(rows[i])
-            costs = unit[i] * np.maximum(arrays.shares[row, : arrays.level[row]] - here[i], 0.0)
-            fitting = np.nonzero(costs <= room)[0]
-            if not len(fitting):
-                break
+        at, target, gain, cost = arrays.steps_up(rows, unit)
+        order = np.argsort(-(gain + 1e-12) / (cost + 1e-9), kind="stable")
+        order = order[np.cumsum(cost[order]) <= room]
+        best: dict[int, int] = {}  # of rows, in order
+        for i in order:
+            best[int(at[i])] = int(target[i])
+        here = arrays.share_now(rows)
+        for i in list(best)[: max(MOST, len(self._things) // 60)]:
+            row, index = int(rows[i]), best[i]
             if (
                 room < CATCH_UP and arrays.missed(row, self._system.time) > MISSED
             ):  # first what it would have done, in pieces
                 self._await(self._things[row])
                 continue
-            cost = float(costs[fitting[0]])
-            room -= cost
-            self._change(self._things[row], int(fitting[0]), float(arrays.significance[row]), -cost, "time is left")
-            self._ms += cost
+            ms = float(unit[i] * max(arrays.shares[row, index] - here[i], 0.0))
+            room -= ms
+            self._change(self._things[row], index, float(arrays.significance[row]), -ms, "time is left")
+            self._ms += ms
             if time.process_time() > self._change_until:
                 break
 
@@ -1329,3 +1329,27 @@ class _Arrays:
         is_less &= shares < 0.9 * self.share_now(rows)[:, None]
         target: NDArray[np.intp] = np.where(is_less.any(axis=1), is_less.argmax(axis=1), self.level[rows])
         return target
+
+    def steps_up(
+        self, rows: NDArray[np.intp], unit: Floats
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats, Floats]:
+        """The ways up of things, in steps of which each gains the most significance for its cost; unit: ms that each costs at full. For each
+        step the place of its thing in `rows`, the level it leads to, what it gains, and what it costs, ms."""
+        places = np.arange(len(rows))
+        level, share = self.level[rows], self.share_now(rows)
+        found = []
+        while len(places):
+            row = rows[places]
+            gain = self.qualities[row] - self.qualities[row, level][:, None]
+            cost = np.maximum(self.shares[row] - share[:, None], 0.0)
+            worth = np.where(np.arange(gain.shape[1]) < level[:, None], gain / (cost + 1e-9), -np.inf)
+            target = worth.argmax(axis=1)
+            goes = np.isfinite(worth[np.arange(len(row)), target])
+            places, row, level, target = places[goes], row[goes], level[goes], target[goes]
+            here = np.arange(len(goes))[goes]
+            found.append(
+                (places, target, self.significance[row] * gain[here, target], unit[places] * cost[here, target])
+            )
+            level, share = target, self.shares[row, target]
+        at, targets, gains, costs = (np.concatenate(each) for each in zip(*found, strict=True))
+        return at, targets, gains, costs
