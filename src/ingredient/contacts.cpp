@@ -527,14 +527,20 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
 
 namespace {
 
-/// c_n and c_t for a step of h seconds, without the softness.
-std::array<double, 2> natural_compliances(const solver::ContactConstraint& row, const IslandNodes& nodes, double h,
-                                          const Problem& problem) {
+/// c_n and c_t for a step of h seconds, without the softness. Along the normal, nailed points of a body count as free ones if it has
+/// any: its nailed corner hardly moves, and an overlap of round-off would be worth a thousand times the weight there.
+std::array<double, 2> natural_compliances(const solver::ContactConstraint& row, std::uint32_t of_p,
+                                          const IslandNodes& nodes, double h, const Problem& problem) {
   std::array<double, 2> sum{};
-  for (std::uint32_t i = 0; i < row.count; ++i)
-    if (!nodes.pinned[row.nodes[i]])
-      for (std::size_t arm = 0; arm < 2; ++arm)
-        sum[arm] += h * h * row.weights[arm][i] * row.weights[arm][i] / problem.mass[row.nodes[i]];
+  for (const auto& [first, last] : {std::pair(0u, of_p), std::pair(of_p, std::uint32_t{row.count})}) {
+    const auto is_free = [&](std::uint32_t i) { return !nodes.pinned[row.nodes[i]]; };
+    bool any = false;
+    for (std::uint32_t i = first; i < last; ++i) any = any || is_free(i);
+    for (std::uint32_t i = first; i < last; ++i)
+      for (const Arm arm : {Arm::center, Arm::place})
+        if (is_free(i) || (any && arm == Arm::center))
+          sum[arm] += h * h * row.weights[arm][i] * row.weights[arm][i] / problem.mass[row.nodes[i]];
+  }
   return sum;
 }
 
@@ -621,7 +627,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.is_of_sweeps = c.is_of_sweeps;
     row.pivots[0] = dot(c.pivot, c.first), row.pivots[1] = dot(c.pivot, c.second);
     row.friction = c.friction, row.static_friction = c.static_friction, row.restitution = c.restitution;
-    const auto [of_center, of_place] = natural_compliances(row, nodes, h, problem);
+    const auto [of_center, of_place] = natural_compliances(row, c.of_p, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;
     row.compliance = tangent_softness * of_place;
     row.reference = std::max({size_of(row, c, problem), c.radius, 1e-9});

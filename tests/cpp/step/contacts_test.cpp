@@ -217,6 +217,25 @@ TEST(Contacts, carry_the_weight_at_the_places_that_are_told) {
   EXPECT_LT(norm(sum - Vec3{0, 3 * g, 0}), 1e-6);
 }
 
+TEST(Contacts, carry_the_weight_alone_where_a_hinge_holds_the_corner_that_lies) {
+  System system;
+  system.set_usual_material(Material{});
+  (void)system.bodies().create_obstacle(HalfSpace{{0, 1, 0}});
+  Bodies bodies = system.bodies();
+  const BodyId box = bodies.create(Box{{0.2, 0.1, 0.2}}, {.mass = 1, .position = {0, 0.05, 0}});
+  for (int i = 0; i < 60; ++i) (void)system.step(0.01);
+  const BodyId holder = bodies.create();
+  const ParticleId corner = bodies.create_attachment(box, {0.099, 0, 0.099});
+  (void)system.edits().combine(corner, system.particles().create(holder, {0.099, 0, 0.099}, 0.01));
+  for (int i = 0; i < 60; ++i) (void)system.step(0.01);
+  bodies.set_kind(holder, BodyKind::scripted);
+  for (int i = 0; i < 60; ++i) (void)system.step(0.01);
+  double weight = 0;
+  for (const ContactPoint& contact : bodies.contacts(box)) weight += contact.force.y;
+  EXPECT_GT(weight, 1);
+  EXPECT_LT(weight, 20) << "its weight is 9.8 N, of which the hinge may carry a part";
+}
+
 TEST(Contacts, tell_the_hardest_impact_of_a_step_once) {
   System system;
   (void)make_ground(system, 0.5);
