@@ -72,7 +72,7 @@ void Outlines::take_out_frozen() {
   std::erase_if(movable_, [&](std::uint32_t body) {
     if (!structure_.is_frozen(body)) return false;
     movers_[body] = Mover::nothing;
-    due_.note(body);
+    due_.note(body), ++lists_version_;
     return true;
   });
 }
@@ -130,6 +130,7 @@ Outlines::Mover Outlines::mover_of(std::uint32_t body) const {
 
 void Outlines::list(std::span<const std::uint32_t> changed) {
   if (changed.empty()) return;
+  ++lists_version_;
   movers_.resize(structure_.bodies.slot_count(), Mover::nothing);
   for (const std::uint32_t body : changed) {
     movers_[body] = mover_of(body);

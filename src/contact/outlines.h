@@ -40,6 +40,8 @@ class Outlines {
   const std::vector<std::uint32_t>& movable() const { return movable_; }
   /// The static bodies with an outline, in order.
   const std::vector<std::uint32_t>& fixed() const { return fixed_; }
+  /// Rises with each change of these two lists.
+  std::uint64_t lists_version() const { return lists_version_; }
   /// The bodies that were described, or lost their outline, since the last call of `forget_described`.
   const std::vector<std::uint32_t>& described() const { return described_.slots(); }
   void forget_described() { described_.clear(); }
@@ -85,7 +87,7 @@ class Outlines {
   double usual_radius_ = 0;
   model::ChangedSlots described_;
   std::vector<std::uint32_t> scratch_;
-  std::uint64_t steps_ = 0, edits_ = 0;
+  std::uint64_t steps_ = 0, edits_ = 0, lists_version_ = 0;
   std::uint32_t version_ = 0;
   bool is_edited_ = true;     ///< since the last call
   bool lacks_flags_ = false;  ///< of edits since the last call

@@ -700,11 +700,16 @@ double Contacts::gap(const Model& model, const Contact& c) {
   return (c.is_round() ? norm(c.off(d)) : dot(c.normal, d)) - c.radius;
 }
 
-Impact Contacts::hardest_impact(const Model& model) {
+Impact Contacts::hardest_impact(const Model& model, std::span<const std::uint32_t> bodies) {
   Impact hardest;
-  model.contacts.for_each([&](std::uint32_t, const Contact& c) {
-    if (c.approach > hardest.speed && c.has_touched()) hardest = {place(model, c), c.approach};
-  });
+  if (model.contacts.size() == 0) return hardest;
+  std::uint32_t found = none;  // of equal ones the first
+  for (const std::uint32_t body : bodies)
+    model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+      const Contact& c = model.contacts[slot];
+      if (!(c.approach > hardest.speed || (c.approach == hardest.speed && slot < found)) || !c.has_touched()) return;
+      if (c.approach > 0) hardest = {place(model, c), c.approach}, found = slot;
+    });
   return hardest;
 }
 

@@ -123,8 +123,8 @@ class Contacts : public NoAnswers {
   static Vec3 place(const Model&, const Contact&);
   /// At the end of the last step, m.
   static double gap(const Model&, const Contact&);
-  /// The hardest of those that began to carry in the last step.
-  static Impact hardest_impact(const Model&);
+  /// The hardest of those of some bodies that began to carry in the last step.
+  static Impact hardest_impact(const Model&, std::span<const std::uint32_t> bodies);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);

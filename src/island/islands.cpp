@@ -580,6 +580,7 @@ void Islands::refresh_awake(const Model& model) {
     largest_size_ = std::max(largest_size_, island->size());
   }
   awake_is_old_ = false;
+  ++awake_version_;
 }
 
 std::span<Island* const> Islands::awake(const Model& model) {

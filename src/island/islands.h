@@ -60,6 +60,8 @@ class Islands {
   std::span<Island* const> all();
   /// The islands that are not still: a step costs what moves, not what rests.
   std::span<Island* const> awake(const model::Model&);
+  /// Rises whenever another set of bodies may be awake, but for edits since the last step.
+  std::uint64_t awake_version() const { return awake_version_ + free_bodies_.version(); }
   /// The loose bodies that are awake.
   std::span<const FreeBodies::Loose> loose(const model::Model& model) { return free_bodies_.loose(model); }
   /// Number of awake islands and loose bodies of a task: all if threads would not be faster.
@@ -258,7 +260,8 @@ class Islands {
   std::vector<std::uint32_t> node_of_ring_;
   FreeBodies free_bodies_;
   Lenders lenders_;
-  KeptOrders kept_orders_;   // of the present update
+  KeptOrders kept_orders_;  // of the present update
+  std::uint64_t awake_version_ = 0;
   std::uint64_t epoch_ = 1;  // another one after each change of structure
   bool knows_all_ = false, order_is_old_ = true, awake_is_old_ = true;
 };

@@ -91,12 +91,6 @@ double ContactFinder::Obstacle::distance(const Vec3& place) const {
   return is_half_space ? dot(normal, place - origin) : geometry::distance(box, place);
 }
 
-void ContactFinder::list_obstacles(const model::Model& model, const contact::Outlines& outlines) {
-  obstacles_.clear();
-  std::ranges::copy_if(outlines.fixed(), std::back_inserter(obstacles_),
-                       [&](std::uint32_t body) { return model.material(body) != nullptr; });
-}
-
 const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& model, contact::Outlines& outlines,
                                                           std::uint32_t body) {
   if (all_obstacles_.size() <= body) all_obstacles_.resize(model.bodies.slot_count());
@@ -140,20 +134,36 @@ void ContactFinder::note_changes(model::Model& model, contact::Outlines& outline
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
     is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot) || model.materials.has(slot);
   };
-  if (std::exchange(had_usual_material_, model.has_usual_material != 0) != (model.has_usual_material != 0))
+  const bool has_usual = model.has_usual_material != 0;
+  if (std::exchange(had_usual_material_, has_usual) != has_usual) {
     model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) { look_at(slot, body); });
-  else
+    listed_at_ = {};
+  } else {
     for (const std::uint32_t slot : outlines.described())
       if (model.bodies.is_alive(slot)) look_at(slot, model.bodies[slot]);
+  }
   outlines.forget_described();
 }
 
+// A look at each of ten thousand sleepers takes a tenth of a millisecond.
+void ContactFinder::list_candidates(const model::Model& model, const contact::Outlines& outlines,
+                                    std::uint64_t awake_version) {
+  const std::array<std::uint64_t, 3> now{awake_version + 1, model.edits, outlines.lists_version()};
+  if (listed_at_ == now && model.flagged().empty()) return;
+  listed_at_ = now;
+  obstacles_.clear(), candidates_.clear();
+  std::ranges::copy_if(outlines.fixed(), std::back_inserter(obstacles_),
+                       [&](std::uint32_t body) { return model.material(body) != nullptr; });
+  std::ranges::copy_if(outlines.movable(), std::back_inserter(candidates_), [&](std::uint32_t slot) {
+    return model.bodies[slot].kind != BodyKind::resting && may_touch(model, outlines, slot);
+  });
+}
+
 // Resting ones are looked at only where one of the others comes near.
-void ContactFinder::list_movers(const model::Model& model, const contact::Outlines& outlines) {
+void ContactFinder::list_movers(const model::Model& model) {
   movers_.clear();
-  std::ranges::copy_if(outlines.movable(), std::back_inserter(movers_), [&](std::uint32_t slot) {
-    return model.bodies[slot].kind != BodyKind::resting && may_touch(model, outlines, slot) &&
-           !ingredient::Strides::skips(model, slot);
+  std::ranges::copy_if(candidates_, std::back_inserter(movers_), [&](std::uint32_t slot) {
+    return model.bodies[slot].kind != BodyKind::resting && !ingredient::Strides::skips(model, slot);
   });
 }
 
@@ -314,7 +324,7 @@ bool touch_each_other(model::Model& model, contact::Outlines& outlines,
 
 }  // namespace
 
-void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h) {
+void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
   hasty_.clear();
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
@@ -322,8 +332,8 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   begin_look(model, h);
   pairs_.clear(), sensed_.clear();
   note_changes(model, outlines);
-  list_obstacles(model, outlines);
-  list_movers(model, outlines);
+  list_candidates(model, outlines, awake_version);
+  list_movers(model);
   find_obstacles(model, outlines);
   find_pairs(model, outlines);
   std::sort(pairs_.begin(), pairs_.end());

@@ -7,6 +7,7 @@
 #include "ingredient/model.h"
 #include "model/basis_weights.h"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -26,8 +27,11 @@ struct Sensed {
 /// Bodies that are hinged or jointed to each other do not touch, nor do two particles with the usual material.
 class ContactFinder {
  public:
-  /// For a step of h seconds. Costs nothing while nothing has a material.
-  void find(model::Model&, contact::Outlines&, double h);
+  /// For a step of h seconds. awake_version: of the islands. Costs nothing while nothing has a material, and next to nothing while all
+  /// is asleep or frozen.
+  void find(model::Model&, contact::Outlines&, double h, std::uint64_t awake_version);
+  /// The bodies that may touch and were neither asleep nor within a stride when the step began.
+  const std::vector<std::uint32_t>& movers() const { return movers_; }
   /// Articulates of bodies that meet others so fast on their way that their islands take the step in parts.
   const std::vector<std::uint32_t>& hasty() const { return hasty_; }
   struct Part {
@@ -64,13 +68,13 @@ class ContactFinder {
   };
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
 
-  void list_obstacles(const model::Model&, const contact::Outlines&);
   const Obstacle& obstacle_at(const model::Model&, contact::Outlines&, std::uint32_t body);
   /// A body at the time of this look, the begin of the step or of a part of it.
   Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
   void begin_look(const model::Model&, double h);
   void note_changes(model::Model&, contact::Outlines&);
-  void list_movers(const model::Model&, const contact::Outlines&);
+  void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
+  void list_movers(const model::Model&);
   void find_obstacles(model::Model&, contact::Outlines&);
   void find_pairs(model::Model&, contact::Outlines&);
   /// A pair as it moves now, measured once for a step or a part of it.
@@ -128,10 +132,11 @@ class ContactFinder {
   };
   // Scratch, kept for its capacity.
   Known known_;
-  std::vector<std::uint32_t> contacts_;  ///< of an island
-  std::vector<std::uint32_t> obstacles_;
-  std::vector<Obstacle> all_obstacles_;  ///< by body slot
-  std::vector<Mover> all_movers_;        ///< by body slot
+  std::vector<std::uint32_t> contacts_;                ///< of an island
+  std::vector<std::uint32_t> obstacles_, candidates_;  ///< the latter: those that may touch, and were awake when listed
+  std::array<std::uint64_t, 3> listed_at_{};           ///< versions of islands, edits and outlines
+  std::vector<Obstacle> all_obstacles_;                ///< by body slot
+  std::vector<Mover> all_movers_;                      ///< by body slot
   struct Moved {
     std::uint64_t look = 0;  ///< in which it was measured
     bool is = true;

@@ -51,7 +51,7 @@ void Stepper::take_held_forces(StepReport& report) {
 // 1b. Bodies with a material and the obstacles near them.
 void Stepper::find_contacts(double h) {
   const Timed timed(times_of_thread(), &StepTimes::analyze);
-  contacts_.find(editor_.model, outlines_, h);
+  contacts_.find(editor_.model, outlines_, h, editor_.islands.awake_version());
 }
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
@@ -225,7 +225,7 @@ void Stepper::fill(StepReport& report) {
     report.warnings.emplace_back("the integration made energy that no force explains (energy.made); try shorter steps");
   report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
   model.notes.clear();
-  report.impact = ingredient::Contacts::hardest_impact(model);
+  report.impact = ingredient::Contacts::hardest_impact(model, contacts_.movers());
   report.step = model.step;
   report.time = model.time;
   report.worst_gap = worst_gap;

@@ -64,7 +64,7 @@ class Scene:
         self.edits: list[Any] = []  # that are due
         if dice.random() < 0.7:
             self.manage()
-        self.is_edited = self.was_edited = self.is_torn = False
+        self.is_edited = self.was_edited = self.is_torn = self.was_unsolved = False
         self.largest = 0.0  # J, kinetic
         self.near: dict[int, int] = {}
 
@@ -227,7 +227,8 @@ class Scene:
         energy = self.system.energy
         # Of a stride that an edit ends, each step is booked as losing the same, which is not so where bodies begin to fall.
         size = (5e-3 if self.was_edited else 2e-3) * (1 + self.largest)
-        assert energy.lost >= -size, energy
+        # A conflict of two that are nailed has no solution; what its step makes is in the account of strides.
+        assert energy.lost >= -size or (self.is_torn and self.was_unsolved), energy
         if not self.was_edited:
             assert energy.total <= self.start.total + size, energy
         assert all(body.stride == 1 for body in self.system.bodies) and self.system.validate() == []
@@ -239,6 +240,7 @@ class Scene:
         assert self.is_torn or report.unconverged == 0 or report.worst_gap < 5e-3, step
         # A box that slides over the end of an edge makes some millionths of its motion, at all levels.
         rescued = report.fallbacks > 0 or report.unconverged > 0
+        self.was_unsolved = self.was_unsolved or report.unconverged > 0
         motion = energy.kinetic + before.kinetic
         assert energy.made - before.made <= (0.2 if rescued else 1e-5) * motion, step
         self.largest = max(self.largest, energy.kinetic)

@@ -277,6 +277,55 @@ TEST(ContactPairs, go_on_with_the_same_bits_after_a_restored_snapshot) {
     EXPECT_EQ(system.bodies().center_of_mass(body), other.bodies().center_of_mass(body));
 }
 
+TEST(ContactPairs, are_found_by_lists_that_are_kept_as_by_lists_made_anew) {
+  System system = make_world();
+  system.set_rest({.after = 0.1, .speed = 0.02});
+  std::mt19937 random(11);
+  const auto number = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Bodies bodies = system.bodies();
+  for (int i = 0; i < 24; ++i)
+    (void)bodies.create(Box{{0.2, 0.2, 0.2}}, {.position = {number(-1, 1), number(0.2, 3), number(-1, 1)}});
+  std::size_t most_resting = 0, contacts = 0;
+  for (int i = 0; i < 400; ++i) {
+    const std::vector<BodyId> all = bodies.ids();
+    const BodyId body = all[1 + random() % (all.size() - 1)];
+    try {
+      switch (random() % 40) {
+        case 0: bodies.set_kind(body, BodyKind::resting); break;
+        case 1: bodies.set_kind(body, BodyKind::dynamic); break;
+        case 2:
+          bodies.set_kind(body, bodies.kind(body) == BodyKind::inactive ? BodyKind::dynamic : BodyKind::inactive);
+          break;
+        case 3: bodies.set_material(body, bodies.material(body) ? std::optional<Material>() : Material{0.4}); break;
+        case 4: bodies.set_stride(body, 0); break;
+        case 5: bodies.set_stride(body, 1); break;
+        case 6: bodies.set_velocity(body, {number(-2, 2), number(0, 3), number(-2, 2)}); break;
+        case 7: bodies.destroy(body); break;
+        case 8: (void)bodies.create(Sphere{0.1}, {.position = {number(-1, 1), 2, number(-1, 1)}}); break;
+        case 9:
+          bodies.set_kind(body, bodies.kind(body) == BodyKind::static_ ? BodyKind::dynamic : BodyKind::static_);
+          break;
+        default: break;
+      }
+    } catch (const std::invalid_argument&) {  // what is inactive does not rest, for example
+    }
+    System fresh;
+    fresh.restore(system.snapshot());
+    const StepReport kept = system.step(step_of_pairs), anew = fresh.step(step_of_pairs);
+    ASSERT_EQ(kept.impact.speed, anew.impact.speed) << "step " << i;
+    most_resting = std::max<std::size_t>(most_resting, kept.resting);
+    for (const BodyId each : bodies.ids()) {
+      ASSERT_EQ(bodies.contacts(each).size(), fresh.bodies().contacts(each).size()) << "step " << i;
+      ASSERT_EQ(bodies.center_of_mass(each), fresh.bodies().center_of_mass(each)) << "step " << i;
+      contacts += bodies.contacts(each).size();
+    }
+  }
+  EXPECT_GT(most_resting, 10u);
+  EXPECT_GT(contacts, 4000u);
+}
+
 TEST(ContactPairs, stand_at_the_edge_of_a_table_and_fall_beyond_it) {
   for (const double overhang : {0.045, 0.055}) {
     System system = make_world();
