@@ -158,15 +158,8 @@ void Outlines::describe(std::uint32_t body) {
   structure_.for_each_solid_of(
       body, [&](std::uint32_t s) { outline.solids.push_back({form_of(structure_.solids[s].shape), s, {}, {}}); });
   if (outline.solids.empty()) add_lines(body, outline);
-  measure(body);
-}
-
-void Outlines::measure(std::uint32_t body) {
   if (reaches_.size() <= body) reaches_.resize(body + std::size_t{1}, -1);
-  reaches_[body] = -1;
-  if (structure_.bodies[body].count == 0) return;
-  place(body);
-  reaches_[body] = contact::reach(tree_[body], structure_.position(structure_.bodies[body].first));
+  if (structure_.bodies[body].count > 0) place(body);
 }
 
 void Outlines::add_lines(std::uint32_t body, Outline& outline) {
@@ -188,6 +181,7 @@ void Outlines::add_lines(std::uint32_t body, Outline& outline) {
   if (is_aging) aging_.push_back(body);
 }
 
+// Hinges that close bend a body for a while, and bodies that are inactive: with the reach that it had then, contacts were missed.
 void Outlines::place(std::uint32_t body) {
   Outline& outline = tree_[body];
   for (Solid& solid : outline.solids) {
@@ -195,6 +189,8 @@ void Outlines::place(std::uint32_t body) {
     solid.position = pose.position, solid.turn = pose.orientation;
   }
   for (Line& line : outline.lines) line.a = structure_.position(line.p), line.b = structure_.position(line.q);
+  const model::Body& record = structure_.bodies[body];
+  reaches_[body] = record.count == 0 ? -1 : contact::reach(outline, structure_.position(record.first));
 }
 
 std::shared_ptr<const Form> Outlines::form_of(const shape::Data& data) {

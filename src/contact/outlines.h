@@ -45,8 +45,8 @@ class Outlines {
   /// The bodies that were described, or lost their outline, since the last call of `forget_described`.
   const std::vector<std::uint32_t>& described() const { return described_.slots(); }
   void forget_described() { described_.clear(); }
-  /// All of a body is at most so far from its first particle, m; negative: it has no outline, or no particle. See
-  /// contact::reach.
+  /// All of a body is at most so far from its first particle, m, where it was placed last; negative: it has no outline, or no
+  /// particle. See contact::reach.
   double reach(std::uint32_t body) const { return body < reaches_.size() ? reaches_[body] : -1; }
   /// The outline where the body is now. The tree has it elsewhere until the next `refresh`.
   const Outline& placed(std::uint32_t body) {
@@ -70,7 +70,6 @@ class Outlines {
   void look_for(std::uint32_t body, bool spares_frozen);
   bool is_described() const;
   void describe(std::uint32_t body);
-  void measure(std::uint32_t body);
   void add_lines(std::uint32_t body, Outline&);
   void place(std::uint32_t body);
   std::shared_ptr<const Form> form_of(const shape::Data&);

@@ -30,7 +30,8 @@ constexpr double near = 0.25;    ///< the way and the swing in a part in which b
 /// Islands of sweeps take such parts in any case: their sub-steps are as many in all.
 constexpr std::size_t most_in_parts = 2400;  ///< bodies in all parts of a step: larger islands take fewer
 constexpr double near_in_sweeps = 0.1, still = 0.02;
-constexpr double least = 1e-3;  ///< of the rest of a step: no part is shorter
+constexpr double least = 1e-3;             ///< of the rest of a step: no part is shorter
+constexpr std::size_t few_obstacles = 16;  ///< are looked at one by one
 /// A body whose points have not gone further keeps its contacts. What lies in a heap goes about so far in a step.
 constexpr double standing = 1e-5;
 
@@ -107,16 +108,18 @@ const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& mo
   return obstacle;
 }
 
-void ContactFinder::begin_look(const model::Model& model, double h) {
+void ContactFinder::begin_look(const model::Model& model, double h, bool are_placed) {
+  are_placed_ = are_placed;
   h_ = h, fall_ = h * norm(model.acting_gravity());
   ++look_;
   if (all_movers_.size() < model.bodies.slot_count()) all_movers_.resize(model.bodies.slot_count());
 }
 
-ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, const contact::Outlines& outlines,
+ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact::Outlines& outlines,
                                               std::uint32_t slot) {
   Mover& mover = all_movers_[slot];
   if (mover.look == look_) return mover;
+  if (!are_placed_) (void)outlines.placed(slot);
   const model::Body& body = model.bodies[slot];
   mover = {.body = slot, .reach = outlines.reach(slot), .place = model.position(body.first), .look = look_};
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
@@ -201,9 +204,8 @@ geometry::Bounds ContactFinder::way_of_stride(const model::Model& model, contact
 
 // Few obstacles are looked at one by one, many by the tree. What hangs on a beam may take strides.
 void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outlines) {
-  constexpr std::size_t few = 16;
   if (movers_.empty() || obstacles_.empty()) return;
-  const contact::OutlineTree* const tree = obstacles_.size() > few ? &outlines.refresh(model.step) : nullptr;
+  const contact::OutlineTree* const tree = obstacles_.size() > few_obstacles ? &outlines.refresh(model.step) : nullptr;
   for (const std::uint32_t slot : movers_) {
     const Mover& mover = mover_at(model, outlines, slot);
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
@@ -329,11 +331,13 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   step_ = h, shortest_ = h / Heap::most_sub_steps;
-  begin_look(model, h);
   pairs_.clear(), sensed_.clear();
   note_changes(model, outlines);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
+  const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;
+  if (has_many && !movers_.empty()) (void)outlines.refresh(model.step);
+  begin_look(model, h, has_many);
   find_obstacles(model, outlines);
   find_pairs(model, outlines);
   std::sort(pairs_.begin(), pairs_.end());
@@ -379,7 +383,7 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
   sensed_.push_back({first, second, deepest.place, normal, deepest.gap, speed});
 }
 
-ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, const contact::Outlines& outlines,
+ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, contact::Outlines& outlines,
                                                  const Pair& pair) {
   Meeting meeting{&mover_at(model, outlines, pair.first), nullptr, 0};
   if (model.bodies[pair.second].kind != BodyKind::static_) meeting.second = &mover_at(model, outlines, pair.second);
@@ -390,10 +394,6 @@ ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, cons
 double ContactFinder::Meeting::speed() const {
   return second ? norm(first->velocity - second->velocity) + first->spread + second->spread
                 : norm(first->velocity) + first->spread;
-}
-
-const contact::Outline& ContactFinder::placed(contact::Outlines& outlines, Mover& mover) {
-  return std::exchange(mover.is_placed, true) ? outlines.described(mover.body) : outlines.placed(mover.body);
 }
 
 bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeting) {
@@ -459,8 +459,7 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   ingredient::Contacts::Motion motion = motion_in(model, meeting);
   motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
   found_.clear();
-  const contact::Outline& outline = placed(outlines, *mover);
-  if (other) (void)placed(outlines, *other);
+  const contact::Outline& outline = outlines.described(first);
   const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
   touches_.find(outline, (0.5 * h_) * motion.spins[0], outlines.described(second), (0.5 * h_) * motion.spins[1],
                 within(*mover, other), found_, way);
@@ -496,8 +495,7 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
       is_of_sweeps(model, meeting))
     return {0, std::max(h_ / std::ceil(h_ * speed / (near_in_sweeps * size)), shortest_)};
   if (!(h_ * speed > far * size)) return {0, never};
-  const contact::Outline& outline = placed(outlines, *mover);
-  if (other) (void)placed(outlines, *other);
+  const contact::Outline& outline = outlines.described(first);
   const contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
   const contact::Outline& other_outline = outlines.described(second);
   const double time = approaches_.time(outline, motions[0], other_outline, motions[1], of_size * size, h_);
@@ -520,7 +518,7 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
 }
 
 // Only pairs of one island: all that is in it has taken the same part of the step.
-void ContactFinder::list_pairs_of(const model::Model& model, const contact::Outlines& outlines,
+void ContactFinder::list_pairs_of(const model::Model& model, contact::Outlines& outlines,
                                   std::span<const std::uint32_t> bodies) {
   listed_.clear();
   is_here_.resize(std::max<std::size_t>(is_here_.size(), model.bodies.slot_count()), 0);
@@ -545,7 +543,7 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
                                                std::span<const std::uint32_t> bodies, double left, const Part& which) {
   const std::size_t most_parts = std::max<std::size_t>(2, most_in_parts / bodies.size());
   shortest_ = step_ / static_cast<double>(std::min<std::size_t>(most_parts, Heap::most_sub_steps));
-  begin_look(model, left);
+  begin_look(model, left, false);
   list_pairs_of(model, outlines, bodies);
   double part = left;
   if (which.may_cut)

@@ -61,8 +61,7 @@ class ContactFinder {
     double spread = 0;         ///< of the velocities of its points, m/s
     double steps = 1;          ///< that it may take at once
     std::uint64_t look = 0;    ///< in which it was measured
-    bool is_placed = false;    ///< its outline is where the body is now; this and the following: where asked for
-    std::optional<Vec3> spin;  ///< rad/s
+    std::optional<Vec3> spin;  ///< rad/s; this and the following: where asked for
     std::optional<model::BasisWeights> basis;
     std::optional<bool> of_sweeps;  ///< see ingredient::Contacts::is_of_sweeps
   };
@@ -70,8 +69,8 @@ class ContactFinder {
 
   const Obstacle& obstacle_at(const model::Model&, contact::Outlines&, std::uint32_t body);
   /// A body at the time of this look, the begin of the step or of a part of it.
-  Mover& mover_at(const model::Model&, const contact::Outlines&, std::uint32_t body);
-  void begin_look(const model::Model&, double h);
+  Mover& mover_at(const model::Model&, contact::Outlines&, std::uint32_t body);
+  void begin_look(const model::Model&, double h, bool are_placed);
   void note_changes(model::Model&, contact::Outlines&);
   void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
   void list_movers(const model::Model&);
@@ -84,9 +83,8 @@ class ContactFinder {
     double size;    ///< of the smaller one that moves, m
     double speed() const;
   };
-  const contact::Outline& placed(contact::Outlines&, Mover&);
   bool is_of_sweeps(const model::Model&, const Meeting&);
-  Meeting meeting_of(const model::Model&, const contact::Outlines&, const Pair&);
+  Meeting meeting_of(const model::Model&, contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.
   bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
   /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
@@ -106,12 +104,13 @@ class ContactFinder {
   };
   Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
-  void list_pairs_of(const model::Model&, const contact::Outlines&, std::span<const std::uint32_t> bodies);
+  void list_pairs_of(const model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies);
   void list_contacts_of(const model::Model&, std::span<const std::uint32_t> bodies);
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
   bool had_usual_material_ = false;
+  bool are_placed_ = false;         ///< all outlines, where their bodies are at this look
   bool is_any_extended_ = false;    ///< more than a plain particle, now or earlier
   double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s
   double h_ = 0, fall_ = 0;         ///< of the step or the rest of it, s; speed that gravity gives in this time, m/s

@@ -50,7 +50,7 @@ struct Scene {
       return;
     }
     const BodyId body = any(all);
-    switch (random() % 12) {
+    switch (random() % 13) {
       case 0: return bodies.destroy(body);
       case 1: return bodies.set_kind(body, any(std::array{BodyKind::static_, BodyKind::dynamic, BodyKind::inactive}));
       case 2: return bodies.set_pose(body, place(), {0, 0, 0, 1});
@@ -65,6 +65,11 @@ struct Scene {
       }
       case 9:
       case 10: return bodies.set_stride(body, any(std::array{0, 0, 1, 5}));
+      case 11: {  // not with a static one: where both can't meet, a step moves its points back
+        const BodyId other = any(all);
+        if (bodies.kind(body) == BodyKind::static_ || bodies.kind(other) == BodyKind::static_) return;
+        return void(Edits(core).combine(any(bodies.particles(body)), any(bodies.particles(other))));
+      }
       default: return void(Edits(core).separate(any(bodies.particles(body)), any(bodies.particles(body))));
     }
   }
@@ -107,6 +112,8 @@ TEST(Outlines, that_have_followed_edits_and_steps_are_those_described_anew) {
     core.model.changed_outlines.is_on = false;
     Outlines fresh(core.model);
     ASSERT_EQ(followed, text(fresh.refresh(core.model.step))) << "round " << round;
+    for (const BodyId body : Bodies(core).ids())
+      ASSERT_EQ(core.outlines.reach(body.slot), fresh.reach(body.slot)) << "round " << round << " body " << body.slot;
   }
   EXPECT_LT(refused, 300);
 }
