@@ -67,7 +67,7 @@ void Outlines::look_for(std::uint32_t body, bool spares_frozen) {
     tree_.show(body);
 }
 
-/// What was frozen within a stride has moved until its end, and is looked for once more.
+/// A body that was frozen within a stride has moved until its end, and is looked for once more.
 void Outlines::take_out_frozen() {
   std::erase_if(movable_, [&](std::uint32_t body) {
     if (!structure_.is_frozen(body)) return false;

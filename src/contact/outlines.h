@@ -60,7 +60,7 @@ class Outlines {
  private:
   using FormKey = std::tuple<std::uint32_t, std::array<double, 4>, std::uint64_t>;
 
-  /// What may move a body.
+  /// Who may move a body: nothing, steps, or edits alone.
   enum class Mover : std::uint8_t { nothing, steps, edits };
   void describe_changed();
   Mover mover_of(std::uint32_t body) const;

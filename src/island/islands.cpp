@@ -530,15 +530,15 @@ void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const 
 
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
-    in_order_.clear(), stills_.swap(stills_before_), stills_.clear(), changed_stills_.clear(), awake_places_.clear();
+    in_order_.clear(), stills_.swap(stills_before_), stills_.clear(), changed_stills_.clear(), awake_indices_.clear();
     for (const auto& home : home_of_leader_) {
       if (!home) continue;
-      const auto place = static_cast<std::uint32_t>(in_order_.size()), before = std::exchange(home->place, place);
+      const auto index = static_cast<std::uint32_t>(in_order_.size()), before = std::exchange(home->index, index);
       in_order_.push_back(&home->island);
       const Still* const known = before < stills_before_.size() ? &stills_before_[before] : nullptr;
       const bool is_same = known && known->book_epoch != 0 && home->island.has_stayed_still(known->book_epoch);
       stills_.push_back(is_same ? *known : Still{});
-      if (!is_same) changed_stills_.push_back(place);
+      if (!is_same) changed_stills_.push_back(index);
     }
     order_is_old_ = false;
   }
@@ -548,12 +548,12 @@ std::span<Island* const> Islands::all() {
 // The island of an articulate is not still any more, or is so in another way.
 void Islands::note_still(std::uint32_t articulate) {
   awake_is_old_ = true;
-  if (!order_is_old_) changed_stills_.push_back(entries_[articulate].home->place);
+  if (!order_is_old_) changed_stills_.push_back(entries_[articulate].home->index);
 }
 
-void Islands::look_whether_still(const Model& model, std::uint32_t place) {
-  Island& island = *in_order_[place];
-  Still& still = stills_[place];
+void Islands::look_whether_still(const Model& model, std::uint32_t index) {
+  Island& island = *in_order_[index];
+  Still& still = stills_[index];
   still = {.is = island.is_still(), .bodies = static_cast<std::uint32_t>(island.body_count())};
   if (!still.is) return;
   still.is_asleep = island.is_asleep(model);
@@ -562,20 +562,20 @@ void Islands::look_whether_still(const Model& model, std::uint32_t place) {
 
 void Islands::refresh_awake(const Model& model) {
   (void)all();
-  for (const auto& places : {&awake_places_, &changed_stills_})
-    for (const std::uint32_t place : *places) look_whether_still(model, place);
-  changed_stills_.clear(), awake_.clear(), awake_places_.clear();
+  for (const auto& indices : {&awake_indices_, &changed_stills_})
+    for (const std::uint32_t index : *indices) look_whether_still(model, index);
+  changed_stills_.clear(), awake_.clear(), awake_indices_.clear();
   still_book_.reset();
   total_size_ = largest_size_ = asleep_ = still_bodies_ = 0;
-  for (std::uint32_t place = 0; place < in_order_.size(); ++place) {
-    const Still& still = stills_[place];
+  for (std::uint32_t index = 0; index < in_order_.size(); ++index) {
+    const Still& still = stills_[index];
     if (still.is) {
       still_bodies_ += still.bodies;
       if (still.is_asleep) asleep_ += still.bodies;
       continue;
     }
-    Island* const island = in_order_[place];
-    awake_.push_back(island), awake_places_.push_back(place);
+    Island* const island = in_order_[index];
+    awake_.push_back(island), awake_indices_.push_back(index);
     total_size_ += island->size();
     largest_size_ = std::max(largest_size_, island->size());
   }
@@ -731,11 +731,11 @@ ingredient::Book Islands::book(const Model& model) {
     return ingredient::calc_book(model);
   if (!still_book_ || book_version_ != free_bodies_.version()) {
     still_book_.emplace();
-    for (std::size_t place = 0; place < stills_.size(); ++place) {
-      Still& still = stills_[place];
+    for (std::size_t index = 0; index < stills_.size(); ++index) {
+      Still& still = stills_[index];
       if (!still.is) continue;
       if (std::exchange(still.book_epoch, book_epoch_) != book_epoch_)
-        still.book = in_order_[place]->still_book(model, book_epoch_);
+        still.book = in_order_[index]->still_book(model, book_epoch_);
       still_book_->add(still.book);
     }
     free_bodies_.for_each_still(

@@ -140,11 +140,11 @@ class Islands {
     bool is_changed = false;                 ///< it must follow
     bool has_followed = false;
     bool is_built = false;       ///< until then its island is still that of its earlier owner
-    std::uint32_t place = none;  ///< in the order of islands, if that is not old
+    std::uint32_t index = none;  ///< in the order of islands, if that is not old
 
     void clear() {
       articulates.clear(), marked.clear(), leaving.clear(), suspects.clear();
-      leader = unit = place = none, suspected_at = 0, is_changed = has_followed = is_built = false;
+      leader = unit = index = none, suspected_at = 0, is_changed = has_followed = is_built = false;
     }
     /// Whether it is assembled anew as quickly as it could follow.
     bool is_small() const { return island.size() <= 24; }
@@ -194,7 +194,7 @@ class Islands {
   static bool is_due(const Home&, const model::Model&);
   static void make_ready(model::Model&, std::uint32_t body);
   void note_still(std::uint32_t articulate);
-  void look_whether_still(const model::Model&, std::uint32_t place);
+  void look_whether_still(const model::Model&, std::uint32_t index);
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 
@@ -250,9 +250,9 @@ class Islands {
   };
   std::vector<Island*> in_order_;
   std::vector<Still> stills_, stills_before_;        // of each of these, and of the order before
-  std::vector<std::uint32_t> changed_stills_;        // places in the order, if that is not old
+  std::vector<std::uint32_t> changed_stills_;        // indices in the order, if that is not old
   std::vector<Island*> awake_;                       // of those in order
-  std::vector<std::uint32_t> awake_places_;          // of these in the order
+  std::vector<std::uint32_t> awake_indices_;         // of these in the order
   std::size_t total_size_ = 0, largest_size_ = 0;    // of those awake, points
   std::uint32_t asleep_ = 0, still_bodies_ = 0;      // bodies of the others: those that could move, all
   std::optional<ingredient::Book> still_book_;       // of the others, and of the still free particles

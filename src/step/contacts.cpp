@@ -119,9 +119,15 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
                                               std::uint32_t slot) {
   Mover& mover = all_movers_[slot];
   if (mover.look == look_) return mover;
-  if (!are_placed_) (void)outlines.placed(slot);
   const model::Body& body = model.bodies[slot];
-  mover = {.body = slot, .reach = outlines.reach(slot), .place = model.position(body.first), .look = look_};
+  // A particle reaches as far wherever it is, and most of them touch nothing.
+  const bool has_extent = body.count > 1 || body.first_solid != model::none;
+  if (has_extent && !are_placed_) (void)outlines.placed(slot);
+  mover = {.body = slot,
+           .reach = outlines.reach(slot),
+           .place = model.position(body.first),
+           .look = look_,
+           .is_placed = are_placed_ || has_extent};
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
@@ -130,7 +136,7 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
   return mover;
 }
 
-// What may touch changes with outlines and materials. A body with a new one is described anew.
+// Pairs that may touch change with outlines and materials. A body with a new one is described anew.
 void ContactFinder::note_changes(model::Model& model, contact::Outlines& outlines) {
   const auto look_at = [&](std::uint32_t slot, const model::Body& body) {
     if (body.kind == BodyKind::static_) return;
@@ -396,6 +402,10 @@ double ContactFinder::Meeting::speed() const {
                 : norm(first->velocity) + first->spread;
 }
 
+const contact::Outline& ContactFinder::placed(contact::Outlines& outlines, Mover& mover) {
+  return std::exchange(mover.is_placed, true) ? outlines.described(mover.body) : outlines.placed(mover.body);
+}
+
 bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeting) {
   const auto is = [&](Mover* mover) {
     if (!mover) return false;
@@ -459,7 +469,8 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   ingredient::Contacts::Motion motion = motion_in(model, meeting);
   motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
   found_.clear();
-  const contact::Outline& outline = outlines.described(first);
+  const contact::Outline& outline = placed(outlines, *mover);
+  if (other) (void)placed(outlines, *other);
   const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
   touches_.find(outline, (0.5 * h_) * motion.spins[0], outlines.described(second), (0.5 * h_) * motion.spins[1],
                 within(*mover, other), found_, way);
@@ -495,7 +506,8 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
       is_of_sweeps(model, meeting))
     return {0, std::max(h_ / std::ceil(h_ * speed / (near_in_sweeps * size)), shortest_)};
   if (!(h_ * speed > far * size)) return {0, never};
-  const contact::Outline& outline = outlines.described(first);
+  const contact::Outline& outline = placed(outlines, *mover);
+  if (other) (void)placed(outlines, *other);
   const contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
   const contact::Outline& other_outline = outlines.described(second);
   const double time = approaches_.time(outline, motions[0], other_outline, motions[1], of_size * size, h_);

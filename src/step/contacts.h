@@ -61,7 +61,8 @@ class ContactFinder {
     double spread = 0;         ///< of the velocities of its points, m/s
     double steps = 1;          ///< that it may take at once
     std::uint64_t look = 0;    ///< in which it was measured
-    std::optional<Vec3> spin;  ///< rad/s; this and the following: where asked for
+    bool is_placed = false;    ///< its outline is where the body is now; this and the following: where asked for
+    std::optional<Vec3> spin;  ///< rad/s
     std::optional<model::BasisWeights> basis;
     std::optional<bool> of_sweeps;  ///< see ingredient::Contacts::is_of_sweeps
   };
@@ -83,6 +84,7 @@ class ContactFinder {
     double size;    ///< of the smaller one that moves, m
     double speed() const;
   };
+  const contact::Outline& placed(contact::Outlines&, Mover&);
   bool is_of_sweeps(const model::Model&, const Meeting&);
   Meeting meeting_of(const model::Model&, contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.

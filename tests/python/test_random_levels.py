@@ -148,7 +148,7 @@ class Scene:
     # --- what is done to it -------------------------------------------------------------------------------------------
 
     def destroy(self, thing: Managed) -> None:
-        if thing.root.alive:
+        if thing.root.alive and thing.bodies:
             self.dice.choice(thing.bodies).destroy()
 
     def separate(self, thing: Managed) -> None:
