@@ -364,7 +364,7 @@ void apply(Editor& e, const SetPose& c) {
     ring.velocity = mean + rotate(turn, ring.velocity - mean);
     // Also for a static body's rings, or its ties would bring it back.
     if (ingredient::Nail* const nail = model.nails.find(slot))
-      nail->position = nail->position_before = moved(nail->position);
+      nail->position = moved(nail->position), nail->position_before = moved(nail->position_before);
   }
   model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates_of(e, b); });
   model.bodies[body].orientation = wanted;

@@ -13,6 +13,11 @@ namespace iota::ingredient {
 
 namespace {
 
+// Loads move it from where it is asked for, by the compliance of its row.
+void note_arrival(const model::Ring& ring, Nail& nail) {
+  nail.position_before = ring.nailed ? nail.position : ring.position;
+}
+
 Vec3 velocity_of(const solver::AffineConstraint& nail, double h) { return (1 / h) * (nail.target - nail.target_start); }
 
 /// visit(nail, node) for the nails of a problem.
@@ -53,30 +58,24 @@ void Nails::store(Model& model, const IslandNodes&, double, const Problem& probl
     Nail& nail = model.nails.at(key.slot);
     const double* const l = affines.multiplier(i);
     nail.multiplier = {l[0], l[1], l[2]};
-    nail.position_before = nail.position;
+    note_arrival(model.rings[key.slot], nail);
   });
 }
 
 void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
   if (!moved) return;
   nodes.for_each_pinned([&](std::uint32_t ring) {
-    Nail& nail = model.nails.at(ring);
-    nail.position_before = nail.position;
+    note_arrival(model.rings[ring], model.nails.at(ring));
   });
 }
 
 // A static body's rings are nailed at the body's assigned place. Nailed at their present place in each step, they would
 // creep under load.
 void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
-  constexpr double creep = 1e-7;  // of the body's extent; a ring that is farther away was moved by the script
   nodes.for_each_pinned([&](std::uint32_t slot) {
     const model::Ring& ring = model.rings[slot];
     Nail& nail = model.nails.at(slot);
-    if (ring.nailed || ring.position == nail.position) return;
-    double extent = 0;
-    model.for_each_in_ring(slot,
-                           [&](std::uint32_t p) { extent = std::max(extent, model.extent(model.particles[p].body)); });
-    if (norm(ring.position - nail.position) > creep * extent) nail.position = nail.position_before = ring.position;
+    if (!ring.nailed && ring.position != nail.position_before) nail.position = nail.position_before = ring.position;
   });
 }
 

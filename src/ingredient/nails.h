@@ -7,7 +7,8 @@ namespace iota::ingredient {
 
 /// The pin of a ring: a nail, or a static or scripted body.
 struct Nail {
-  /// Its place, and that at the last step, m; for a static body's ring: the assigned place.
+  /// Its place, and that at the last step, m. The ring of a static body: the assigned place, and where the last step has
+  /// left the ring: elsewhere than there the script has moved it.
   Vec3 position, position_before;
   Vec3 multiplier;  ///< minus its force, N; warm start and reaction
 };

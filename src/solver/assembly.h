@@ -19,8 +19,8 @@ struct Strain {
   double of_stored = 0;  ///< and by what they had stored
 };
 /// Mean length of the bodies' rods, m; joints and curves have their own lengths. Without rods, of the forces between
-/// points; else 1 m.
-double mean_reference_length(const Problem&);
+/// points; else 1 m. Sets it for rows of nails and of carried points, which have no other.
+double set_reference_lengths(Problem&);
 
 /// Residuals of the equations of a step; all scaled, dimensionless.
 struct Residual {

@@ -132,8 +132,6 @@ double calc_extent(const ForceArm& arm, const Vec3* x) {
   return extent;
 }
 
-}  // namespace
-
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
@@ -153,16 +151,13 @@ double mean_reference_length(const Problem& problem) {
   return sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-namespace {
+}  // namespace
 
-/// Rows of nails and of carried points use the same length.
 double set_reference_lengths(Problem& problem) {
   const double length = mean_reference_length(problem);
   for (auto& c : problem.items_of<AffineConstraint>()) c.reference = length;
   return length;
 }
-
-}  // namespace
 
 void Assembly::measure(Problem& problem) { reference_length_ = set_reference_lengths(problem); }
 

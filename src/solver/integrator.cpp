@@ -39,14 +39,14 @@ void Integrator::compile(Problem& problem, const KnownOrder& order) {
   if (!is_due_) return analyze(problem, order);
   if (!problem.has_slots()) problem.forget_slots();  // fit_pools resizes them
   problem.fit_pools();
-  reference_length_ = mean_reference_length(problem);
+  reference_length_ = set_reference_lengths(problem);
   make_room(problem);
 }
 
 void Integrator::forget_past(Problem& problem) {
   forget_steps(problem);
   if (!is_due_) newton_.measure(problem);
-  reference_length_ = is_due_ ? mean_reference_length(problem) : newton_.reference_length();
+  reference_length_ = is_due_ ? set_reference_lengths(problem) : newton_.reference_length();
 }
 
 void Integrator::forget_steps(Problem& problem) {
@@ -147,7 +147,7 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
                             (keeps_offsets_ && !is_conservative_);
   const double taken = settings.max_error > 0 && !by_end_point ? advance_explicitly(problem, h, report) : 0;
   if (taken < 1) advance_part(problem, {.from = taken, .h = (1 - taken) * h}, by_end_point ? 1 : 0, report);
-  if (keeps_offsets_) restore_bounds(problem);
+  if (keeps_offsets_) drop_offsets(problem);
   const bool is_unsolved = taken == 0 && !solves_part_;
   const bool is_new = is_unsolved && (is_brief || !is_cut_short_);
   problem.unsolved_steps = is_new || report.is_approximate ? problem.unsolved_steps + 1 : 0;

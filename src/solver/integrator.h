@@ -189,7 +189,7 @@ class Integrator {
 
   void close_gaps(Problem&, AdvanceReport&);
   void keep_offsets(Problem&, AdvanceReport&);
-  void restore_bounds(Problem&);
+  void drop_offsets(Problem&);
   bool share_gaps(Problem&, double fraction, AdvanceReport&);
   bool try_projection(Problem&, int iterations);
   bool project_in_one_solve(Problem&);

@@ -17,7 +17,6 @@ constexpr double relaxation = 1.1;
 }  // namespace
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
-  if (keeps_offsets_) problem.clear_offsets();
   keeps_offsets_ = false;
   const double gap = problem.worst_gap(problem.position.data(), 0, true);
   const bool has_new_rows = std::exchange(problem.has_new_rows, false);
@@ -99,8 +98,10 @@ void Integrator::keep_offsets(Problem& problem, AdvanceReport& report) {
   });
 }
 
-// Rows that keep_offsets has given a bound are equations again.
-void Integrator::restore_bounds(Problem& problem) {
+// Rows that keep_offsets has given a bound are equations again. At the end of the step: a projection of velocities before the
+// next one is not in it.
+void Integrator::drop_offsets(Problem& problem) {
+  problem.clear_offsets();
   problem.for_each_constraint_pool([&](auto& pool) {
     if (pool.temporary.empty()) return;
     for (const std::uint32_t row : pool.temporary) pool.laws[row] = {};

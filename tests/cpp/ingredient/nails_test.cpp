@@ -52,6 +52,32 @@ TEST(Nails, that_carry_something_do_the_work_that_the_book_counts) {
   EXPECT_NEAR(p.system.energy().balance(), 0, 1e-9 * std::abs(p.system.energy().external_work));
 }
 
+TEST(Nails, of_static_particles_do_not_creep_under_a_load_however_often_islands_are_built) {
+  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    System system(SystemOptions{.mode = mode});
+    const BodyId post = system.bodies().create(), load = system.bodies().create();
+    const ParticleId hook = system.particles().create(post, {0, 1, 0}, 1);
+    (void)system.edits().combine(hook, system.particles().create(load, {0, 1, 0}, 1e6));
+    system.bodies().set_kind(post, BodyKind::static_);
+    for (int i = 0; i < 2000; ++i) system.restore(system.snapshot()), (void)system.step(1.0 / 60);
+    EXPECT_LT(norm(system.particles().position(hook) - Vec3{0, 1, 0}), 1e-14);
+  }
+}
+
+TEST(Nails, of_static_bodies_are_where_the_smallest_moves_of_the_script_lead) {
+  System system;
+  const BodyId post = system.bodies().create(), load = system.bodies().create();
+  const ParticleId hook = system.particles().create(post, {0, 1, 0}, 1);
+  (void)system.particles().create(post, {1e3, 1, 0}, 1);  // a large body
+  (void)system.edits().combine(hook, system.particles().create(load, {0, 1, 0}, 1));
+  system.bodies().set_kind(post, BodyKind::static_);
+  for (int i = 1; i <= 100; ++i) {
+    system.particles().set_position(hook, {1e-6 * i, 1, 0});
+    for (int k = 0; k < 3; ++k) (void)system.step(1.0 / 60);
+    EXPECT_NEAR(system.particles().position(hook).x, 1e-6 * i, 1e-11) << i;
+  }
+}
+
 TEST(Nails, stay_where_they_are_when_their_ring_absorbs_another) {
   Pendulum p(IntegrationMode::robust);
   const ParticleId loose = p.system.particles().create(p.system.bodies().create(), {0, 1, 0});
