@@ -174,6 +174,7 @@ std::optional<std::string> play_heap(std::uint64_t seed, HeapTally& tally) {
   constexpr double most_solved = 0.02, most_in_sweeps = 0.5;  // of the energy of the heap, from nothing in a step
   Heap heap(seed);
   System& system = heap.system();
+  bool was_unsolved = false;
   ++tally.heaps;
   for (int i = 0; i < steps; ++i, ++tally.steps) {
     bool is_edited = false;
@@ -186,7 +187,10 @@ std::optional<std::string> play_heap(std::uint64_t seed, HeapTally& tally) {
     const Energy before = system.energy();
     const auto places = heap.places();
     const StepReport report = system.step(heap.dt());
-    if (heap.find_shot(places) != BodyId{}) return text_of("step ", i, " shoots a body away");
+    // Two bodies that have fallen far apart may have held a third one between them, which comes back when one is destroyed.
+    const bool may_come_back = was_unsolved && is_edited;
+    if (!may_come_back && heap.find_shot(places) != BodyId{}) return text_of("step ", i, " shoots a body away");
+    was_unsolved = report.unconverged > 0;
     tally.unsolved += report.unconverged, tally.approximate += report.approximate;
     if (!std::isfinite(report.energy.total())) return text_of("step ", i, " has no finite energy");
     // Overlaps that are eased out lift bodies: by sweeps without giving them speed, else by the edit that has made them.

@@ -60,15 +60,18 @@ struct SetMaterial {
   Material value;
 };
 struct SetPose {
+  static constexpr bool wakes_what_it_changes = true;
   BodyId body;
   Vec3 position;
   Quaternion orientation;
 };
 struct SetBodyVelocity {
+  static constexpr bool wakes_what_it_changes = true;
   BodyId body;
   Vec3 value;
 };
 struct SetAngularVelocity {
+  static constexpr bool wakes_what_it_changes = true;
   BodyId body;
   Vec3 value;
 };

@@ -193,6 +193,10 @@ inline constexpr bool keeps_energy<Destroy<GripId>> = true;
 template <class C>
 inline constexpr bool moves_nothing = requires { C::moves_nothing; };
 
+/// Whether all bodies whose energy a command changes are awake after it, so that those of others need not be summed up.
+template <class C>
+inline constexpr bool wakes_what_it_changes = moves_nothing<C> || requires { C::wakes_what_it_changes; };
+
 /// The users' names of the queueable commands, each once: "combine, separate, ...".
 std::string queued_edits();
 

@@ -3,6 +3,7 @@
 
 #include "edit/command_log.h"
 #include "edit/commands.h"
+#include "ingredient/quantities.h"
 
 #include <iota/reports.h>
 
@@ -112,7 +113,10 @@ template <class C>
 ResultOf<C> Door::make(const C& command) {
   if constexpr (!keeps_energy<C>) {
     editor_.held.note_change();
-    editor_.model.has_edits = 1;
+    if constexpr (wakes_what_it_changes<C>)
+      ingredient::note_edits_of_awake(editor_.model);
+    else
+      editor_.model.has_edits = 2;
     if constexpr (!moves_nothing<C>) ++editor_.model.edits;
   }
   if constexpr (std::is_void_v<ResultOf<C>>) {

@@ -32,11 +32,13 @@ struct CombineMany {
 };
 /// values: width(quantity) for each thing.
 struct AssignParticles {
+  static constexpr bool wakes_what_it_changes = true;
   Quantity quantity;
   std::vector<ParticleId> particles;
   std::vector<double> values;
 };
 struct AssignBodies {
+  static constexpr bool wakes_what_it_changes = true;
   Quantity quantity;
   std::vector<BodyId> bodies;
   std::vector<double> values;

@@ -12,10 +12,12 @@ struct CreateParticle {
   double mass;
 };
 struct SetPosition {
+  static constexpr bool wakes_what_it_changes = true;
   ParticleId particle;
   Vec3 value;
 };
 struct SetVelocity {
+  static constexpr bool wakes_what_it_changes = true;
   ParticleId particle;
   Vec3 value;
 };

@@ -56,7 +56,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   std::uint64_t step = 0;
   double dissipated = 0, lost = 0, made = 0, external_work = 0, edit_energy = 0;  ///< see Energy
   double booked_energy = 0;     ///< kinetic and potential energy when edits were last booked, J
-  std::uint64_t has_edits = 0;  ///< whether there are edits since then
+  std::uint64_t has_edits = 0;  ///< since then: 1 only of what they have woken, 2 others, too
   double held_energy = 0;       ///< of held forces, which `energy` does not include, when last booked, J
 
   /// The acceleration of all masses: gravity, unless an active field replaces it.

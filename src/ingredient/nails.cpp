@@ -64,9 +64,7 @@ void Nails::store(Model& model, const IslandNodes&, double, const Problem& probl
 
 void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
   if (!moved) return;
-  nodes.for_each_pinned([&](std::uint32_t ring) {
-    note_arrival(model.rings[ring], model.nails.at(ring));
-  });
+  nodes.for_each_pinned([&](std::uint32_t ring) { note_arrival(model.rings[ring], model.nails.at(ring)); });
 }
 
 // A static body's rings are nailed at the body's assigned place. Nailed at their present place in each step, they would

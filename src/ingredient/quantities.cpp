@@ -5,6 +5,8 @@
 #include "ingredient/model.h"
 #include "solver/largest.h"
 
+#include <algorithm>
+
 namespace iota::ingredient {
 
 Scope::Scope(const model::Model& model, std::uint32_t body) : model(model), structure_(model), body_(body) {}
@@ -68,8 +70,10 @@ Book calc_book(const model::Model& model, std::span<const std::uint32_t> bodies)
 
 void begin_edits(model::Model& model) {
   if (!model.has_edits) model.booked_energy = calc_energies(model).total();
-  model.has_edits = 1;
+  model.has_edits = 2;
 }
+
+void note_edits_of_awake(model::Model& model) { model.has_edits = std::max<std::uint64_t>(model.has_edits, 1); }
 
 void book_edits(model::Model& model, double energy_now) {
   if (model.has_edits) model.edit_energy += energy_now - model.booked_energy;

@@ -722,13 +722,22 @@ std::uint32_t Islands::resting(const Model& model) const {
   return count;
 }
 
-ingredient::Book Islands::book(const Model& model) {
-  if (model.has_edits) ++book_epoch_, still_book_.reset();
-  // Body by body takes several times as long as table by table.
+// Body by body takes several times as long as table by table.
+bool Islands::renew_books(const Model& model) {
   constexpr std::uint32_t share = 4;
+  if (model.has_edits > 1) ++book_epoch_, still_book_.reset();
   const std::uint32_t still = still_bodies_ + free_bodies_.still();
-  if (model.has_edits || order_is_old_ || awake_is_old_ || still < model.bodies.size() - model.bodies.size() / share)
-    return ingredient::calc_book(model);
+  return model.has_edits < 2 && !order_is_old_ && !awake_is_old_ &&
+         still >= model.bodies.size() - model.bodies.size() / share;
+}
+
+ingredient::Energies Islands::energies(const Model& model) {
+  (void)awake(model), (void)loose(model);
+  return renew_books(model) ? book(model).energies : ingredient::calc_energies(model);
+}
+
+ingredient::Book Islands::book(const Model& model) {
+  if (!renew_books(model)) return ingredient::calc_book(model);
   if (!still_book_ || book_version_ != free_bodies_.version()) {
     still_book_.emplace();
     for (std::size_t index = 0; index < stills_.size(); ++index) {

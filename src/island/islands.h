@@ -98,9 +98,11 @@ class Islands {
   /// Bodies that sleep, free particles included, in the latest step.
   std::uint32_t resting(const model::Model&) const;
 
-  /// The quantities of the model. If most bodies are still, each island of them is measured only once. After edits,
-  /// which may change what is still, all are measured anew.
+  /// The quantities of the model. If most bodies are still, each island of them is measured only once. After edits
+  /// that may change what is still, all are measured anew.
   ingredient::Book book(const model::Model&);
+  /// Before a step, after `update`.
+  ingredient::Energies energies(const model::Model&);
   /// Null for a free body.
   Island* of_articulate(std::uint32_t articulate) const {
     return entries_[articulate].home ? &entries_[articulate].home->island : nullptr;
@@ -195,6 +197,8 @@ class Islands {
   static void make_ready(model::Model&, std::uint32_t body);
   void note_still(std::uint32_t articulate);
   void look_whether_still(const model::Model&, std::uint32_t index);
+  /// Forgets what edits may have changed. Whether the books of still islands make a sum shorter.
+  bool renew_books(const model::Model&);
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 

@@ -69,13 +69,13 @@ void Stepper::update_islands(double dt) {
   }
   {
     const Timed timed(times_of_thread(), &StepTimes::analyze);
-    if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
+    if (islands.update(model, editor_.parallel) || !dirty_.empty()) ingredient::note_edits_of_awake(model);
   }
   islands.wake(model, woken_);
   islands.wake_stirred(model, dt);
   islands.plan_strides(model);
   islands.for_each_of(model, dirty_, [&](island::Island& island) { island.project_assigned(model); });
-  if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
+  if (model.has_edits) ingredient::book_edits(model, islands.energies(model).total());
 }
 
 namespace {

@@ -42,8 +42,8 @@ TEST(RandomHeaps, stay_whole_and_finite_and_make_no_motion_from_nothing) {
 /// jumped.
 TEST(RandomHeaps, that_once_failed_do_not_any_more) {
   scenes::HeapTally tally;
-  for (const std::uint64_t seed :
-       {700398u, 1000u, 1250u, 2246u, 2332u, 3094u, 3811u, 5447u, 5994u, 6249u, 6311u, 8780u, 3000073u, 3100797u, 3101407u, 3102321u})
+  for (const std::uint64_t seed : {700398u, 1000u, 1250u, 2246u, 2332u, 3094u, 3811u, 5447u, 5994u, 6249u, 6311u, 8780u,
+                                   3000073u, 3100797u, 3101407u, 3102321u})
     EXPECT_EQ(scenes::play_heap(seed, tally).value_or(""), "") << seed;
 }
 
