@@ -16,6 +16,8 @@ using model::none;
 
 void Islands::forget() {
   entries_.clear(), home_of_leader_.clear(), suspected_.clear(), spare_ = {};
+  in_order_.clear(), leaders_.clear(), changed_leaders_.clear();
+  stills_.clear(), changed_stills_.clear(), awake_indices_.clear();
   free_bodies_.forget();
   ++epoch_;
   knows_all_ = false, order_is_old_ = awake_is_old_ = true;
@@ -58,6 +60,7 @@ Islands::Home& Islands::new_home(std::uint32_t leader, std::size_t points) {
   home = take_spare(points);
   if (!home) home = std::make_unique<Home>();
   home->leader = leader;
+  changed_leaders_.push_back(leader);
   return *home;
 }
 
@@ -80,6 +83,7 @@ std::unique_ptr<Islands::Home> Islands::take_spare(std::size_t points) {
 void Islands::retire(std::uint32_t leader) {
   constexpr std::size_t most_spare = 1 << 15;  // points of one size
   std::unique_ptr<Home> home = std::move(home_of_leader_[leader]);
+  changed_leaders_.push_back(leader);
   home->clear();
   const auto bits = static_cast<std::size_t>(std::bit_width(home->island.room()));
   if (bits >= spare_.size() || spare_[bits].size() << bits >= most_spare) return;
@@ -88,7 +92,9 @@ void Islands::retire(std::uint32_t leader) {
 
 void Islands::set_leader(Home& home) {
   auto holder = std::move(home_of_leader_[home.leader]);
+  changed_leaders_.push_back(home.leader);
   home.leader = home.articulates.front();
+  changed_leaders_.push_back(home.leader);
   home_of_leader_[home.leader] = std::move(holder);
 }
 
@@ -503,6 +509,9 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
   for (std::uint32_t leader = 0; leader < home_of_leader_.size(); ++leader) {
     const Home* const home = home_of_leader_[leader].get();
     if (!home) continue;
+    audit.require(order_is_old_ || (home->index < in_order_.size() && in_order_[home->index] == &home->island &&
+                                    leaders_[home->index] == leader),
+                  "the island of leader ", leader, " is not where it is in the order");
     audit.require(home->leader == leader && !home->articulates.empty() && home->articulates.front() == leader,
                   "the island of leader ", leader, " has another leader");
     std::size_t bodies = 0;
@@ -529,26 +538,50 @@ void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const 
 }
 
 std::span<Island* const> Islands::all() {
-  if (order_is_old_) {
-    in_order_.clear(), stills_.swap(stills_before_), stills_.clear(), changed_stills_.clear(), awake_indices_.clear();
-    for (const auto& home : home_of_leader_) {
-      if (!home) continue;
-      const auto index = static_cast<std::uint32_t>(in_order_.size()), before = std::exchange(home->index, index);
-      in_order_.push_back(&home->island);
-      const Still* const known = before < stills_before_.size() ? &stills_before_[before] : nullptr;
-      const bool is_same = known && known->book_epoch != 0 && home->island.has_stayed_still(known->book_epoch);
-      stills_.push_back(is_same ? *known : Still{});
-      if (!is_same) changed_stills_.push_back(index);
-    }
-    order_is_old_ = false;
-  }
+  if (!order_is_old_) return in_order_;
+  ingredient::sort_unique(changed_leaders_);
+  if (!replace_in_order()) list_in_order();
+  changed_leaders_.clear();
+  order_is_old_ = false;
   return in_order_;
+}
+
+// An island that is built anew mostly has its leader of before. To look at 4000 others took 0.6 ms.
+bool Islands::replace_in_order() {
+  const auto is_as_before = [&](std::uint32_t leader) {
+    return std::binary_search(leaders_.begin(), leaders_.end(), leader) == (home_of_leader_[leader] != nullptr);
+  };
+  if (!std::ranges::all_of(changed_leaders_, is_as_before)) return false;
+  for (const std::uint32_t leader : changed_leaders_) {
+    Home* const home = home_of_leader_[leader].get();
+    if (!home) continue;
+    const auto at = std::lower_bound(leaders_.begin(), leaders_.end(), leader) - leaders_.begin();
+    home->index = static_cast<std::uint32_t>(at);
+    in_order_[home->index] = &home->island, stills_[home->index] = {};
+    changed_stills_.push_back(home->index);
+  }
+  return true;
+}
+
+void Islands::list_in_order() {
+  in_order_.clear(), leaders_.clear(), changed_stills_.clear(), awake_indices_.clear();
+  stills_.swap(stills_before_), stills_.clear();
+  for (const auto& home : home_of_leader_) {
+    if (!home) continue;
+    const auto index = static_cast<std::uint32_t>(in_order_.size()), before = std::exchange(home->index, index);
+    in_order_.push_back(&home->island), leaders_.push_back(home->leader);
+    const Still* const known = before < stills_before_.size() ? &stills_before_[before] : nullptr;
+    const bool is_same = known && known->book_epoch != 0 && home->island.has_stayed_still(known->book_epoch);
+    stills_.push_back(is_same ? *known : Still{});
+    if (!is_same) changed_stills_.push_back(index);
+  }
 }
 
 // The island of an articulate is not still any more, or is so in another way.
 void Islands::note_still(std::uint32_t articulate) {
   awake_is_old_ = true;
-  if (!order_is_old_) changed_stills_.push_back(entries_[articulate].home->index);
+  const Home& home = *entries_[articulate].home;
+  order_is_old_ ? changed_leaders_.push_back(home.leader) : changed_stills_.push_back(home.index);
 }
 
 void Islands::look_whether_still(const Model& model, std::uint32_t index) {

@@ -196,6 +196,9 @@ class Islands {
   static bool is_due(const Home&, const model::Model&);
   static void make_ready(model::Model&, std::uint32_t body);
   void note_still(std::uint32_t articulate);
+  /// Puts changed islands into the order. False, without a change, if their leaders are others.
+  bool replace_in_order();
+  void list_in_order();
   void look_whether_still(const model::Model&, std::uint32_t index);
   /// Forgets what edits may have changed. Whether the books of still islands make a sum shorter.
   bool renew_books(const model::Model&);
@@ -253,6 +256,8 @@ class Islands {
     ingredient::Book book;
   };
   std::vector<Island*> in_order_;
+  std::vector<std::uint32_t> leaders_;               // of these
+  std::vector<std::uint32_t> changed_leaders_;       // of those that may be others since they were listed
   std::vector<Still> stills_, stills_before_;        // of each of these, and of the order before
   std::vector<std::uint32_t> changed_stills_;        // indices in the order, if that is not old
   std::vector<Island*> awake_;                       // of those in order
