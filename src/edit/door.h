@@ -113,10 +113,7 @@ template <class C>
 ResultOf<C> Door::make(const C& command) {
   if constexpr (!keeps_energy<C>) {
     editor_.held.note_change();
-    if constexpr (wakes_what_it_changes<C>)
-      ingredient::note_edits_of_awake(editor_.model);
-    else
-      editor_.model.has_edits = 2;
+    ingredient::note_edits(editor_.model, wakes_what_it_changes<C>);
     if constexpr (!moves_nothing<C>) ++editor_.model.edits;
   }
   if constexpr (std::is_void_v<ResultOf<C>>) {

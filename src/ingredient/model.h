@@ -37,6 +37,9 @@ struct AllTables<std::tuple<I...>> : OwnTables<I>... {};
 
 namespace iota::model {
 
+/// Values of `Model::has_edits`: only of bodies that are awake by them, or of any.
+inline constexpr std::uint64_t edits_of_awake = 1, edits_of_any = 2;
+
 /// The saved state of a system: the structure, the settings, and the tables of the ingredients, with the names declared
 /// there (`model.bonds`). It is outside of `src/model`, which knows no ingredient.
 class Model final : public Structure, public ingredient::AllTables<ingredient::Ingredients> {
@@ -56,7 +59,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   std::uint64_t step = 0;
   double dissipated = 0, lost = 0, made = 0, external_work = 0, edit_energy = 0;  ///< see Energy
   double booked_energy = 0;     ///< kinetic and potential energy when edits were last booked, J
-  std::uint64_t has_edits = 0;  ///< since then: 1 only of what they have woken, 2 others, too
+  std::uint64_t has_edits = 0;  ///< since then: 0, edits_of_awake or edits_of_any
   double held_energy = 0;       ///< of held forces, which `energy` does not include, when last booked, J
 
   /// The acceleration of all masses: gravity, unless an active field replaces it.

@@ -70,10 +70,12 @@ Book calc_book(const model::Model& model, std::span<const std::uint32_t> bodies)
 
 void begin_edits(model::Model& model) {
   if (!model.has_edits) model.booked_energy = calc_energies(model).total();
-  model.has_edits = 2;
+  note_edits(model, false);
 }
 
-void note_edits_of_awake(model::Model& model) { model.has_edits = std::max<std::uint64_t>(model.has_edits, 1); }
+void note_edits(model::Model& model, bool of_awake) {
+  model.has_edits = std::max(model.has_edits, of_awake ? model::edits_of_awake : model::edits_of_any);
+}
 
 void book_edits(model::Model& model, double energy_now) {
   if (model.has_edits) model.edit_energy += energy_now - model.booked_energy;

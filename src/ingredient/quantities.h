@@ -36,8 +36,8 @@ inline Book calc_book(const model::Model& model) { return {calc_energies(model),
 /// The change by edits is the difference of the energy before the first and after the last of them: one sum for all.
 /// Between steps `Model::booked_energy` is that of the end of the last step.
 void begin_edits(model::Model&);
-/// Their bodies are awake by them, so that what is known of still bodies is right.
-void note_edits_of_awake(model::Model&);
+/// See Model::has_edits: after those of bodies that are awake by them, what is known of still ones is right.
+void note_edits(model::Model&, bool of_awake);
 void book_edits(model::Model&, double energy_now);
 double energy_of_edits(const model::Model&);  ///< those not booked yet included, J
 

@@ -758,9 +758,10 @@ std::uint32_t Islands::resting(const Model& model) const {
 // Body by body takes several times as long as table by table.
 bool Islands::renew_books(const Model& model) {
   constexpr std::uint32_t share = 4;
-  if (model.has_edits > 1) ++book_epoch_, still_book_.reset();
+  const bool may_be_of_still = model.has_edits == model::edits_of_any;
+  if (may_be_of_still) ++book_epoch_, still_book_.reset();
   const std::uint32_t still = still_bodies_ + free_bodies_.still();
-  return model.has_edits < 2 && !order_is_old_ && !awake_is_old_ &&
+  return !may_be_of_still && !order_is_old_ && !awake_is_old_ &&
          still >= model.bodies.size() - model.bodies.size() / share;
 }
 

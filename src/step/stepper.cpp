@@ -69,7 +69,7 @@ void Stepper::update_islands(double dt) {
   }
   {
     const Timed timed(times_of_thread(), &StepTimes::analyze);
-    if (islands.update(model, editor_.parallel) || !dirty_.empty()) ingredient::note_edits_of_awake(model);
+    if (islands.update(model, editor_.parallel) || !dirty_.empty()) ingredient::note_edits(model, true);
   }
   islands.wake(model, woken_);
   islands.wake_stirred(model, dt);
