@@ -174,6 +174,7 @@ void Islands::drop_marked(const Model& model, bool all) {
 void Islands::find_changed(const Model& model) {
   for (const std::uint32_t a : marked_.articulates)
     if (Home* const home = entries_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
+  ingredient::sort_unique(marked_.local.reborn);
   homes_.assign(changed_.begin(), changed_.end());
   for (Home* const home : homes_) find_members(model, *home);
   for (const std::uint32_t a : marked_.articulates)  // made by a cut, of a home that was dropped
@@ -188,8 +189,11 @@ void Islands::note_changed(Home& home) {
 // Articulates of its bodies. Some are new, made by cuts; hinges have put bodies into those of other homes.
 void Islands::find_members(const Model& model, Home& home) {
   const auto bodies = home.island.bodies();
-  if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) { return model.bodies.is_alive(body); }))
-    return drop(home);
+  const auto& reborn = marked_.local.reborn;
+  const auto is_its_own = [&](std::uint32_t body) {
+    return model.bodies.is_alive(body) && !std::binary_search(reborn.begin(), reborn.end(), body);
+  };
+  if (!std::all_of(bodies.begin(), bodies.end(), is_its_own)) return drop(home);
   members_.assign(home.articulates.begin(), home.articulates.end());
   for (const std::uint32_t a : members_) entries_[a].home = nullptr;
   home.articulates.clear();

@@ -77,6 +77,7 @@ void Structure::take_marked(Marked& taken) {
   };
   clear(taken.articulates), clear(taken.only_locally);
   clear(taken.local.bodies), clear(taken.local.rings), clear(taken.local.pulled);
+  clear(taken.local.reborn);
   taken.articulates.swap(marked_);
   std::swap(taken.local, local_change_);
   for (const std::uint32_t slot : taken.articulates) {

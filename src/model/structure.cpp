@@ -45,7 +45,9 @@ std::uint32_t Structure::make_particle(std::uint32_t body, const Vec3& position,
 std::uint32_t Structure::make_body(BodyKind kind, double damping) {
   Body b;
   b.kind = kind;
-  const std::uint32_t body = bodies.create(b).slot;
+  const BodyId id = bodies.create(b);
+  const std::uint32_t body = id.slot;
+  if (id.generation > 1) local_change_.reborn.push_back(body);
   set_damping(body, damping);
   note_body(body, true);
   add_to_articulate(body, articulates.create({}).slot);

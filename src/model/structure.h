@@ -293,6 +293,7 @@ class Structure {
     std::vector<std::uint32_t> bodies;
     std::vector<ChangedRing> rings;
     std::vector<std::uint32_t> pulled;  ///< bodies: see mark_pull
+    std::vector<std::uint32_t> reborn;  ///< new bodies in slots of destroyed ones
   };
   /// The changes since the last call.
   struct Marked {

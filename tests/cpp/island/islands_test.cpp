@@ -6,6 +6,7 @@
 #include "ingredient/closings.h"
 #include "ingredient/constraint.h"
 #include "ingredient/grips.h"
+#include "scenes/chain.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -83,6 +84,26 @@ TEST(Islands, that_nothing_happened_to_are_kept) {
   room.update();
   EXPECT_EQ(room.of(chain[0]), untouched);
   EXPECT_EQ(room.islands.all().size(), 2u);
+}
+
+/// The new body has the slots of the old one and of its articulate. It had moved with the points of the old one.
+TEST(Islands, do_not_take_a_new_body_for_one_whose_slot_it_has) {
+  for (const std::size_t which : {0u, 20u, 39u}) {
+    System system;
+    const scenes::Chain chain = scenes::make_chain(system, {.links = 40});
+    for (int i = 0; i < 3; ++i) (void)system.step(0.01);
+    system.bodies().destroy(chain.links[which]);
+    const BodyId fresh = system.bodies().create();
+    ASSERT_EQ(fresh.slot, chain.links[which].slot);
+    const ParticleId left = system.particles().create(fresh, {9, 0, 0}, 1, {0, 1, 0}),
+                     right = system.particles().create(fresh, {10, 0, 0}, 1, {0, -1, 0});
+    for (int i = 0; i < 10; ++i) {
+      (void)system.step(0.01);
+      EXPECT_NEAR(norm(system.particles().position(left) - system.particles().position(right)), 1, 1e-9) << which;
+    }
+    EXPECT_EQ(system.islands().size(), which == 20 ? 3u : 2u);
+    EXPECT_TRUE(system.validate().empty());
+  }
 }
 
 TEST(Islands, put_articulates_down_to_the_leader_of_their_island) {
