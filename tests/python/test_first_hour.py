@@ -125,8 +125,10 @@ def test_two_people_hold_one_chain(run_world: Any) -> None:
     with PageClient(run_world(chain.world), "Ada") as ada, PageClient(chain.world.pages.url, "Bob") as bob:
         for page, slot, x in ((ada, 5, -1.0), (bob, 15, 1.0)):
             page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=(x, 1.5, 0.5))
-        ada.wait_for(lambda: len(ada.last["poses"]["holds"]) == 2)
-        assert {hold["client"] for hold in bob.wait_for(lambda: bob.last["poses"]["holds"])} == {ada.id, bob.id}
+        for page in (ada, bob):  # each is told in its own time
+            page.wait_for(
+                lambda page=page: {hold["client"] for hold in page.last["poses"]["holds"]} == {ada.id, bob.id}
+            )
         ada.send("action", name="break", body=ada.body(10))
         bob.wait_for(lambda: bob.parts() == 2)
 
