@@ -556,17 +556,10 @@ double size_of(const solver::ContactConstraint& row, const Contact& c, const Pro
 
 namespace {
 
-/// The gap at the end of the last step, m.
-double gap_of(const Model& model, const Contact& c) {
-  const Vec3 d = place_of(model, c, Arm::center, false) - place_of(model, c, Arm::center, true);
-  if (c.form == TouchForm::wires) return std::sqrt(std::max(0.0, dot(c.off(d), d))) - c.radius;
-  return (c.is_round() ? norm(c.off(d)) : dot(c.normal, d)) - c.radius;
-}
-
 /// The force that would stop the bodies at their contact if nothing else held them, N: for a step in which they begin to touch.
 double stopping_force(const Model& model, const Contact& c, std::span<const std::uint32_t> at, const IslandNodes& nodes,
                       double h, const Problem& problem) {
-  double gap = std::max(0.0, gap_of(model, c) - c.depth), compliance = 0;
+  double gap = std::max(0.0, Contacts::gap(model, c) - c.depth), compliance = 0;
   for (std::uint32_t i = 0; i < c.point_count; ++i) {
     const double w = c.weights[Arm::center][i];
     const bool is_free = !nodes.pinned[at[i]];

@@ -101,7 +101,7 @@ class Islands {
   /// The quantities of the model. If most bodies are still, each island of them is measured only once. After edits
   /// that may change what is still, all are measured anew.
   ingredient::Book book(const model::Model&);
-  /// Before a step, after `update`.
+  /// The energies alone, before a step and after `update`.
   ingredient::Energies energies(const model::Model&);
   /// Null for a free body.
   Island* of_articulate(std::uint32_t articulate) const {
