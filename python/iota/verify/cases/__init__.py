@@ -11,6 +11,7 @@ from iota.verify.cases import (
     friction,
     gyres,
     held,
+    hopper,
     impacts,
     linkages,
     newton,
@@ -59,5 +60,6 @@ CASES = [
         stacks.stacks,
         gyres.spinning,
         dominoes.dominoes,
+        hopper.hopper,
     )
 ]
