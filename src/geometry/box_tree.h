@@ -58,11 +58,7 @@ class BoxTree {
   }
   /// Calls visit(item) with each item whose box overlaps this one.
   template <class Visit>
-  void overlapping(const Bounds& box, Visit visit) const {
-    constexpr double far = std::numeric_limits<double>::infinity();
-    search([&](const Bounds& other) { return overlap(box, other) ? 0.0 : far; }, 0,
-           [&](std::uint32_t item) { return visit(item), 0.0; });
-  }
+  void overlapping(const Bounds& box, Visit visit) const;
   /// Calls visit(item, item) with each two items whose boxes overlap, once.
   template <class Visit>
   void for_each_pair(Visit visit) const {
@@ -140,6 +136,22 @@ void BoxTree::search(Measure measure, double within, Visit visit) const {
       if (!(near <= within && near < never)) break;
       node = &nodes_[first];
     }
+  }
+}
+
+template <class Visit>
+void BoxTree::overlapping(const Bounds& box, Visit visit) const {
+  if (root_ == none) return;
+  std::uint32_t stack[most_height + 2];
+  std::size_t count = 0;
+  stack[count++] = root_;
+  while (count > 0) {
+    const Node& node = nodes_[stack[--count]];
+    if (!overlap(box, node.box)) continue;
+    if (node.is_leaf())
+      visit(node.right);
+    else
+      stack[count++] = node.right, stack[count++] = node.left;
   }
 }
 

@@ -109,7 +109,7 @@ bool is_on_its_own(const Model& model, std::uint32_t body) {
 
 /// by_motion: in a heap some contact begins or ends in nearly each step, which would keep it awake for ever. How fast it is
 /// tells whether it moves.
-void mark(Model& model, const Contact& c, bool by_motion) {
+void mark(Model& model, const model::Ends& c, bool by_motion) {
   const auto sleeps = [&](std::uint32_t body) {
     return model.bodies.is_alive(body) && model.bodies[body].kind == BodyKind::resting;
   };
@@ -122,10 +122,10 @@ void mark(Model& model, const Contact& c, bool by_motion) {
 void dissipate_strain(Model& model, const Contact& c) { model.dissipated += c.energy, model.booked_energy -= c.energy; }
 
 void destroy(Model& model, std::uint32_t slot, bool by_motion = false) {
-  const Contact c = model.contacts[slot];
-  if (by_motion) dissipate_strain(model, c);  // of an edit it is in the account of edits
+  if (by_motion) dissipate_strain(model, model.contacts[slot]);  // of an edit it is in the account of edits
+  const model::Ends ends = model.contacts[slot];
   model.contacts.destroy(slot);
-  mark(model, c, by_motion);
+  mark(model, ends, by_motion);
 }
 
 bool is_same(const Contact& c, std::uint32_t p, const contact::Touch& t) {

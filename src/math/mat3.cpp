@@ -104,12 +104,6 @@ Quaternion normalized(const Quaternion& q) {
   return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
 
-Vec3 rotate(const Quaternion& q, const Vec3& v) {
-  const Vec3 u{q.x, q.y, q.z};
-  const Vec3 t = 2 * cross(u, v);
-  return v + q.w * t + cross(u, t);
-}
-
 Quaternion axis_angle(const Vec3& axis, double angle) {
   const double s = std::sin(angle / 2);
   return {s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)};

@@ -81,7 +81,11 @@ Mat3 nearest_rotation(const Mat3& products);
 Quaternion multiply(const Quaternion& a, const Quaternion& b);
 Quaternion normalized(const Quaternion& q);
 Quaternion conjugate(const Quaternion& q);  ///< the turn back
-Vec3 rotate(const Quaternion& q, const Vec3& v);
+inline Vec3 rotate(const Quaternion& q, const Vec3& v) {
+  const Vec3 u{q.x, q.y, q.z};
+  const Vec3 t = 2 * cross(u, v);
+  return v + q.w * t + cross(u, t);
+}
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
 /// The rotation about a vector by its length, rad.
 Quaternion turn_by(const Vec3& v);

@@ -120,6 +120,7 @@ void Audit::check_ends(const char* what, const EndTable<T, IdType>& items, const
     for (std::uint32_t end = 0; end < T::count; ++end)
       require(owners.is_alive(item.at(end)), what, " ", slot, " joins ", item.at(end), ", which does not live");
   });
+  require(items.has_links_of_items(), "the lists of ", what, "s do not follow from these");
   std::vector<std::uint32_t> firsts;
   items.heads.for_each([&](std::uint32_t, const ListHead& head) { firsts.push_back(head.first); });
   check_lists(

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/archive.h"
 #include "base/side_table.h"
+#include "base/slack.h"
 #include "base/slot_table.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <type_traits>
+#include <vector>
 
 namespace iota::model {
 
@@ -51,6 +56,9 @@ class EndTable : private SlotTable<T, IdType> {
   /// Returns the slot.
   std::uint32_t create(const T& item) {
     const std::uint32_t slot = Items::create(item).slot;
+    if (next_.size() < std::size_t{count} * slot_count()) {
+      for (std::uint32_t end = 0; end < count; ++end) reserve_a_quarter(next_), next_.push_back(none);
+    }
     for (std::uint32_t end = 0; end < count; ++end) link(slot, end);
     return slot;
   }
@@ -64,7 +72,7 @@ class EndTable : private SlotTable<T, IdType> {
   template <class Visit>
   void for_each_of(std::uint32_t particle, Visit visit) const {
     for (std::uint32_t link = heads[particle].first, next; link != none; link = next)
-      next = (*this)[link / count].next[link % count], visit(link / count);
+      next = next_[link], visit(link / count);
   }
   /// The items of q become p's: moved(slot). Those that would join p to itself go to drop(slot), which destroys them.
   template <class Moved, class Drop>
@@ -89,30 +97,50 @@ class EndTable : private SlotTable<T, IdType> {
   void archive(Archive& ar, std::uint32_t particles) {
     Items::archive(ar);
     heads.archive(ar, particles);
+    if constexpr (std::is_same_v<Archive, Reader>) {
+      next_.resize(std::size_t{count} * slot_count());
+      for (std::uint32_t link = 0; link < next_.size(); ++link) next_[link] = (*this)[link / count].next[link % count];
+    }
+  }
+  /// Whether the links beside the items are theirs.
+  bool has_links_of_items() const {
+    bool are_same = next_.size() == std::size_t{count} * slot_count();
+    for_each([&](std::uint32_t slot, const T& item) {
+      for (std::uint32_t end = 0; are_same && end < count; ++end)
+        are_same = next_[count * slot + end] == item.next[end];
+    });
+    return are_same;
   }
 
   SideTable<ListHead> heads;  ///< of the particles that have a list
 
  private:
+  void set_next(std::uint32_t link, std::uint32_t next) {
+    (*this)[link / count].next[link % count] = next_[link] = next;
+  }
   /// Puts one end of an item at the front of its particle's list.
   void link(std::uint32_t slot, std::uint32_t end) {
     T& item = (*this)[slot];
+    const std::uint32_t link = count * slot + end;
     std::uint32_t& first = heads.make(item.at(end)).first;
-    item.next[end] = first, item.previous[end] = none;
-    if (first != none) (*this)[first / count].previous[first % count] = count * slot + end;
-    first = count * slot + end;
+    set_next(link, first), item.previous[end] = none;
+    if (first != none) (*this)[first / count].previous[first % count] = link;
+    first = link;
   }
   void unlink(std::uint32_t slot, std::uint32_t end) {
     const T& item = (*this)[slot];
     const std::uint32_t before = item.previous[end], after = item.next[end];
     if (after != none) (*this)[after / count].previous[after % count] = before;
     if (before != none)
-      (*this)[before / count].next[before % count] = after;
+      set_next(before, after);
     else if (after != none)
       heads.at(item.at(end)).first = after;
     else
       heads.erase(item.at(end));
   }
+
+  /// The next link of each, as in its item: a walk along a list of large items waits for the memory of each of them otherwise.
+  std::vector<std::uint32_t> next_;
 };
 
 }  // namespace iota::model

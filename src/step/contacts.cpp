@@ -244,25 +244,33 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
 void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines) {
   if (movers_.empty() || !is_any_extended_) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
+  const auto box_of = [&](Mover& mover) -> const geometry::Bounds& {
+    if (!mover.box) mover.box = contact::bounds(tree[mover.body]);
+    return *mover.box;
+  };
+  const auto look_at = [&](std::uint32_t body) -> Mover* {
+    if (all_movers_[body].look == look_) return &all_movers_[body];
+    if (model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body)) return nullptr;
+    return &mover_at(model, outlines, body);
+  };
   for (const std::uint32_t slot : movers_) {
-    const Mover& mover = mover_at(model, outlines, slot);
+    Mover& mover = mover_at(model, outlines, slot);
     // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
     const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
-    geometry::Bounds box = contact::bounds(tree[mover.body]);
+    geometry::Bounds box = box_of(mover);
     box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
     tree.overlapping(box, [&](std::uint32_t body) {
-      if (body == mover.body || model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body))
-        return;
-      const Mover& other = mover_at(model, outlines, body);
-      const double apart = norm(other.place - mover.place) - mover.reach - other.reach;
-      const bool is_near = apart <= within(mover, &other);
-      const bool may_be_met = mover.steps > 1 && model.bodies[body].articulate != model.bodies[mover.body].articulate &&
-                              apart <= within(mover, &other, mover.steps);
+      Mover* const other = body == slot ? nullptr : look_at(body);
+      if (!other) return;
+      const double apart = norm(other->place - mover.place) - mover.reach - other->reach;
+      const bool is_near = apart <= within(mover, other);
+      const bool may_be_met = mover.steps > 1 && model.bodies[body].articulate != model.bodies[slot].articulate &&
+                              apart <= within(mover, other, mover.steps);
       if (!is_near && !may_be_met) return;
       // The boxes of the tree are wider than the outlines, by their history, which a restored system does not have.
-      if (!geometry::overlap(box, contact::bounds(tree[body]))) return;
-      const Pair pair{std::min(body, mover.body), std::max(body, mover.body)};
-      if (may_be_met && touch_each_other(model, outlines, pair)) ingredient::Strides::note_near(model, mover.body);
+      if (!geometry::overlap(box, box_of(*other))) return;
+      const Pair pair{std::min(body, slot), std::max(body, slot)};
+      if (may_be_met && touch_each_other(model, outlines, pair)) ingredient::Strides::note_near(model, slot);
       if (is_near) pairs_.push_back(pair);
     });
   }
