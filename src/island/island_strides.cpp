@@ -46,6 +46,7 @@ std::uint32_t Island::agree_on_stride(Model& model) {
   for (const std::uint32_t body : nodes_.bodies)
     if (may_move(model, body)) shortest = std::min(shortest, Strides::of(model, body)), any = true;
   stride_ = any && !idle_ ? shortest : 1;
+  if (!any || idle_) return stride_;  // nailed points alone keep theirs: they may be of a thing that is frozen
   for (const std::uint32_t body : nodes_.bodies)
     if (model::is_free(model.bodies[body].kind)) Strides::set(model, body, stride_ == Strides::frozen ? 0 : stride_);
   if (stride_ > 1 && stride_ != Strides::frozen)

@@ -133,6 +133,23 @@ TEST(IslandStrides, a_frozen_particle_stays_and_goes_on_as_it_would_have) {
   EXPECT_NEAR(system.particles().velocity(frozen).y, velocity.y - 0.2 * 9.81, 1e-9);
 }
 
+TEST(IslandStrides, nailed_points_that_a_spring_connects_stay_frozen) {
+  System system;
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 2; ++i) {
+    bodies.push_back(system.bodies().create());
+    const ParticleId p = system.particles().create(bodies[i], {1.0 * i, 0, 0});
+    system.particles().nail(p);
+    if (i > 0) (void)system.bonds().create(system.particles().ids()[0], p, SpringLaw{});
+  }
+  (void)system.step(dt);
+  for (const int stride : {0, 4}) {
+    for (const BodyId body : bodies) system.bodies().set_stride(body, stride);
+    (void)system.step(dt);
+    for (const BodyId body : bodies) EXPECT_EQ(system.bodies().stride(body), stride);
+  }
+}
+
 TEST(IslandStrides, give_the_same_bits_for_any_number_of_threads) {
   Swinging one(4, 1), four(4, 4);
   one.run(50), four.run(50);
