@@ -80,6 +80,11 @@ def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System)
     assert len(again.groups["feelers"]) == 4 and again["lamp"] != made["lamp"] and system.validate() == []
 
 
+def test_a_structure_fills_a_group_that_is_there_and_empty(system: iota.System) -> None:
+    feelers = system.group("feelers")
+    assert swing().realize(system).groups["feelers"] == feelers and len(feelers) == 2
+
+
 def test_a_structure_is_drawn_in_its_looks(system: iota.System) -> None:
     world = iota.World(system)
     made = swing().realize(system, world)

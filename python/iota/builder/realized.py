@@ -54,7 +54,7 @@ def realize(structure: Contents, system: _core.System, world: World | None = Non
         _make_connections(structure, system, made)
         known = {group.name: group for group in system.groups}
         for name, members in structure.groups.items():
-            made.groups[name] = known.get(name) or system.group(name)
+            made.groups[name] = known[name] if name in known else system.group(name)  # an empty one is False
             made.groups[name].add(*(made.points[member] for member in members))
     made.names |= {name: made.points[point] for name, point in structure.point_names.items()}
     if world is not None:
