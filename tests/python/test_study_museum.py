@@ -117,3 +117,16 @@ def test_t_tints_and_untints(full: Walked) -> None:
     assert len(full.made.paints) == 50
     world.controls.act("tint")
     assert full.made.paints == {}
+
+
+def test_the_wind_tears_no_flag() -> None:
+    """Three winds, one made with each flag, blew on all of them: they were off their poles after a second."""
+    walked = Walked(None)
+    for body in walked.world.system.bodies:
+        if body.kind == "dynamic" and not any(
+            body in each.bodies for each in walked.made.exhibits if each.name.startswith("flag")
+        ):
+            body.stride = 0
+    for _ in range(300):
+        walked.world.step()
+        assert walked.world.system.broken == []

@@ -266,13 +266,23 @@ class Museum:
         self.signs.append(tuple(sign - (0, 0.075, 0)))
 
     def fields(self) -> None:
-        """Water around weed, and forces that carry cages of carbon."""
+        """Water around weed, one wind on all flags, and forces that carry cages of carbon."""
         system = self.system
-        weed, _, cages = (system.group(name) for name in ("weed", "soft", "cages"))
+        weed, _, cages, cloth = (system.group(name) for name in ("weed", "soft", "cages", "cloth"))
         lift = system.gravity * -1.0
         system.field("uniform", group=weed, acceleration=lift + (0, undersea.BUOYANCY, 0))
         system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.5, size=1.2, evolution=0.4)
         system.field("uniform", group=cages, acceleration=lift)
+        system.field(
+            "current",
+            group=cloth,
+            velocity=weather.WIND,
+            drag=weather.DRAG,
+            speed=1.6,
+            size=0.5,
+            octaves=3,
+            evolution=1.5,
+        )
         self.signs: list[tuple[float, ...]] = []
         self.paints: dict[str, Paint] = {}
 
@@ -380,10 +390,7 @@ def cage(world: iota.World, at: iota.Vec3, number: int) -> Callable[[], None]:
 
 def flag(world: iota.World, at: iota.Vec3, number: int) -> None:
     before = set(world.system.bodies)
-    cloth = weather.flag(world, at + (-0.38, 1.95, 0), COATS[number % len(COATS)])
-    world.system.field(
-        "current", group=cloth, velocity=weather.WIND, drag=weather.DRAG, speed=1.6, size=0.5, octaves=3, evolution=1.5
-    )
+    weather.flag(world, at + (-0.38, 1.95, 0), COATS[number % len(COATS)])
     world.draw([body for body in world.system.bodies if body not in before], [])  # its knots
 
 
