@@ -223,6 +223,20 @@ def test_an_edit_makes_full_at_once(made: tuple[iota.World, list[iota.Body]]) ->
     assert roots[3].stride == 1
 
 
+def test_where_the_engine_ends_strides_they_are_not_tried_at_once_again(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    """A torn flag was full and at half rate in turns, for ever, and never frozen."""
+    world, roots = made
+    world.levels.budget_ms = LITTLE
+    run(world, 120)
+    thing = next(each for each in world.levels.things if each.root == roots[-1])
+    thing._set_stride(1)  # as if something had touched it
+    run(world, 120)
+    changes = [change.after for change in world.levels.changes if change.thing == thing.name]
+    assert changes[changes.index("full") :] == ["full", "frozen"]
+
+
 def test_what_hangs_on_a_beam_takes_its_strides() -> None:
     world = crowd.build(3, None)
     run(world, 20)

@@ -34,6 +34,7 @@ SLICES = (8, 64)  # steps in which each thing is looked at once: with few and wi
 PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
+REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long
 FULL, AIM, LOW = 0.75, 0.05, 0.15  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
 LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
 SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes from other programs
@@ -1051,6 +1052,7 @@ class Levels(Part):
         for i in np.nonzero(self._arrays.runs[part::slices])[0]:
             thing = self._things[part + slices * int(i)]
             if thing.index and any(root.stride != thing.level.stride for root in thing._roots):
+                self._arrays.refuse_strides(thing, self._steps + REFUSED)
                 self._change(thing, 0, 1.0, 0.0, "touched")
 
     def _ask(self, row: int, thing: Managed) -> None:
@@ -1163,6 +1165,8 @@ class _Arrays:
         self._row: dict[Managed, int] = {}
         self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
         self.changed = np.zeros(0, dtype=int)
+        self._refused = np.zeros(0, dtype=int)  # until this step
+        self._now = 0  # step
         self.since = np.zeros(0)  # s: it has been frozen and out of sight; nan: it is not
         self.build([])
 
@@ -1195,12 +1199,13 @@ class _Arrays:
         self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.changed = np.full(count, -HOLD, dtype=int)
         since, self.since = self.since, np.full(count, np.nan)
+        refused, self._refused = self._refused, np.zeros(count, dtype=int)
         for key, former, significance, load, full_load, changed in before:
             row = self._row.get(key, -1)
             if row >= 0:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
-                self.since[row] = since[former]
+                self.since[row], self._refused[row] = since[former], refused[former]
         self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
         self._roots: list[BodyArray | None] = [None] * self.slices
         self._middles: list[ParticleArray | None] = [None] * self.slices
@@ -1227,6 +1232,11 @@ class _Arrays:
             self.stride[row] = thing.level.stride
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
             self.touches[row] = self.runs[row] = False
+
+    def refuse_strides(self, thing: Managed, until: int) -> None:
+        """Strides of a thing that something full touches, or that the script edits in each step, save nothing until this step."""
+        if (row := self._row.get(thing)) is not None:
+            self._refused[row] = until
 
     def find_points_of(self, thing: Managed) -> None:
         """Its bodies have become one, or come apart: its middle may be another particle."""
@@ -1273,6 +1283,7 @@ class _Arrays:
     def due(self, step: int, moved: float, slack: float) -> list[int]:
         """The slices that are to be looked at: one in each step, and those since whose last look the viewers may have come nearer than
         the slack, m."""
+        self._now = step
         self._way += moved
         is_due = self._way > slack
         is_due[step % self.slices] = True
@@ -1315,18 +1326,22 @@ class _Arrays:
             self.near[rows], self.is_far[rows], self.is_near[rows] = False, True, False
         self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen) if self.own else seen
 
+    def _shares_of(self, rows: NDArray[np.intp]) -> Floats:
+        """Shares of the full cost, as far as they are known: strides save nothing for what touches something."""
+        takes_each = self.touches[rows] | (self._refused[rows] > self._now)
+        result: Floats = np.where(takes_each[:, None] & (self.strides[rows] > 1), 1.0, self.shares[rows])
+        return result
+
     def share_now(self, rows: NDArray[np.intp]) -> Floats:
-        """The share of the full cost at the present level; strides save nothing for what touches something."""
-        expected = self.shares[rows, self.level[rows]]
-        result: Floats = np.where(self.touches[rows], 1.0, expected)
+        """The share of the full cost at the present level."""
+        result: Floats = self._shares_of(rows)[np.arange(len(rows)), self.level[rows]]
         return result
 
     def next_level(self, rows: NDArray[np.intp]) -> NDArray[np.intp]:
         """The next one that is expected to cost less; the present one if there is none."""
         index = np.arange(self.shares.shape[1])
-        shares = np.where(self.touches[rows, None] & (self.strides[rows] > 1), 1.0, self.shares[rows])
         is_less = (index > self.level[rows, None]) & (index <= self.last[rows, None])
-        is_less &= shares < 0.9 * self.share_now(rows)[:, None]
+        is_less &= self._shares_of(rows) < 0.9 * self.share_now(rows)[:, None]
         target: NDArray[np.intp] = np.where(is_less.any(axis=1), is_less.argmax(axis=1), self.level[rows])
         return target
 
@@ -1336,12 +1351,12 @@ class _Arrays:
         """The ways up of things, in steps of which each gains the most significance for its cost; unit: ms that each costs at full. For each
         step the place of its thing in `rows`, the level it leads to, what it gains, and what it costs, ms."""
         places = np.arange(len(rows))
-        level, share = self.level[rows], self.share_now(rows)
+        level, share, shares = self.level[rows], self.share_now(rows), self._shares_of(rows)
         found = []
         while len(places):
             row = rows[places]
             gain = self.qualities[row] - self.qualities[row, level][:, None]
-            cost = np.maximum(self.shares[row] - share[:, None], 0.0)
+            cost = np.maximum(shares[places] - share[:, None], 0.0)
             worth = np.where(np.arange(gain.shape[1]) < level[:, None], gain / (cost + 1e-9), -np.inf)
             target = worth.argmax(axis=1)
             goes = np.isfinite(worth[np.arange(len(row)), target])
@@ -1350,6 +1365,6 @@ class _Arrays:
             found.append(
                 (places, target, self.significance[row] * gain[here, target], unit[places] * cost[here, target])
             )
-            level, share = target, self.shares[row, target]
+            level, share = target, shares[places, target]
         at, targets, gains, costs = (np.concatenate(each) for each in zip(*found, strict=True))
         return at, targets, gains, costs
