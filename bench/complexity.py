@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What complexity management gains, and the error that is seen: the figures of docs/complexity.md.
 
-    python bench/complexity.py [gain | budget | walk | control]
+    python bench/complexity.py [gain | budget | walk | tour | control]
 
 Times are processor times. The error is the angle at which a viewer 10 m away sees a point beside its place in the full
 simulation from the same state, over 0.5 s.
@@ -20,7 +20,7 @@ from unittest import mock
 import numpy as np
 
 import iota
-from iota.studies import cradle_contact, crowd, shoal, weather
+from iota.studies import cradle_contact, crowd, museum, shoal, weather
 from iota.world import catching_up, levels
 
 DT = 1 / 120
@@ -29,6 +29,7 @@ PICTURE = Path(__file__).parent.parent / "docs" / "pictures" / "complexity.svg"
 WARM = 60  # steps, in full
 STEADY = 80  # chains
 LEARNING = 700  # frames of a walk until the headroom is learnt
+MOST = 1.25  # budgets that a step may take
 STRIDES = {"full": 1, "1/2": 2, "1/4": 4, "1/8": 8, "frozen": 0}
 LEVELS = ("full", "1/2", "1/4", "1/8", "stiff", "frozen")
 
@@ -231,6 +232,11 @@ def loaded(count: int, factor: float, offered: float | None = None) -> tuple[iot
     offered = offered or measured
     limit = offered / factor
     world.levels.budget_ms = limit
+    return world, offered, limit, noting(world)
+
+
+def noting(world: iota.World) -> list[float]:
+    """A list that gets the time of each step with its management, ms."""
     taken: list[float] = []
     step = world.levels._step
 
@@ -241,7 +247,7 @@ def loaded(count: int, factor: float, offered: float | None = None) -> tuple[iot
         return report
 
     object.__setattr__(world.levels, "_step", timed)
-    return world, offered, limit, taken
+    return taken
 
 
 def budget(count: int = 600, factor: float = 10.0, steps: int = 1500) -> None:
@@ -289,30 +295,55 @@ class Tape:
         return time.perf_counter()
 
 
-def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0, walks: int = 3) -> None:
+def walk(count: int = 600, frames: int = 100_000, factor: float = 10.0, walks: int = 6) -> None:
     """The lamp's way through the valley, again and again, with a load of `factor` budgets: percentiles of all frames but the first
-    700, in which the headroom is learnt, or the first half of a short walk. Beside it chains that nobody manages, whose work is the same in
-    each step, so that their percentiles tell what other programs do to processor times. The same walk is taken `walks` times."""
+    700, in which the headroom is learnt, or the first half of a short walk."""
+    offered: float | None = None
+
+    def make() -> tuple[iota.World, float, list[float]]:
+        nonlocal offered
+        world, offered, limit, taken = loaded(count, factor, offered)
+        return world, limit, taken
+
+    compare(make, f"{count} things", frames, walks)
+
+
+def tour(frames: int = 30_000, walks: int = 3) -> None:
+    """The same of the way through the museum, with its own budget."""
+
+    def make() -> tuple[iota.World, float, list[float]]:
+        world = museum.build()
+        assert world.levels.budget_ms is not None
+        return world, world.levels.budget_ms, noting(world)
+
+    compare(make, "museum", frames, walks)
+
+
+def compare(make: Callable[[], tuple[iota.World, float, list[float]]], name: str, frames: int, walks: int) -> None:
+    """Takes the same walk `walks` times. Beside it chains that nobody manages, whose work is the same in each step, so that their
+    percentiles tell what other programs do to processor times. make: the world, its budget and its times, ms."""
     tape = Tape()
     learning = min(LEARNING, frames // 2)
     taken = np.full(frames, np.inf)
     others = np.full(frames, np.inf)
-    offered = None
-    ends: list[bytes] = []
+    end = b""
     with mock.patch.object(levels, "time", tape), mock.patch.object(catching_up, "time", tape):
         for number in range(walks):
-            world, offered, limit, times = loaded(count, factor, offered)
+            world, limit, times = make()
             steady = kind("chains", STEADY)
             for frame in range(frames):
                 world.step()
                 others[frame] = min(others[frame], cost(steady, 1))
             taken = np.minimum(taken, times)
             tape.rewind()
-            ends.append(np.array([list(each.position) for each in world.system.particles]).tobytes())
-            if ends[-1] != ends[0]:
+            places = np.array([list(each.position) for each in world.system.particles]).tobytes()
+            if end not in (b"", places):
                 raise SystemExit("a walk that hears the same clock did not end at the same places")
-            print(f"{count} things, {offered:.1f} ms offered, {frames} frames, {number + 1} walks: p50 p90 p99 p99.9 most")
+            end = places
+            print(f"{name}, budget {limit:.2f} ms, {frames} frames, {number + 1} walks: p50 p90 p99 p99.9 most")
             print("  ", spread(taken[learning:] / limit), "of the budget, with management")
+            beyond = learning + np.nonzero(taken[learning:] > MOST * limit)[0]
+            print(f"   beyond {MOST} budgets: {len(beyond)} frames", *beyond[:10])
             print("  ", spread(others[learning:] / np.median(others)), "of the usual, chains in full")
             print(f"   a usual step may take {world.levels._full:.2f} of the budget; {world.levels}", flush=True)
 
@@ -360,6 +391,8 @@ def main() -> None:
         budget(*map(int, sys.argv[2:3]))
     elif wanted == "walk":
         walk(*map(int, sys.argv[2:6]))
+    elif wanted == "tour":
+        tour(*map(int, sys.argv[2:4]))
     elif wanted == "control":
         control()
 
