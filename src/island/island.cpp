@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "island/island.h"
 
+#include "ingredient/quantities.h"
 #include "solver/integrator.h"
 
 #include <iota/reports.h>
@@ -366,7 +367,7 @@ IslandReport Island::report(const Model& model, const solver::AdvanceReport& las
                       .converged = last.converged,
                       .cut_short = last.cut_short,
                       .approximate = last.is_approximate,
-                      .gap = problem_.worst_gap(problem_.position.data()),
+                      .gap = ingredient::worst_gap(model, nodes_.bodies),
                       .error = last.error,
                       .lost = last.lost,
                       .made = last.made};

@@ -133,6 +133,16 @@ TEST(IslandStrides, a_frozen_particle_stays_and_goes_on_as_it_would_have) {
   EXPECT_NEAR(system.particles().velocity(frozen).y, velocity.y - 0.2 * 9.81, 1e-9);
 }
 
+TEST(IslandStrides, a_frozen_island_that_was_never_solved_reports_the_gap_of_its_places) {
+  Swinging frozen(0);
+  System other;
+  other.restore(frozen.system.snapshot());
+  (void)other.step(dt);
+  const std::vector<IslandReport> reports = other.islands();
+  ASSERT_EQ(reports.size(), 3u);
+  for (const IslandReport& report : reports) EXPECT_LT(report.gap, 1e-9) << "the nail is that far from the origin";
+}
+
 TEST(IslandStrides, nailed_points_that_a_spring_connects_stay_frozen) {
   System system;
   std::vector<BodyId> bodies;
