@@ -21,6 +21,7 @@ import numpy as np
 
 import iota
 from iota.studies import cradle_contact, crowd, museum, shoal, weather
+from iota.types import StepReport
 from iota.world import catching_up, levels
 
 DT = 1 / 120
@@ -240,7 +241,7 @@ def noting(world: iota.World) -> list[float]:
     taken: list[float] = []
     step = world.levels._step
 
-    def timed(dt: float) -> iota.StepReport:
+    def timed(dt: float) -> StepReport:
         began = time.process_time()
         report = step(dt)
         taken.append(1e3 * (time.process_time() - began))
