@@ -742,7 +742,7 @@ std::vector<IslandReport> Islands::reports(const Model& model) {
   ++epoch_;  // edits may not have been followed yet
   const auto add = [&](std::uint32_t a, const solver::AdvanceReport& last) {
     if (!model.articulates.is_alive(a) || !FreeBodies::is_free(model, a) || FreeBodies::is_particle(model, a)) return;
-    borrow(model, a, [&](Island& island) { island.load(model, 0), found.push_back({a, island.report(model, last)}); });
+    borrow(model, a, [&](const Island& island) { found.push_back({a, island.report(model, last)}); });
   };
   for (const FreeBodies::Loose& loose : free_bodies_.loose()) add(loose.articulate, loose.report);
   free_bodies_.for_each_still([&](std::uint32_t body) { add(model.bodies[body].articulate, {}); });
