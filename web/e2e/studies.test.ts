@@ -294,14 +294,19 @@ class Study {
     await this.tab.pause(false);
   }
 
-  /** Triangles of a picture with its shadows, in the detail of a window of 1280 x 720; only this picture has shadows. */
+  /**
+   * Triangles of a picture with its shadows, in the detail of a window of 1280 x 720; only this picture has shadows. The most that there may
+   * be: what was seen from nearer stays finer, so that bodies do not change their looks in turns.
+   */
   triangles(): Promise<number> {
     return this.tab.page.evaluate(() => {
       const { viewer: { renderer, scene, camera }, world: { entities: { body } } } = iota.page;
-      // The detail is chosen in every sixth frame.
-      for (let frame = 0; frame < 6; frame++) {
-        body.pixels = (720 / 2) * camera.projectionMatrix.elements[5];
-        body.draw(0);
+      for (const near of [4, 1]) {
+        // The detail is chosen in every sixth frame.
+        for (let frame = 0; frame < 6; frame++) {
+          body.pixels = near * (720 / 2) * camera.projectionMatrix.elements[5];
+          body.draw(0);
+        }
       }
       renderer.shadowMap.enabled = true;
       renderer.render(scene, camera);
@@ -645,8 +650,9 @@ describe("the study", () => {
       await expect.poll(() => server.report).not.toBeNull();
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
-      // The museum has fifty exhibits.
-      expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(name === "museum" ? 300_000 : 200_000);
+      // A headset may draw 750 000 for both eyes. The museum has fifty exhibits, and two hundred people leave a house or twelve dolls fall.
+      const most = { museum: 300_000, evacuation: 250_000, ragdolls: 250_000 }[name] ?? 200_000;
+      expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(most);
       await study.isFramed(windows.filter((_, place) => runsAll || place === index % windows.length));
       await studies[name](study);
       if (runsAll || takenByAll.includes(name)) {
