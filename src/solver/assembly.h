@@ -82,7 +82,8 @@ class Assembly {
     const double* const d = unknowns_.data() + node_unknown_[node];
     return {d[0], d[1], d[2]};
   }
-  double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
+  Vec3 residual_of(std::uint32_t node) const { return step_of(node); }  ///< N; `residuals()` become the step in place
+  double reference_length() const { return reference_length_; }         ///< mean of the constraints', m
   /// Forces are scaled to the displacement of a point in a step, in mean constraint lengths.
   double inverse_scale(const Stage& stage) const { return 1 / (stage.inertia * reference_length_); }  ///< times mass
   /// Whether the latest factors are those of a matrix of this stage, maybe of an earlier step with other places. Not after

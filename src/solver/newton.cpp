@@ -279,6 +279,10 @@ bool Newton::is_balanced() const {
   return residual_.imbalance <= std::max(residual_.noise, round_off * displacement.value / reference_length());
 }
 
+void Newton::get_unbalanced_forces(std::span<Vec3> forces) const {
+  for (std::uint32_t i = 0; i < forces.size(); ++i) forces[i] = assembly_.residual_of(i);
+}
+
 // The tolerance is a displacement. Divided by a short step it is a considerable velocity and force: a slow body would
 // stop too early, and a spinning body would lose 1e-8 of its momentum. One or two more steps with the existing factor
 // reduce the residual to round-off (measured: 10 % of a step in the energy-keeping mode; the robust mode, which

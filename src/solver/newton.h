@@ -42,6 +42,8 @@ class Newton {
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state stays.
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
+  /// The forces that the latest solution leaves in the equation of each node, N.
+  void get_unbalanced_forces(std::span<Vec3> forces) const;
   /// See Assembly.
   Strain strain_released(const Problem& problem, const Stage& stage, std::span<const double> multipliers_before) const {
     return assembly_.strain_released(problem, stage, x_.data(), multipliers_before);

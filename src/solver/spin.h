@@ -36,8 +36,10 @@ class Spin {
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
   /// along the line at the start. Members and wheels get theirs first, then pieces and clusters the remainder. Velocities are those after
   /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
-  /// from the rest of its motion, and others do without. Returns whether velocities have changed.
-  bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain);
+  /// from the rest of its motion, and others do without. `unbalanced`: forces that the solution leaves over at the points, N:
+  /// its moment is lost, too. Returns whether velocities have changed.
+  bool give_back(Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced, double h,
+                 const Holds& all, double most_gain);
 
   /// The end-point rule turns a body by atan(h w) where its velocity, with what `give_back` has returned, says h w: turns
   /// positions and velocities of the same pieces, members and wheels by the rest, each about an axis that no row and no
@@ -68,6 +70,7 @@ class Spin {
     Vec3 momentum, angular;                ///< about the center
     Vec3 lost;                             ///< angular momentum about the center, kg m^2/s
     Vec3 lost_of_center;                   ///< by the motion of the center of mass
+    Vec3 unbalanced;                       ///< momentum that the solution leaves over, kg m/s
     Vec3 given;                            ///< back of what is lost, to it and to its members
     Mat3 inertia;                          ///< about the center
     Vec3 wanted_momentum, wanted_angular;  ///< about the origin, or the point that holds it
@@ -98,7 +101,8 @@ class Spin {
   double turn_members(Problem&, double most_gain);
   bool find_clusters(const Problem&, const Holds& all);
   void find_free_clusters(const Problem&, const Holds& all);
-  static bool find_losses(const Problem&, std::span<const Vec3> displacement, double h, Parts&);
+  static bool find_losses(const Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
+                          double h, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);
   enum class Rest : std::uint8_t { gives, is_kept };
