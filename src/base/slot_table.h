@@ -53,12 +53,12 @@ class SlotTable {
   template <class Visit>
   void for_each(Visit visit) const {
     for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
-      if (is_alive(slot)) visit(slot, items_[slot]);
+      if (generations_[slot] & 1u) visit(slot, items_[slot]);
   }
   template <class Visit>
   void for_each(Visit visit) {
     for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
-      if (is_alive(slot)) visit(slot, items_[slot]);
+      if (generations_[slot] & 1u) visit(slot, items_[slot]);
   }
 
   /// Ids of all live objects, in the order of slots.

@@ -378,8 +378,10 @@ IslandReport Island::report(const Model& model, const solver::AdvanceReport& las
 
 bool Island::has_finite_motion() const {
   double sum = 0;  // zero times infinity is not a number
-  for (const Vec3& x : problem_.position) sum += 0 * x.x + 0 * x.y + 0 * x.z;
-  for (const Vec3& v : problem_.velocity) sum += 0 * v.x + 0 * v.y + 0 * v.z;
+  for (std::size_t i = 0; i < problem_.size(); ++i) {
+    const Vec3 both = problem_.position[i] + problem_.velocity[i];
+    sum += 0 * (both.x + both.y + both.z);
+  }
   return sum == 0;
 }
 

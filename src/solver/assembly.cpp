@@ -69,10 +69,10 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
     stage.is_mid_point() ? add.template operator()<Scheme::mid_point>() : add.template operator()<Scheme::end_point>();
   });
   double worst_force = 0, mass_there = 1, lightest = std::numeric_limits<double>::infinity();
+  const double* const masses = has_extreme_masses() ? resistance_.data() : problem.mass.data();
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const double* const r = unknowns_.data() + node_unknown_[i];
-    const double mass = has_extreme_masses() ? resistance_[i] : problem.mass[i],
-                 size = largest_component({r[0], r[1], r[2]});
+    const double mass = masses[i], size = largest_component({r[0], r[1], r[2]});
     if (!(size * mass_there <= worst_force * mass)) worst_force = size, mass_there = mass;  // by the mass, undivided
     lightest = std::min(lightest, mass);
   }

@@ -35,10 +35,9 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
 
   const std::span<const double> mass = lumped_masses(problem);
   const std::span<Vec3> flight = newton_.room();
-  for (std::size_t i = 0; i < n; ++i) {
-    flight[i] = problem.position[i] + stage.h * problem.velocity[i];
-    guess[i] = mass[i] * problem.gravity;
-  }
+  for (std::size_t i = 0; i < n; ++i) guess[i] = mass[i] * problem.gravity;
+  if (problem.has_used_forces())
+    for (std::size_t i = 0; i < n; ++i) flight[i] = problem.position[i] + stage.h * problem.velocity[i];
   for (std::size_t i = 0; i < problem.force.size(); ++i) guess[i] += problem.force[i];
   for (const BodyTorque& t : problem.torques) {
     const BodyTorque::Forces forces = t.forces([&](std::uint32_t node) { return problem.position[node]; });

@@ -93,7 +93,6 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   const bool carries = may_carry && assembly_.has_factors_of(stage);
   bool factor_will_do = carries, served_on = carries;
   int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
-  const double blur = blur_of_places(problem);
   while (true) {
     if (has_laws_ && report.iterations > 0) {
       are_final = !active_set_.choose(problem, stage, x_.data());
@@ -128,14 +127,16 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
     const bool is_clamped = std::exchange(hessian, Hessian::exact) == Hessian::clamped;
     // If a Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy loads on
     // small links leave ten times the estimate.
-    const double nothing = std::min(Set::noise * blur * residual_.noise, Set::round_off_floor);
+    const auto nothing = [&] {
+      return std::min(Set::noise * blur_of_places(problem) * residual_.noise, Set::round_off_floor);
+    };
     if (!(residual_.worst <= Set::fast * before)) {
       if (assembly_.is_round_off_of_laws(problem, stage, x_.data())) {
         residual_.worst = residual_.rows;
         stuck = true;
         break;
       }
-      stuck = !is_clamped && (may_carry || !served_on) && before <= nothing;
+      stuck = !is_clamped && (may_carry || !served_on) && before <= nothing();
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step(problem, stage);
         hessian = Hessian::clamped;
@@ -150,7 +151,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
     // Near the solution the old factor is reused if a factorization costs much more than an iteration, and once more before
     // the residual counts as round-off: of a net of 100 x 100 a new one for that was a third of a step.
     const double wanted = (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
-    factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing) : wanted);
+    factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing()) : wanted);
   }
   // A problem that stands still keeps its factors: they are half of the time of a step of a tower.
   const bool stands = report.iterations == 0 && has_laws_ && assembly_.is_dear() && assembly_.has_factors_of(stage);

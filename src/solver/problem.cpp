@@ -224,9 +224,13 @@ double Problem::worst_gap(const Vec3* x, double fraction, bool relative, Rows ro
       c.value(x, fraction, g);
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) g[r] = pool.law(i)[r].violation(g[r]);
-      double size2 = 0;
-      for (const double v : g) size2 += v * v;
-      worst.add(std::sqrt(size2) / (relative ? c.reference_length() : 1));
+      double size = std::abs(g[0]);
+      if constexpr (C::rows > 1) {
+        double size2 = 0;
+        for (const double v : g) size2 += v * v;
+        size = std::sqrt(size2);
+      }
+      worst.add(size / (relative ? c.reference_length() : 1));
     }
   });
   return worst.value;

@@ -276,6 +276,7 @@ struct Problem {
     return used_ >> index_of<Item>() & 1u;
   }
   bool has_used_springs() const { return has_used<SpringForce>() || has_used<RadialForce>(); }
+  bool has_used_forces() const { return used_ >> constraint_types != 0; }
   bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
   /// The key of an item in a constraint pool, by the pool's place among those that the folds visit.
   ItemKey key_of(std::size_t pool, std::size_t item) const {

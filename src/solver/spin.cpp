@@ -57,9 +57,11 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
 /// Two to four points, each at a fixed distance from each other, and nothing else that holds or turns them.
 void Spin::find_rigid_pieces(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4;
+  bool may_be = false;
+  for (Part& part : pieces_.parts) part.is_rigid = part.holds.are_none(), may_be = may_be || part.is_rigid;
+  if (!may_be) return;
   counts_.assign(pieces_.parts.size(), {});
   for (const std::uint32_t part : pieces_.part_of) ++counts_[part].nodes;
-  for (Part& part : pieces_.parts) part.is_rigid = part.holds.are_none();
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
     const std::uint32_t part = pieces_.part_of[pool.nodes_of(pool.items[i]).front()];
     if constexpr (std::is_same_v<C, DistanceConstraint>)
@@ -198,23 +200,24 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
                        double h, Parts& parts) {
   constexpr double round_off = 1e-13;
   const auto start_velocity = [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; };
-  for (Part& part : parts.parts) {
-    part.mass = part.kinetic = 0;
-    part.center = part.momentum = part.wanted_momentum = part.lost = part.given = part.unbalanced = {};
-  }
-  const auto add = [&](Part& part, double mass, std::uint32_t i, const Vec3& start) {
+  for (Part& part : parts.parts) static_cast<Sums&>(part) = {}, part.given = {};
+  const auto add = [&](Sums& sums, double mass, std::uint32_t i, const Vec3& start) {
     const Vec3& v = problem.velocity[i];
-    part.mass += mass;
-    part.center += mass * problem.position[i];
-    part.momentum += mass * v, part.wanted_momentum += mass * start;
+    sums.mass += mass;
+    sums.center += mass * problem.position[i];
+    sums.momentum += mass * v, sums.wanted_momentum += mass * start;
   };
-  for (std::uint32_t i = 0; i < problem.size(); ++i) {
-    Part& part = parts.of(i);
-    const Vec3 &v = problem.velocity[i], start = start_velocity(i);
-    const double mass = problem.mass[i];
-    add(part, mass, i, start);
-    part.lost += (mass * h) * cross(v, start), part.kinetic += mass * dot(v, v);
-    part.lost += h * cross(problem.position[i], unbalanced[i]), part.unbalanced += h * unbalanced[i];
+  for (std::uint32_t i = 0; i < problem.size();) {
+    const std::uint32_t part = parts.part_of[i];
+    Sums sums = parts.parts[part];  // in registers while the part stays the same
+    do {
+      const Vec3 &v = problem.velocity[i], start = start_velocity(i);
+      const double mass = problem.mass[i];
+      add(sums, mass, i, start);
+      sums.lost += (mass * h) * cross(v, start), sums.kinetic += mass * dot(v, v);
+      sums.lost += h * cross(problem.position[i], unbalanced[i]), sums.unbalanced += h * unbalanced[i];
+    } while (++i < problem.size() && parts.part_of[i] == part);
+    static_cast<Sums&>(parts.parts[part]) = sums;
   }
   for (const auto& c : problem.mass_couplings) {
     Part& part = parts.of(c.a);

@@ -60,22 +60,26 @@ class Spin {
   double move_rigidly(Problem&, double h, const Holds& all);
 
  private:
-  struct Part {  // a piece, a cluster or a member
+  struct Sums {
+    double mass = 0, kinetic = 0;  ///< of the motion relative to the center
+    Vec3 center;                   ///< of mass, or the point that holds the part, m
+    Vec3 momentum;                 ///< about the center
+    Vec3 wanted_momentum;          ///< about the origin, or the point that holds the part
+    Vec3 lost;                     ///< angular momentum about the center, kg m^2/s
+    Vec3 unbalanced;               ///< momentum that the solution leaves over, kg m/s
+  };
+  struct Part : Sums {  // a piece, a cluster or a member
     Holds holds;
-    bool is_kept = false;                  ///< nothing holds it, or a single point at rest
-    bool is_rigid = false;                 ///< a free body alone, whose motion has no rest
-    bool is_due = false;                   ///< it has lost something
-    Vec3 center;                           ///< of mass, or that point, m
-    double mass = 0, kinetic = 0;          ///< of the motion relative to the center
-    Vec3 momentum, angular;                ///< about the center
-    Vec3 lost;                             ///< angular momentum about the center, kg m^2/s
-    Vec3 lost_of_center;                   ///< by the motion of the center of mass
-    Vec3 unbalanced;                       ///< momentum that the solution leaves over, kg m/s
-    Vec3 given;                            ///< back of what is lost, to it and to its members
-    Mat3 inertia;                          ///< about the center
-    Vec3 wanted_momentum, wanted_angular;  ///< about the origin, or the point that holds it
-    Vec3 velocity_change, turn;            ///< m/s, rad/s
-    Vec3 chord;                            ///< of the center of mass in the step, m/s
+    bool is_kept = false;        ///< nothing holds it, or a single point at rest
+    bool is_rigid = false;       ///< a free body alone, whose motion has no rest
+    bool is_due = false;         ///< it has lost something
+    Vec3 angular;                ///< about the center
+    Vec3 lost_of_center;         ///< by the motion of the center of mass
+    Vec3 given;                  ///< back of what is lost, to it and to its members
+    Mat3 inertia;                ///< about the center
+    Vec3 wanted_angular;         ///< about the origin, or the point that holds it
+    Vec3 velocity_change, turn;  ///< m/s, rad/s
+    Vec3 chord;                  ///< of the center of mass in the step, m/s
     Vec3 velocity() const { return holds.count > 0 ? Vec3{} : (1 / mass) * momentum; }
   };
   struct Parts {
