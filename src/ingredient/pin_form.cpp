@@ -225,8 +225,9 @@ Frames plan(const ConstraintKindInfo& kind, const JointSpec& spec, const Side& a
              "neither side holds the directions across the axis; give one of them a particle off its line or plane");
     frames.line_side = by_b;
     frames.need(by_b ? b_side : a_side, x), frames.need(by_b ? b_third : a_third, y);
-    if (!frames.has(a_axis) && !frames.has(b_axis)) frames.need(by_b ? b_axis : a_axis, z);
+    frames.need(by_b ? b_axis : a_axis, z);
   }
+  if (kind.plane && b.holds(z)) frames.need(b_axis, z);
   return frames;
 }
 

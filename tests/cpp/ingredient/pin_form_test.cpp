@@ -51,6 +51,15 @@ TEST(PinForm, what_a_joint_leaves_free_changes_no_row) {
   EXPECT_NEAR(values_of(blocks.m.model, rail).worst(), 0.25, 1e-12) << "across the axis";
 }
 
+TEST(PinForm, a_slide_is_measured_along_the_side_that_holds_its_line) {
+  TwoBlocks blocks;
+  JointSpec spec = blocks.spec(ConstraintKind::prismatic);
+  spec.b = {};
+  const std::uint32_t rail = make_constraint(blocks.m.model, spec);
+  EXPECT_TRUE(blocks.m.model.constraints[rail].line_side);
+  EXPECT_TRUE(blocks.m.model.constraints[rail].has(b_axis));
+}
+
 TEST(PinForm, each_option_of_a_coordinate_is_a_row) {
   TwoBlocks blocks;
   JointSpec spec = blocks.spec(ConstraintKind::cylindrical);
