@@ -121,8 +121,9 @@ void Solved::add_dissipation(StepEnergy& energy, std::span<const double> multipl
   });
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items)
-      energy.dissipated += f.dissipation(f.arm.value(start()), f.arm.value(end()), force_stage());
+      energy.damped += f.dissipation(f.arm.value(start()), f.arm.value(end()), force_stage());
   });
+  energy.dissipated += energy.damped;
 }
 
 // A row takes lambda dg. Of that a spring stores its part and a drive has given its rate. What is left are dashpots,

@@ -15,6 +15,7 @@ struct StepEnergy {
   double kinetic = 0, total = 0;  ///< at its end
   double external_work = 0;       ///< of explicit forces, grips, drives and moving targets
   double dissipated = 0;          ///< work of dampers, dashpots and friction
+  double damped = 0;              ///< of that, by forces: rows also have friction, and the slip of clutches
   double impact = 0;              ///< upper bound of what rows that have just become active dissipate
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off

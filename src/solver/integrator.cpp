@@ -370,7 +370,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   commit(problem, stage, energy, report);
   for (const FreeMotion& free : free_motions_) keep_momenta(problem, free, part.h);
   if (!free_motions_.empty()) energy_.measure_kinetic(problem);
-  if (!is_mid_point) give_spin_back(problem, stage, energy.dissipated, report);
+  if (!is_mid_point) give_spin_back(problem, stage, energy.damped, report);
   if (has_impacts(problem, stage))
     solve_impacts(problem, stage, energy, report);
   else if (is_mid_point)
@@ -413,7 +413,7 @@ bool Integrator::restore_momenta(Problem& problem) {
 bool Integrator::has_taken_off(const StepEnergy& step) const {
   constexpr double most = 1e-6;  // of the kinetic energy
   const double made = energy_.total - step.total_before - step.external_work;
-  return holds_.are_none() && !drives_rows_ && !(made <= most * step.kinetic_before + energy_.slack);
+  return !drives_rows_ && !(made <= most * step.kinetic_before + energy_.slack);
 }
 
 void Integrator::move_rigidly_instead(Problem& problem, const Part& part, AdvanceReport& report) {

@@ -157,7 +157,7 @@ class Integrator {
     if (!spin_) spin_ = std::make_unique<Spin>();
     return *spin_;
   }
-  void give_spin_back(Problem&, const Stage&, double dissipated, AdvanceReport&);
+  void give_spin_back(Problem&, const Stage&, double damped, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {
     return change_kinetic_energy(problem, excess, rigid_motion(problem));

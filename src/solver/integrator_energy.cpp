@@ -90,21 +90,21 @@ struct WorkOfTorques {
 
 // Returns the angular momentum that the end-point rule has lost, with at most the energy that the step has lost and that
 // torques have still to give. Dashpots act along the line at the start of the step and so slow the rotation: their energy may
-// be returned, too.
-void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dissipated, AdvanceReport& report) {
+// be returned, too. What rows dissipate may not: a motor that slips at 1e7 rad/s allowed any gain.
+void Integrator::give_spin_back(Problem& problem, const Stage& stage, double damped, AdvanceReport& report) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
   const double lost = std::max(0.0, energy_.missing);
   const WorkOfTorques torques(problem, newton_.displacement(), stage.h);
   newton_.get_unbalanced_forces(newton_.room());
   has_corrected_ = spin().give_back(problem, newton_.displacement(), newton_.room(), stage.h, holds_,
-                                    lost + std::max(0.0, dissipated) + torques.most);
+                                    lost + std::max(0.0, damped) + torques.most);
   if (!has_corrected_) return;
   if (!problem.torques.empty()) {
     const double work = torques.missing + WorkOfTorques::of_end(problem, stage.h);
     report.external_work += work, energy_.missing += work;
   }
   energy_.measure_kinetic(problem);
-  const double refunded = std::clamp(-energy_.missing, 0.0, std::max(0.0, dissipated));
+  const double refunded = std::clamp(-energy_.missing, 0.0, std::max(0.0, damped));
   energy_.missing += refunded, report.dissipated -= refunded;
   spin().turn_on(problem, newton_.velocities_before(), stage.h, [&] { track(problem, stage.fraction); });
 }

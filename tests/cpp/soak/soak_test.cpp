@@ -64,7 +64,7 @@ TEST(RandomScenes, stay_finite_whole_and_honest) {
 /// Scripts of calls, as `tell` prints them: they stay what they are when the random ones become others. Bodies that woke
 /// in a conflict; hinges that joined the two ends of somebody else's rod; joints that no longer hold anybody; markers that
 /// went while their body was in two halves; springs of joints that were pulled together; laws that are infinite where their
-/// ends have met, and a step that failed there.
+/// ends have met, and a step that failed there; a conflict on a nail that made a fifth of its energy in a step.
 TEST(Scripts, that_once_failed_do_not_any_more) {
   int played = 0;
   scenes::Tally tally;
