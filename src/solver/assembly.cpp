@@ -312,6 +312,15 @@ void Assembly::add_to_pair(const BlockPattern::PairSlot& slot, double value) {
 template <Storage T, class C>
 void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots& slots, const Stage& stage,
                              const Vec3* x, const double* lambda, bool clamp) {
+  if constexpr (std::is_same_v<C, BilinearConstraint>) {
+    const auto of_arms = c.curvature_of_arms(lambda[0], clamp);
+    for (std::uint32_t i = 0, pair = 0; i < c.count; ++i) {
+      add_to_node(c.nodes[i], c.curvature_between(of_arms, i, i));
+      for (std::uint32_t j = i + 1; j < c.count; ++j, ++pair)
+        add_to_pair<T>(slots.pairs[pair], c.curvature_between(of_arms, i, j));
+    }
+    return;
+  }
   Mat3 blocks[C::max_nodes * (C::max_nodes + 1) / 2];
   c.curvature(x, stage.fraction, lambda, clamp, blocks);
   const Mat3* block = blocks;

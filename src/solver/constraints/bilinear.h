@@ -20,19 +20,27 @@ struct BilinearConstraint : ArmConstraint<BilinearConstraint, 1, 2> {
   double reference_length() const { return reference; }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const { g[0] = (dot(e[0], e[1]) - product) / scale; }
   void calc_gradient(const Vec3* e, Vec3 (*d)[2]) const { d[0][0] = (1 / scale) * e[1], d[0][1] = (1 / scale) * e[0]; }
+  /// Second derivatives by the arms, times lambda and the identity.
+  struct Curvature {
+    double aa = 0, ab = 0, bb = 0;
+  };
   /// Clamped: of lambda (a_i b_j + b_i a_j) the part lambda/2 (a_i +- b_i)(a_j +- b_j), arms scaled to equal size.
-  void calc_hessian(const Vec3*, const double* lambda, bool clamp, Mat3 (*h)[2]) const {
-    const double l = lambda[0] / scale;
-    h[0][1] = Mat3::diagonal(clamp ? l / 2 : l);
-    if (!clamp) {
-      h[0][0] = h[1][1] = {};
-      return;
-    }
+  Curvature curvature_of_arms(double lambda, bool clamp) const {
+    const double l = lambda / scale;
+    if (!clamp) return {.ab = l};
     double aa = 0, bb = 0;
     for (std::uint32_t i = 0; i < count; ++i) aa += weights[0][i] * weights[0][i], bb += weights[1][i] * weights[1][i];
     const double ratio = aa > 0 && bb > 0 ? std::sqrt(bb / aa) : 1;
-    h[0][0] = Mat3::diagonal(std::abs(l) / 2 * ratio);
-    h[1][1] = Mat3::diagonal(std::abs(l) / 2 / ratio);
+    return {std::abs(l) / 2 * ratio, l / 2, std::abs(l) / 2 / ratio};
+  }
+  /// The block of the Hessian for nodes i and j is this times the identity.
+  double curvature_between(const Curvature& c, std::uint32_t i, std::uint32_t j) const {
+    const auto& [a, b] = weights;
+    return a[i] * a[j] * c.aa + a[i] * b[j] * c.ab + b[i] * a[j] * c.ab + b[i] * b[j] * c.bb;
+  }
+  void calc_hessian(const Vec3*, const double* lambda, bool clamp, Mat3 (*h)[2]) const {
+    const Curvature c = curvature_of_arms(lambda[0], clamp);
+    h[0][0] = Mat3::diagonal(c.aa), h[0][1] = Mat3::diagonal(c.ab), h[1][1] = Mat3::diagonal(c.bb);
   }
 };
 
