@@ -30,7 +30,8 @@ double HeldForceError::estimate(const model::Model& model, double h) {
     if (const auto* const part = model.pushes_by_velocity.find(slot); part && !is_single) now_[slot] -= part->force;
     const double mass = model.ring_mass(slot), length = is_single ? 1 : body.first_row.length;
     if (known_ < 2 || !(mass > 0)) return;
-    worst = std::max(worst, norm(now_[slot] - 2 * last_[slot] + earlier_[slot]) / (24 * mass * length));
+    const Vec3 change = now_[slot] - last_[slot], change_before = last_[slot] - earlier_[slot];
+    worst = std::max(worst, (norm(change - change_before) / 24 + h * norm(change) / 12) / (mass * length));
   });
   earlier_.swap(last_), last_.swap(now_);
   ++known_;

@@ -11,7 +11,8 @@ namespace iota::held {
 /// The error of mode accurate by forces that are held over a step, which its sub-steps do not see. A force with the second
 /// derivative f'' has a mean that differs by h^2 f''/24 from that in the middle of the step; f'' is found from the last three
 /// steps. In a second such an acceleration moves a point by half of it, and its motion carries that on: the figure of eight of
-/// three bodies was 1.4 times as far off, so the estimate is twice that.
+/// three bodies was 1.4 times as far off, so the estimate is twice that. And a mean force leaves a point that has the right
+/// velocity h^3 f'/12m from its place in each step: of a particle that fell with a drag of 0.05/s this was 40 times the rest.
 class HeldForceError {
  public:
   void forget() { known_ = 0; }

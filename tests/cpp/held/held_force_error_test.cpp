@@ -29,5 +29,19 @@ TEST(HeldForceError, of_a_field_that_changes_over_a_step_is_told_of_second_order
   EXPECT_EQ(told(IntegrationMode::energy_keeping, 1.0 / 60), 0);
 }
 
+TEST(HeldForceError, of_a_fall_with_drag_is_that_of_its_place_although_its_velocity_is_exact) {
+  constexpr double drag = 0.05, g = 9.81, h = 1.0 / 60;
+  System system({.mode = IntegrationMode::accurate});
+  const ParticleId particle = system.particles().create(system.bodies().create(), {}, 2);
+  (void)system.fields().create("fx = -m*c*vx; fy = -m*c*vy; fz = -m*c*vz", {.parameters = {{"c", drag}}});
+  double told = 0;
+  for (int i = 0; i < 60; ++i) told += h * system.step(h).error;
+  const double speed = g / drag * (1 - std::exp(-drag)), fallen = (g - speed) / drag;
+  EXPECT_NEAR(norm(system.particles().velocity(particle)) / speed, 1, 1e-12);
+  const double off = std::abs(norm(system.particles().position(particle)) - fallen);
+  EXPECT_GT(off, 1e-6);
+  EXPECT_NEAR(told / off, 1, 0.1);
+}
+
 }  // namespace
 }  // namespace iota
