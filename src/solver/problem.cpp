@@ -145,15 +145,20 @@ void Problem::note_acting(const Vec3* x) {
       return;
     }
     constexpr std::uint8_t unknown = 2;
+    // Friction acts where its reaction does: bodies that were near each other counted as one, and shared their spins.
+    constexpr int rows = [] {
+      if constexpr (ConeConstraint<C>) return C::is_one_sided(0) ? 1 : C::rows;
+      return C::rows;
+    }();
     pool.acting.resize(pool.items.size(), unknown);
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
       const RowLaw* const law = pool.law(i);
       std::uint8_t acts = 0;
-      for (int r = 0; r < C::rows; ++r) acts |= law[r].acts(pool.multiplier(i)[r]);
+      for (int r = 0; r < rows; ++r) acts |= law[r].acts(pool.multiplier(i)[r]);
       if (x && !acts) {
         double g[C::rows];
         pool.value(i, x, 0, g);
-        for (int r = 0; r < C::rows; ++r) acts |= law[r].violation(g[r]) > 0;
+        for (int r = 0; r < rows; ++r) acts |= law[r].violation(g[r]) > 0;
       }
       is_other = is_other || acts != pool.acting[i];
       pool.acting[i] = acts;

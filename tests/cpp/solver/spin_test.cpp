@@ -78,6 +78,19 @@ TEST(Spin, of_a_free_box_does_not_drift_by_what_each_solution_leaves_unbalanced)
   }
 }
 
+/// Friction acted wherever a contact was in sight, so that both were one piece, which shared the spin of the heavy one.
+TEST(Spin, of_a_heavy_ball_moves_nothing_before_it_touches_it) {
+  for (const IntegrationMode mode : end_point_modes) {
+    System system{SystemOptions{.gravity = {}, .mode = mode}};
+    system.set_usual_material(Material{});
+    const BodyId light = system.bodies().create(Sphere{0.1}, {.mass = 1, .position = {0, 0.3, 0}});
+    const SolidOptions heavy{.mass = 1e6, .position = {0.03, 0.62, 0}, .velocity = {0, -2, 0}, .spin = {0, 0, 3}};
+    (void)system.bodies().create(Sphere{0.13}, heavy);
+    for (int i = 0; i < 2; ++i) (void)system.step(1.0 / 60);
+    EXPECT_LT(norm(system.bodies().velocity(light)), 1e-6);
+  }
+}
+
 TEST(Spin, of_a_chain_of_eight_bars_stays_in_the_end_point_modes) {
   for (const double bend : {0.0, 0.06}) {
     const auto make = [bend](System& system, const Vec3& spin) {
