@@ -19,6 +19,7 @@ std::uint32_t find_pieces(const Problem& problem, Connection connection, std::ve
   };
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
     if (connection == Connection::lengths && !std::is_same_v<C, DistanceConstraint>) return;
+    if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
     join_nodes(pool.nodes_of(pool.items[i]));
   });
   if (connection == Connection::rows_and_forces)

@@ -10,8 +10,8 @@
 namespace iota::solver {
 
 /// Connections join points to pieces: lengths and coupled masses, as in rigid bodies and what shares their points; all rows that
-/// act; or forces between points as well.
-enum class Connection : std::uint8_t { lengths, rows, rows_and_forces };
+/// act but contacts; contacts, too; or forces between points as well.
+enum class Connection : std::uint8_t { lengths, joints, rows, rows_and_forces };
 
 /// Numbers the pieces by their lowest nodes; `piece_of` has that of each node. Returns how many there are. What acts may
 /// change in each step, so the caller keeps the room.

@@ -21,6 +21,12 @@ void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::ui
   }
 }
 
+/// Contacts neither hold bodies nor connect them here: each gets its own loss back, which is that of its turn in the step, whatever
+/// pushes it. As parts of one piece a rolling ball lost 40 % of its speed in 2 s, a spinning one as much, and a light body paid
+/// with its motion for the spin of a heavy one.
+template <class C>
+constexpr bool is_joint = !std::is_same_v<C, DistanceConstraint> && !std::is_same_v<C, ContactConstraint>;
+
 /// The pseudoinverse of an inertia. For points on a line it is zero along the line.
 Mat3 pseudoinverse(const Mat3& inertia) {
   const SymmetricEigen eigen = symmetric_eigen(inertia);
@@ -43,12 +49,17 @@ void Spin::begin(const Problem& problem) {
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
   auto& [parts, part_of] = all_parts;
   if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of, room_for_pieces_));
-  for (Part& part : parts) part.holds = {};
-  if (parts.size() == 1)
+  const bool skips_contacts = connection == Connection::joints && problem.has_used<ContactConstraint>();
+  for (Part& part : parts) part.holds = {}, part.touches = false;
+  if (parts.size() == 1 && !skips_contacts)
     parts.front().holds = all;
   else
-    problem.for_each_acting([&](const auto& pool, std::size_t i) {
-      const auto& c = pool.items[i];
+    problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+      const C& c = pool.items[i];
+      if (skips_contacts && std::is_same_v<C, ContactConstraint>) {
+        for (const std::uint32_t node : pool.nodes_of(c)) parts[part_of[node]].touches = true;
+        return;
+      }
       parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
     });
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
@@ -66,7 +77,7 @@ void Spin::find_rigid_pieces(const Problem& problem) {
     const std::uint32_t part = pieces_.part_of[pool.nodes_of(pool.items[i]).front()];
     if constexpr (std::is_same_v<C, DistanceConstraint>)
       ++counts_[part].rods;
-    else
+    else if constexpr (!std::is_same_v<C, ContactConstraint>)
       pieces_.parts[part].is_rigid = false;
   });
   const auto drop = [&](const auto& forces) {
@@ -85,7 +96,7 @@ bool Spin::find_members(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
   std::size_t rows_of_joints = 0;
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>&, std::size_t) {
-    if constexpr (!std::is_same_v<C, DistanceConstraint>) rows_of_joints += C::rows;
+    if constexpr (is_joint<C>) rows_of_joints += C::rows;
   });
   if (rows_of_joints < fewest_rows) return false;
   auto& [members, member_of] = members_;
@@ -98,7 +109,7 @@ bool Spin::find_members(const Problem& problem) {
       ++nodes_of_[member_of[i]];
     }
     problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-      if constexpr (!std::is_same_v<C, DistanceConstraint>)
+      if constexpr (is_joint<C>)
         for_each_once(pool.nodes_of(pool.items[i]), member_of,
                       [&](std::uint32_t member) { rows_of_[member] += C::rows; });
     });
@@ -145,7 +156,7 @@ void Spin::find_supports(const Problem& problem) {
     support.wrenches[support.count++] = {scale * wrench.force, scale * wrench.torque};
   };
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (!std::is_same_v<C, DistanceConstraint>)
+    if constexpr (is_joint<C>)
       for (std::size_t item = 0; item < pool.items.size(); ++item) {
         const auto nodes = pool.nodes_of(pool.items[item]);
         if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.part_of[i]); })) continue;
@@ -185,12 +196,27 @@ bool Spin::find_clusters(const Problem& problem, const Holds& all) {
   return true;
 }
 
+/// Whether contacts connect pieces.
+bool Spin::find_touching(const Problem& problem, const Holds& all) {
+  if (std::none_of(pieces_.parts.begin(), pieces_.parts.end(), [](const Part& piece) { return piece.touches; }))
+    return false;
+  find_parts(problem, Connection::rows, all, touching_);
+  return touching_.parts.size() < pieces_.parts.size();
+}
+
+/// Adds what each of the finer parts was given to what the coarser one around it has lost.
+void Spin::add_given(const Parts& finer, Parts& coarser) {
+  std::uint32_t seen = 0;  // parts are numbered by their lowest nodes
+  for (std::uint32_t i = 0; i < finer.part_of.size(); ++i)
+    if (finer.part_of[i] == seen) coarser.of(i).lost += finer.parts[seen++].given;
+}
+
 /// Finds the clusters, and keeps the momenta of those that nothing else than a single point at rest holds.
-void Spin::find_free_clusters(const Problem& problem, const Holds& all) {
-  find_parts(problem, Connection::rows_and_forces, all, clusters_);
+void Spin::find_free_clusters(const Problem& problem, const Holds& all, Parts& clusters) {
+  find_parts(problem, Connection::rows_and_forces, all, clusters);
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items)
-      if (!f.arm.is_internal()) clusters_.of(f.arm.nodes[0]).is_kept = false;
+      if (!f.arm.is_internal()) clusters.of(f.arm.nodes[0]).is_kept = false;
   });
 }
 
@@ -298,9 +324,11 @@ Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
 bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced, double h,
                      const Holds& all, double most_gain) {
   begin(problem);
-  find_parts(problem, Connection::rows, all, pieces_);
+  find_parts(problem, Connection::joints, all, pieces_);
   find_rigid_pieces(problem);
   const bool are_pieces_due = find_losses(problem, displacement, unbalanced, h, pieces_);
+  const bool are_touching_due =
+      find_touching(problem, all) && find_losses(problem, displacement, unbalanced, h, touching_);
   const bool are_clusters_due =
       find_clusters(problem, all) && find_losses(problem, displacement, unbalanced, h, clusters_);
   are_members_due_ = find_members(problem) && find_losses(problem, displacement, unbalanced, h, members_);
@@ -318,12 +346,17 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, std::
           piece.lost += given, piece.given += given;
         });
   if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, Rest::gives, pieces_);
+  // Bodies that collide change the motions of their centers of mass, too, and so lose more together.
+  if (are_touching_due) {
+    add_given(pieces_, touching_);
+    most_gain -= turn_parts(problem, most_gain, Rest::gives, touching_);
+  }
   if (are_clusters_due) {
-    for (std::uint32_t i = 0; i < problem.size(); ++i)
-      clusters_.of(i).lost += std::exchange(pieces_.of(i).given, Vec3{});
+    add_given(pieces_, clusters_);
+    if (are_touching_due) add_given(touching_, clusters_);
     (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
   }
-  return are_pieces_due || are_clusters_due || are_members_due_ || are_wheels_due_;
+  return are_pieces_due || are_touching_due || are_clusters_due || are_members_due_ || are_wheels_due_;
 }
 
 /// Gives each member the angular impulse that it has lost, without moving its supports. A free piece would be pushed by this:
@@ -428,18 +461,18 @@ void Spin::add_momenta(const Problem& problem, Parts& parts) {
 
 void Spin::note(const Problem& problem, const Holds& all, Connection connection) {
   begin(problem);
-  are_clusters_noted_ = connection == Connection::rows_and_forces;
-  if (are_clusters_noted_)
-    find_free_clusters(problem, all);
+  if (std::exchange(noted_connection_, connection) != connection) noted_.part_of.clear();
+  if (connection == Connection::rows_and_forces)
+    find_free_clusters(problem, all, noted_);
   else
-    find_parts(problem, Connection::rows, all, pieces_);
-  add_momenta(problem, noted());
-  for (Part& part : noted().parts) part.wanted_momentum = part.momentum, part.wanted_angular = part.angular;
+    find_parts(problem, connection, all, noted_);
+  add_momenta(problem, noted_);
+  for (Part& part : noted_.parts) part.wanted_momentum = part.momentum, part.wanted_angular = part.angular;
 }
 
 void Spin::expect(const Problem& problem, std::span<const Vec3> places, double h) {
   const auto add = [&](std::uint32_t i, const Vec3& impulse) {
-    Part& part = noted().of(i);
+    Part& part = noted_.of(i);
     part.wanted_momentum += impulse;
     part.wanted_angular += cross(places[i] - part.holds.pivot().value_or(Vec3{}), impulse);
   };
@@ -452,7 +485,7 @@ double Spin::restore(Problem& problem) {
   constexpr double most_gains[passes] = {
       100, 1e-9};  // of the kinetic energy: points almost in one place would spin extremely
   constexpr double tolerance = 1e-9;
-  Parts& parts = noted();
+  Parts& parts = noted_;
   double most_lost = 0;
   for (const double most_gain : most_gains) {
     add_momenta(problem, parts);

@@ -26,7 +26,8 @@ class Spin {
  public:
   /// After a change of structure.
   void forget() {
-    pieces_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear();
+    pieces_.part_of.clear(), touching_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear();
+    noted_.part_of.clear();
     wheels_.forget();
   }
   /// After a change of masses alone.
@@ -34,7 +35,7 @@ class Spin {
 
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
-  /// along the line at the start. Members and wheels get theirs first, then pieces and clusters the remainder. Velocities are those after
+  /// along the line at the start. Members and wheels get theirs first, then pieces, what touches and clusters the remainder. Velocities are those after
   /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
   /// from the rest of its motion, and others do without. `unbalanced`: forces that the solution leaves over at the points, N:
   /// its moment is lost, too. Returns whether velocities have changed.
@@ -70,6 +71,7 @@ class Spin {
   };
   struct Part : Sums {  // a piece, a cluster or a member
     Holds holds;
+    bool touches = false;        ///< by a contact that acts, of pieces
     bool is_kept = false;        ///< nothing holds it, or a single point at rest
     bool is_rigid = false;       ///< a free body alone, whose motion has no rest
     bool is_due = false;         ///< it has lost something
@@ -103,8 +105,10 @@ class Spin {
   bool find_members(const Problem&);
   void find_supports(const Problem&);
   double turn_members(Problem&, double most_gain);
+  bool find_touching(const Problem&, const Holds& all);
+  static void add_given(const Parts& finer, Parts& coarser);
   bool find_clusters(const Problem&, const Holds& all);
-  void find_free_clusters(const Problem&, const Holds& all);
+  void find_free_clusters(const Problem&, const Holds& all, Parts&);
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
                           double h, Parts&);
   static void find_motions(const Problem&, Parts&);
@@ -115,10 +119,10 @@ class Spin {
   void find_pushed(const Problem&);
   static void add_momenta(const Problem&, Parts&);
 
-  std::uint64_t acting_version_ = 0;  // of the problem, when the parts were found
-  Parts pieces_, clusters_, members_;
-  bool are_clusters_noted_ = false;
-  Parts& noted() { return are_clusters_noted_ ? clusters_ : pieces_; }
+  std::uint64_t acting_version_ = 0;              // of the problem, when the parts were found
+  Parts pieces_, touching_, clusters_, members_;  // connected by joints, by rows, by rows and forces, by lengths
+  Parts noted_;
+  Connection noted_connection_ = Connection::rows;
   Wheels wheels_;
   // One entry for each member.
   std::vector<Support> supports_;

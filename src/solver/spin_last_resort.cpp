@@ -8,7 +8,7 @@ namespace iota::solver {
 double Spin::move_rigidly(Problem& problem, double h, const Holds& all) {
   constexpr double kept = 0.5;  // of the motion that is not rigid
   begin(problem);
-  find_free_clusters(problem, all);
+  find_free_clusters(problem, all, clusters_);
   auto& [clusters, cluster_of] = clusters_;
   for (Part& cluster : clusters) {
     cluster.mass = 0, cluster.center = cluster.momentum = cluster.lost = {};

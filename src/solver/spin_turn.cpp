@@ -91,7 +91,7 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
   constexpr double same = 1e-9;
   for (std::uint32_t k = 0; k < pieces_.parts.size(); ++k) {
     const Part& piece = pieces_.parts[k];
-    if (!piece.is_due) continue;
+    if (!piece.is_due || piece.touches) continue;  // an edge would turn into what it touches
     const Vec3 spin = turning(piece, piece.angular, problem.gravity);
     const bool hangs = piece.holds.count > 0 && problem.gravity != Vec3{};
     if (piece.kinetic - 0.5 * dot(spin, piece.angular) <= same * piece.kinetic)
