@@ -23,8 +23,9 @@ namespace {
 /// and slipping corners; a contact that sticks yields by a hundredth of that way, once (docs/contact.md).
 constexpr double normal_softness = 1e-8, tangent_softness = 1e-2;
 /// An overlap of a body that nothing else holds falls to a third in this time, s. A deeper one, in sizes of the body, is left
-/// alone, unless both move and nothing else holds them: parts of machines often begin in each other.
-constexpr double easing_time = 0.1, deepest = 0.1, deepest_of_moving = 0.3;
+/// alone, as parts of machines often begin in each other. Where nothing else holds them, two that move come out however deep they
+/// are, and what moves comes out of an obstacle that its middle is not in: a ball that was put a little too low fell for ever.
+constexpr double easing_time = 0.1, deepest = 0.1, deepest_of_moving = 0.3, half_buried = 0.5;
 
 /// The part of a contact in the key of its row against spinning; 0 and 1 are those against rolling.
 constexpr std::uint8_t spin_row = 2;
@@ -351,7 +352,8 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
     const auto known = std::find_if(former.begin(), former.end(),
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
-    if (is_new && t.gap < -most && !((both_move || are_known(t, p)) && meeting.is_eased())) continue;
+    const auto may_come_out = [&] { return both_move || t.gap >= -half_buried * motion.size || are_known(t, p); };
+    if (is_new && t.gap < -most && !(may_come_out() && meeting.is_eased())) continue;
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,
