@@ -61,6 +61,7 @@ class Spin {
   double move_rigidly(Problem&, double h, const Holds& all);
 
  private:
+  /// Sums over the points of a part.
   struct Sums {
     double mass = 0, kinetic = 0;  ///< of the motion relative to the center
     Vec3 center;                   ///< of mass, or the point that holds the part, m
