@@ -36,6 +36,7 @@ it("no picture of a swap differs from the one before by more than a fifth of wha
       const { viewer: { renderer, scene, camera }, world: { entities: { body } } } = iota.page;
       const gl = renderer.getContext();
       const take = (seconds: number): Uint8Array => {
+        body.update(seconds, performance.now());  // as the page does before each picture: lists the bodies that are drawn
         Object.getPrototypeOf(body).draw.call(body, seconds);
         renderer.render(scene, camera);
         const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
