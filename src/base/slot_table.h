@@ -40,7 +40,7 @@ class SlotTable {
     --alive_count_;
   }
 
-  bool is_alive(std::uint32_t slot) const { return slot < items_.size() && (generations_[slot] & 1u); }
+  bool is_alive(std::uint32_t slot) const { return slot < items_.size() && is_used(slot); }
   bool contains(IdType id) const { return is_alive(id.slot) && generations_[id.slot] == id.generation; }
   IdType id(std::uint32_t slot) const { return {slot, generations_[slot]}; }
 
@@ -53,12 +53,12 @@ class SlotTable {
   template <class Visit>
   void for_each(Visit visit) const {
     for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
-      if (generations_[slot] & 1u) visit(slot, items_[slot]);
+      if (is_used(slot)) visit(slot, items_[slot]);
   }
   template <class Visit>
   void for_each(Visit visit) {
     for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
-      if (generations_[slot] & 1u) visit(slot, items_[slot]);
+      if (is_used(slot)) visit(slot, items_[slot]);
   }
 
   /// Ids of all live objects, in the order of slots.
@@ -81,6 +81,7 @@ class SlotTable {
   }
 
  private:
+  bool is_used(std::uint32_t slot) const { return generations_[slot] & 1u; }
   /// Whether each slot is alive or in the free list exactly once: bytes from outside may be inconsistent.
   bool is_consistent() const {
     if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) return false;

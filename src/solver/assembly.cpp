@@ -309,16 +309,20 @@ void Assembly::add_to_pair(const BlockPattern::PairSlot& slot, double value) {
     for (int r = 0; r < 3; ++r) factor_.upper()[slot.offset + r * (s + 1)] += value;
 }
 
+template <Storage T, class C, class Between>
+void Assembly::add_isotropic_curvature(const C& c, const typename ConstraintPool<C>::Slots& slots, Between between) {
+  for (int i = 0, pair = 0; i < c.node_count(); ++i) {
+    add_to_node(c.nodes[i], between(i, i));
+    for (int j = i + 1; j < c.node_count(); ++j, ++pair) add_to_pair<T>(slots.pairs[pair], between(i, j));
+  }
+}
+
 template <Storage T, class C>
 void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots& slots, const Stage& stage,
                              const Vec3* x, const double* lambda, bool clamp) {
-  if constexpr (std::is_same_v<C, BilinearConstraint>) {
+  if constexpr (requires { c.curvature_of_arms(lambda[0], clamp); }) {
     const auto of_arms = c.curvature_of_arms(lambda[0], clamp);
-    for (std::uint32_t i = 0, pair = 0; i < c.count; ++i) {
-      add_to_node(c.nodes[i], c.curvature_between(of_arms, i, i));
-      for (std::uint32_t j = i + 1; j < c.count; ++j, ++pair)
-        add_to_pair<T>(slots.pairs[pair], c.curvature_between(of_arms, i, j));
-    }
+    add_isotropic_curvature<T>(c, slots, [&](int i, int j) { return c.curvature_between(of_arms, i, j); });
     return;
   }
   Mat3 blocks[C::max_nodes * (C::max_nodes + 1) / 2];
@@ -501,11 +505,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       } else {
         for (int r = 0; r < C::rows; ++r)
           lambda[r] = (is_mid_point ? 0.5 : 1) * (clamp ? std::max(pool.multiplier(k)[r], 0.0) : pool.multiplier(k)[r]);
-        for (int i = 0, pair = 0; i < c.node_count(); ++i) {
-          add_to_node(c.nodes[i], c.curvature(lambda, i, i));
-          for (int j = i + 1; j < c.node_count(); ++j, ++pair)
-            add_to_pair<T>(slots.pairs[pair], c.curvature(lambda, i, j));
-        }
+        add_isotropic_curvature<T>(c, slots, [&](int i, int j) { return c.curvature(lambda, i, j); });
       }
     }
   }

@@ -134,6 +134,9 @@ class Assembly {
   void add_to_node(std::uint32_t node, double value);
   template <Storage T>
   void add_to_pair(const BlockPattern::PairSlot&, double value);
+  /// Of rows whose curvature is a multiple of the identity for each pair of nodes.
+  template <Storage T, class C, class Between>
+  void add_isotropic_curvature(const C&, const typename ConstraintPool<C>::Slots&, Between);
   template <Storage T, class C>
   void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const Vec3* x,
                      const double* lambda, bool clamp);
