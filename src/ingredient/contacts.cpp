@@ -327,6 +327,16 @@ class Meeting {
   const Material &one_ = *model_.material(first_), &other_ = *model_.material(second_);
 };
 
+/// Once for each body.
+void tell_that_it_is_buried(Model& model, std::uint32_t first, std::uint32_t second, double depth) {
+  const auto [mover, other] = has_points(model.bodies[first]) ? std::pair(first, second) : std::pair(second, first);
+  if (std::ranges::find(model.told_as_buried, mover) != model.told_as_buried.end()) return;
+  model.told_as_buried.push_back(mover);
+  model.notes.push_back(text("body ", mover, " is ", depth, " m deep in body ", other,
+                             ", over half of its size, and will pass through it; place it outside or let it ignore "
+                             "that body"));
+}
+
 }  // namespace
 
 void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
@@ -353,7 +363,10 @@ void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std
                                     [&](std::uint32_t slot) { return is_same(model.contacts[slot], p, t); });
     const bool is_new = known == former.end();
     const auto may_come_out = [&] { return both_move || t.gap >= -half_buried * motion.size || are_known(t, p); };
-    if (is_new && t.gap < -most && !(may_come_out() && meeting.is_eased())) continue;
+    if (is_new && t.gap < -most && !(meeting.is_eased() && may_come_out())) {
+      if (!both_move && meeting.is_eased()) tell_that_it_is_buried(model, first, second, -t.gap);
+      continue;
+    }
     Contact fresh;
     fresh.p = p, fresh.q = q;
     fresh.part = t.part, fresh.feature = t.feature, fresh.other_part = t.other_part,
@@ -453,7 +466,10 @@ void Contacts::end(Model& model, std::uint32_t body) {
   end_if(model, body, false, [](const Contact&) { return true; });
 }
 
-void Contacts::forget_body(Model& model, std::uint32_t body) { end(model, body); }
+void Contacts::forget_body(Model& model, std::uint32_t body) {
+  end(model, body);
+  std::erase(model.told_as_buried, body);
+}
 
 void Contacts::drop(Model& model, std::uint32_t particle) { end(model, model.particles[particle].body); }
 

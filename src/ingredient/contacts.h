@@ -70,6 +70,7 @@ class Contacts : public NoAnswers {
   struct Tables {
     model::EndTable<Contact, Id<"contact">> contacts;  ///< the ends are bodies
     std::uint64_t restores = 0;                        ///< of this model; not saved
+    std::vector<std::uint32_t> told_as_buried;         ///< bodies that a note has been made of; not saved
 
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {

@@ -2,6 +2,7 @@
 // Bodies that rest, slide and roll on obstacles, judged from places and velocities.
 #include "step/contacts.h"
 
+#include "base/text.h"
 #include "gravity.h"
 
 #include <iota/system.h>
@@ -267,13 +268,17 @@ TEST(Contacts, leave_alone_what_begins_deep_in_an_obstacle_and_ease_out_what_has
         eased.push_back(
             make_solid(system, shape, {.position = {1 + 0.5 * static_cast<double>(eased.size()), height, 0}}));
     double fastest = 0;
+    std::vector<std::string> warnings;
     for (int i = 0; i < 240; ++i) {
-      (void)system.step(1.0 / 120);
+      const StepReport report = system.step(1.0 / 120);
+      warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
       for (const BodyId body : eased) fastest = std::max(fastest, norm(system.bodies().velocity(body)));
     }
     EXPECT_LT(system.bodies().center_of_mass(deep).y, -10);
     for (const BodyId body : eased) EXPECT_NEAR(system.bodies().center_of_mass(body).y, 0.1, 1e-5);
     EXPECT_LT(fastest, 0.05);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find(text("body ", deep.slot, " is ")), std::string::npos) << warnings[0];
   }
 }
 
