@@ -271,8 +271,9 @@ Complaint check_bounds(std::uint64_t seed) {
   (void)system.step(1e-6);
   constexpr double h = 1.0 / 120;
   double work = 0, paths = 0, inner_spin = 0, by_tolerance = 1e-12;
+  const double angle_tolerance = mode == IntegrationMode::plausible ? 2e-9 : 2e-11;  // of a row, rad
   for (Link& link : links) {
-    by_tolerance += 2e-11 * (std::abs(link.motor) + link.friction);  // rad of a row
+    by_tolerance += angle_tolerance * (std::abs(link.motor) + link.friction);
     const double spin = system.bodies().angular_velocity(link.body).z;
     link.angle = direction(system, link.body), link.moved = h * std::abs(spin - std::exchange(inner_spin, spin));
     paths += link.friction * link.moved;

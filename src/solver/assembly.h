@@ -134,7 +134,7 @@ class Assembly {
   void add_to_node(std::uint32_t node, double value);
   template <Storage T>
   void add_to_pair(const BlockPattern::PairSlot&, double value);
-  /// Of rows whose curvature is a multiple of the identity for each pair of nodes.
+  /// For rows whose curvature is a multiple of the identity for each pair of nodes.
   template <Storage T, class C, class Between>
   void add_isotropic_curvature(const C&, const typename ConstraintPool<C>::Slots&, Between);
   template <Storage T, class C>

@@ -198,8 +198,9 @@ def test_an_action_that_raises_is_shown_on_the_page_with_its_line(
     line = burn.__code__.co_firstlineno + 2
     with PageClient(run_world(world)) as page:
         page.send("action", name="burn", body=NOTHING)
-        (notice,) = page.wait_for(lambda: page.notices)
-        assert notice["level"] == 2 and "'burn' failed" in notice["title"]
+        # A busy machine has the world tell that it is slow, too.
+        (notice,) = page.wait_for(lambda: [card for card in page.notices if card["level"] == 2])
+        assert "'burn' failed" in notice["title"]
         assert notice["text"] == f"RuntimeError: too hot (test_world.py, line {line})"
         assert "continues" in notice["hint"]
         step = page.last["poses"]["step"]
