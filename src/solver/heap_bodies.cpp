@@ -30,17 +30,18 @@ bool HeapBodies::find(const Problem& problem) {
   all.clear(), copies.clear(), couplings.clear();
   is_target.assign(problem.size(), 0);
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
-    if (c.count == 1) is_target[c.nodes[0]] = 1;
-  const std::uint32_t count = find_pieces(problem, Connection::lengths, piece_);
+    if (c.is_nail()) is_target[c.nodes[0]] = 1;
+  const std::uint32_t count = find_pieces(problem, Connection::lengths, pieces_);
+  const std::span<const std::uint32_t> piece_of = pieces_.of;
   std::vector<std::uint32_t> sizes(count, 0), lengths(count, 0);
-  for (const std::uint32_t piece : piece_) ++sizes[piece];
+  for (const std::uint32_t piece : piece_of) ++sizes[piece];
   const auto for_each_length = [&](auto visit) {
     if (!problem.has_used<DistanceConstraint>()) return;
     const auto& pool = problem.pool_of<DistanceConstraint>();
     for (std::size_t i = 0; i < pool.items.size(); ++i)
       if (are_equations(pool, i)) visit(pool.items[i].nodes[0], pool.items[i].nodes[1]);
   };
-  for_each_length([&](std::uint32_t a, std::uint32_t) { ++lengths[piece_[a]]; });
+  for_each_length([&](std::uint32_t a, std::uint32_t) { ++lengths[piece_of[a]]; });
   const auto is_body = [&](std::uint32_t piece) {
     return sizes[piece] <= HeapBody::most_points && lengths[piece] == sizes[piece] * (sizes[piece] - 1) / 2;
   };
@@ -49,8 +50,8 @@ bool HeapBodies::find(const Problem& problem) {
   std::vector<std::uint32_t> body_of_piece(count, none);
   bool are_bodies = true;
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
-    std::uint32_t& number = body_of_piece[piece_[node]];
-    if (!is_body(piece_[node])) {
+    std::uint32_t& number = body_of_piece[piece_of[node]];
+    if (!is_body(piece_of[node])) {
       are_bodies = false;
       continue;
     }
@@ -61,12 +62,12 @@ bool HeapBodies::find(const Problem& problem) {
   if (!are_bodies) {
     std::vector<std::vector<std::uint32_t>> neighbors(problem.size());
     for_each_length([&](std::uint32_t a, std::uint32_t b) {
-      if (!is_body(piece_[a])) neighbors[a].push_back(b), neighbors[b].push_back(a);
+      if (!is_body(piece_of[a])) neighbors[a].push_back(b), neighbors[b].push_back(a);
     });
     for (auto& list : neighbors) std::sort(list.begin(), list.end());
     bodies_at_.assign(problem.size(), {});
     for (std::uint32_t a = 0; a < problem.size(); ++a) {
-      if (is_body(piece_[a])) continue;
+      if (is_body(piece_of[a])) continue;
       if (neighbors[a].empty()) add_body(a, a, neighbors);
       for (const std::uint32_t b : neighbors[a])
         if (b > a && !have_body(a, b)) add_body(a, b, neighbors);
@@ -177,7 +178,7 @@ void HeapBodies::find_places(const Problem& problem, double from, double to, std
   }
   next = now;
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>()) {
-    if (c.count != 1 || !all[owner[c.nodes[0]]].is_driven) continue;
+    if (!c.is_nail() || !all[owner[c.nodes[0]]].is_driven) continue;
     now[c.nodes[0]] = c.target_start + from * (c.target - c.target_start);
     next[c.nodes[0]] = c.target_start + to * (c.target - c.target_start);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "math/mat3.h"
+#include "solver/pieces.h"
 #include "solver/problem.h"
 
 #include <array>
@@ -81,7 +82,7 @@ struct HeapBodies {
   bool share_masses(const Problem&);
   std::uint32_t place_of(std::uint32_t body, std::uint32_t node) const;
 
-  std::vector<std::uint32_t> piece_;                   // of each node
+  Pieces pieces_;
   std::vector<std::vector<std::uint32_t>> bodies_at_;  // each node of a piece of several bodies
 };
 

@@ -40,6 +40,13 @@ struct Holds {
     if constexpr (std::is_same_v<C, AffineConstraint>)
       if (!c.is_moving()) place = c.target;
   }
+  /// It hangs on a nail; the same place counts once.
+  void add_nail(const AffineConstraint& nail) {
+    if (nail.is_moving())
+      ++count, place = std::nullopt;
+    else if (!(count == 1 && place == nail.target))
+      ++count, place = nail.target;
+  }
 };
 
 }  // namespace iota::solver

@@ -51,7 +51,9 @@ void Integrator::forget_past(Problem& problem) {
 
 void Integrator::forget_steps(Problem& problem) {
   newton_.forget_factors();
-  may_be_in_pieces_ = false, pieces_.clear();
+  const auto affines = problem.items_of<AffineConstraint>();
+  may_be_in_pieces_ = std::any_of(affines.begin(), affines.end(), [](const AffineConstraint& c) { return c.is_nail(); });
+  pieces_.clear();
   problem.forget_acting();
   acting_version_ = problem.acting_version();
   has_advanced_ = is_taken_back_ = false;
@@ -163,13 +165,13 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
 void Integrator::note_beginning() {
   may_have_been_in_pieces_ = may_be_in_pieces_;
   piece_count_before_ = pieces_.size();
-  if (!pieces_.empty()) piece_of_before_.assign(piece_of_.begin(), piece_of_.end());
+  if (!pieces_.empty()) connected_before_ = connected_;
 }
 
 void Integrator::begin_like_the_latest() {
   may_be_in_pieces_ = may_have_been_in_pieces_;
   pieces_.resize(piece_count_before_);
-  if (!pieces_.empty()) piece_of_.assign(piece_of_before_.begin(), piece_of_before_.end());
+  if (!pieces_.empty()) connected_ = connected_before_;
 }
 
 // Finds out how the world outside may act on the problem during the step.

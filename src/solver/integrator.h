@@ -167,16 +167,17 @@ class Integrator {
   bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
   bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
   void give_energy_back_by_piece(Problem&, const Stage&, AdvanceReport&);
+  static bool may_turn(const Problem&);
   void turn_body(Problem&, const Stage&, double missing, const RigidMotion&, std::uint32_t piece, AdvanceReport&);
   void find_pieces_if_due(const Problem&);
   void find_holds_of_pieces(const Problem&);
   RigidMotion rigid_motion_of_piece(const Problem&, std::uint32_t piece) const;
-  void scale_motions_of_pieces(Problem&, double missing);
+  void scale_motions_of_pieces(Problem&, double missing, AdvanceReport&);
   void keep_correction(const Problem&);
 
   double advance_explicitly(Problem&, double h, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
-  bool is_smooth(Problem&, double h) const;
+  bool is_smooth(Problem&, double h);
   bool begin_motion(Problem&, bool has_accelerations, AdvanceReport&);
   struct FreeMotion {
     static constexpr std::uint32_t all = UINT32_MAX;
@@ -241,15 +242,15 @@ class Integrator {
     double taken = 0, kinetic = 0;
   };
   std::vector<Piece> pieces_;            // of a disconnected problem; else none
-  std::vector<std::uint32_t> piece_of_;  // of each node
-  DisjointSets room_for_pieces_;
+  Pieces connected_;
+  RoomForPieces room_for_pieces_;
   std::vector<FreeMotion> free_motions_;  // of the explicit sub-step at hand
 
   // The state with which the latest `advance` began; see take_back.
   bool has_advanced_ = false, is_taken_back_ = false;  // since the last change of structure
   bool may_have_been_in_pieces_ = false;
   std::size_t piece_count_before_ = 0;
-  std::vector<std::uint32_t> piece_of_before_;
+  Pieces connected_before_;
 };
 
 }  // namespace iota::solver

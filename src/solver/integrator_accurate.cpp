@@ -41,10 +41,13 @@ bool has_one_sided_springs(const Problem& problem) {
 }  // namespace
 
 // Explicit steps need rows at rest in time.
-bool Integrator::is_smooth(Problem& problem, double h) const {
+bool Integrator::is_smooth(Problem& problem, double h) {
   constexpr double most_parts = 100;  // of a step by the springs of rows; shorter ones are stiff
   if (keeps_offsets_ || newton_.has_external()) return false;
-  if ((may_be_in_pieces_ || !pieces_.empty()) && has_one_sided_springs(problem)) return false;
+  if (has_one_sided_springs(problem)) {
+    find_pieces_if_due(problem);
+    if (!pieces_.empty()) return false;
+  }
   if (!problem.items_of<GripForce>().empty()) return false;
   if (drives_rows_) {
     bool moves = false;
@@ -189,19 +192,19 @@ void Integrator::find_free_motions(Problem& problem) {
       if (f.arm.is_internal()) continue;
       is_free = false;
       for (std::uint32_t i = 0; i < f.arm.count && !pieces_.empty(); ++i)
-        ++pieces_[piece_of_[f.arm.nodes[i]]].holds.count;
+        ++pieces_[connected_.of[f.arm.nodes[i]]].holds.count;
     }
   });
   if (pieces_.empty() && is_free) free_motions_.push_back({rigid_motion_of(problem)});
   for (std::uint32_t k = 0; k < pieces_.size(); ++k)
-    if (pieces_[k].holds.are_none()) free_motions_.push_back({rigid_motion_of(problem, piece_of_, k), k});
+    if (pieces_[k].holds.are_none()) free_motions_.push_back({rigid_motion_of(problem, connected_.of, k), k});
 }
 
 // It began `time` seconds before.
 void Integrator::keep_momenta(Problem& problem, const FreeMotion& free, double time) const {
   const RigidMotion& start = free.motion;
   const std::span<const std::uint32_t> piece_of =
-      free.piece == FreeMotion::all ? std::span<const std::uint32_t>{} : std::span(piece_of_);
+      free.piece == FreeMotion::all ? std::span<const std::uint32_t>{} : std::span(connected_.of);
   const RigidMotion now = rigid_motion_of(problem, piece_of, free.piece);
   const Vec3 drift = start.velocity + time * problem.gravity - now.velocity;
   const Vec3 turning = solve_semidefinite(now.inertia, start.angular_momentum - now.angular_momentum, 1e-12);
@@ -221,7 +224,7 @@ void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceR
   if (pieces_.empty())
     (void)give_energy_back(problem, Stage::projection(), energy_.missing, report);
   else
-    scale_motions_of_pieces(problem, energy_.missing);
+    scale_motions_of_pieces(problem, energy_.missing, report);
 }
 
 // Compares the solved step with one of half its length from the same start. With their accelerations a and a', the

@@ -176,13 +176,16 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
     return true;
   }
   const std::optional<RigidMotion> rigid = rigid_motion(problem);
-  if (rigid && problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty() &&
-      !(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
+  if (rigid && may_turn(problem) && !(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
     turn_body(problem, stage, missing, *rigid, FreeMotion::all, report);
     return true;
   }
   (void)change_kinetic_energy(problem, -missing, rigid);
   return true;
+}
+
+bool Integrator::may_turn(const Problem& problem) {
+  return problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty();
 }
 
 // A rigid body, or a piece, has no motion but the rigid one.
@@ -193,7 +196,7 @@ void Integrator::turn_body(Problem& problem, const Stage& stage, double missing,
   // By less than it turns in the step: a body at rest jumped by 1e-4 rad for the energy of its noise.
   turn_for_energy(problem, missing, step_length_ * norm(rigid.turning),
                   is_all ? holds_.pivot() : pieces_[piece].holds.pivot(),
-                  is_all ? std::span<const std::uint32_t>{} : std::span<const std::uint32_t>(piece_of_), piece);
+                  is_all ? std::span<const std::uint32_t>{} : std::span<const std::uint32_t>(connected_.of), piece);
   double work = 0;
   for (std::size_t i = 0; i < problem.force.size(); ++i)
     work += dot(problem.force[i], problem.position[i] - newton_.room()[i]);
@@ -203,36 +206,43 @@ void Integrator::turn_body(Problem& problem, const Stage& stage, double missing,
 
 void Integrator::find_pieces_if_due(const Problem& problem) {
   if (!std::exchange(may_be_in_pieces_, false)) return;
-  const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_, room_for_pieces_);
+  const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, connected_, room_for_pieces_);
   pieces_.resize(count > 1 ? count : 0);
 }
 
 void Integrator::find_holds_of_pieces(const Problem& problem) {
   for (Piece& piece : pieces_) piece = {};
-  problem.for_each_acting([&](const auto& pool, std::size_t i) {
-    const auto& c = pool.items[i];
-    pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
-  });
+  add_holds(problem, Connection::rows_and_forces, connected_,
+            [&](std::uint32_t piece) -> Holds& { return pieces_[piece].holds; });
 }
 
 // As that of a whole problem; none if it is held otherwise.
 RigidMotion Integrator::rigid_motion_of_piece(const Problem& problem, std::uint32_t piece) const {
   const Holds& holds = pieces_[piece].holds;
-  if (const auto pivot = holds.pivot()) return rigid_motion_about(problem, *pivot, piece_of_, piece);
-  return holds.are_none() ? rigid_motion_of(problem, piece_of_, piece) : RigidMotion{};
+  if (const auto pivot = holds.pivot()) return rigid_motion_about(problem, *pivot, connected_.of, piece);
+  return holds.are_none() ? rigid_motion_of(problem, connected_.of, piece) : RigidMotion{};
 }
 
-// After an explicit sub-step. Its error is that of all pieces together, so all motions beside the rigid ones share it.
-void Integrator::scale_motions_of_pieces(Problem& problem, double missing) {
+// After an explicit sub-step. Its error is that of all pieces together, so all motions beside the rigid ones share it. Without
+// such motions each piece turns for a share, as its energy is of the whole.
+void Integrator::scale_motions_of_pieces(Problem& problem, double missing, AdvanceReport& report) {
   find_holds_of_pieces(problem);
-  double rest = energy_.kinetic;
-  for (std::uint32_t k = 0; k < pieces_.size(); ++k) rest -= rigid_motion_of_piece(problem, k).kinetic_energy();
-  if (!(std::abs(missing) < rest)) return;
+  double turning = 0;
+  for (std::uint32_t k = 0; k < pieces_.size(); ++k) turning += rigid_motion_of_piece(problem, k).kinetic_energy();
+  const double rest = energy_.kinetic - turning;
+  if (!(std::abs(missing) < rest)) {
+    for (std::uint32_t k = 0; k < pieces_.size() && may_turn(problem); ++k) {
+      const RigidMotion rigid = rigid_motion_of_piece(problem, k);
+      if (const double own = rigid.kinetic_energy(); own > 0)
+        turn_body(problem, Stage::projection(), missing * (own / turning), rigid, k, report);
+    }
+    return;
+  }
   const double factor = std::sqrt(1 + missing / rest);
   for (std::uint32_t k = 0; k < pieces_.size(); ++k) {
     const RigidMotion rigid = rigid_motion_of_piece(problem, k);
     for (std::size_t i = 0; i < problem.size(); ++i)
-      if (piece_of_[i] == k) scale_beside(rigid, factor, problem, i);
+      if (connected_.of[i] == k) scale_beside(rigid, factor, problem, i);
   }
   energy_.kinetic += missing, energy_.total += missing, energy_.missing -= missing;
 }
@@ -240,10 +250,9 @@ void Integrator::scale_motions_of_pieces(Problem& problem, double missing) {
 // After a cut both halves stay in one problem for a while, but their energies are balanced separately.
 void Integrator::give_energy_back_by_piece(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const auto earlier = newton_.velocities_before();
-  const bool may_turn = problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty();
   find_holds_of_pieces(problem);
   const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
-    Piece& piece = pieces_[piece_of_[a]];
+    Piece& piece = pieces_[connected_.of[a]];
     const double kinetic = 0.5 * mass * dot(problem.velocity[a], problem.velocity[b]);
     piece.kinetic += kinetic, piece.taken += 0.5 * mass * dot(earlier[a], earlier[b]) - kinetic;
   };
@@ -255,13 +264,13 @@ void Integrator::give_energy_back_by_piece(Problem& problem, const Stage& stage,
     const RigidMotion rigid = rigid_motion_of_piece(problem, k);
     const double rest = piece.kinetic - rigid.kinetic_energy();
     if (!(piece.taken <= rest)) {
-      if (may_turn && (piece.holds.are_none() || piece.holds.pivot()))
+      if (may_turn(problem) && (piece.holds.are_none() || piece.holds.pivot()))
         turn_body(problem, stage, piece.taken, rigid, k, report);
       continue;
     }
     const double factor = std::sqrt(1 + piece.taken / rest);
     for (std::size_t i = 0; i < problem.size(); ++i)
-      if (piece_of_[i] == k) scale_beside(rigid, factor, problem, i);
+      if (connected_.of[i] == k) scale_beside(rigid, factor, problem, i);
   }
   energy_.measure_kinetic(problem);
 }

@@ -2,37 +2,81 @@
 #include "solver/pieces.h"
 
 #include <algorithm>
-#include <type_traits>
+#include <array>
 
 namespace iota::solver {
 
-std::uint32_t find_pieces(const Problem& problem, Connection connection, std::vector<std::uint32_t>& piece_of,
-                          DisjointSets& connected) {
-  connected.reset(problem.size());
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {  // of two roots; the lowest of a piece is its leader
-    connected.set_parent(std::max(a, b), std::min(a, b));
-    return std::min(a, b);
-  };
-  const auto join_nodes = [&](std::span<const std::uint32_t> nodes) {
-    std::uint32_t leader = connected.root(nodes.front());
-    for (const std::uint32_t node : nodes.subspan(1)) leader = join(leader, connected.root(node));
-  };
+namespace {
+
+/// visit(nodes): what a connection joins.
+template <class Visit>
+void for_each_connected(const Problem& problem, Connection connection, Visit visit) {
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
     if (connection == Connection::lengths && !std::is_same_v<C, DistanceConstraint>) return;
     if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
-    join_nodes(pool.nodes_of(pool.items[i]));
+    visit(pool.nodes_of(pool.items[i]));
   });
   if (connection == Connection::rows_and_forces)
     problem.for_each_force_pool([&](const auto& pool) {
-      for (const auto& force : pool.items) join_nodes(pool.nodes_of(force));
+      for (const auto& force : pool.items) visit(pool.nodes_of(force));
     });
-  for (const auto& c : problem.mass_couplings) join(connected.root(c.a), connected.root(c.b));
+  for (const auto& c : problem.mass_couplings) visit(std::array{c.a, c.b});
+}
+
+/// Returns whether there is a nail.
+bool find_nails(const Problem& problem, std::vector<std::uint32_t>& nail_of) {
+  const auto affines = problem.items_of<AffineConstraint>();
+  nail_of.clear();
+  for (std::uint32_t i = 0; i < affines.size(); ++i) {
+    if (!affines[i].is_nail()) continue;
+    if (nail_of.empty()) nail_of.assign(problem.size(), Pieces::none);
+    nail_of[affines[i].nodes[0]] = i;
+  }
+  return !nail_of.empty();
+}
+
+}  // namespace
+
+std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces& pieces, RoomForPieces& room) {
+  constexpr std::uint32_t none = Pieces::none, several = none - 1;
+  DisjointSets& connected = room.connected;
+  connected.reset(problem.size());
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {  // the lowest of a piece is its leader
+    const std::uint32_t p = connected.root(a), q = connected.root(b);
+    connected.set_parent(std::max(p, q), std::min(p, q));
+  };
+  const bool end_at_nails = connection != Connection::lengths && find_nails(problem, pieces.nail_of);
+  const auto is_nail = [&](std::uint32_t node) { return end_at_nails && pieces.nail_of[node] != none; };
+  for_each_connected(problem, connection, [&](std::span<const std::uint32_t> nodes) {
+    std::uint32_t nail = none, other = none;  // the last ones
+    for (const std::uint32_t node : nodes) {
+      std::uint32_t& last = is_nail(node) ? nail : other;
+      if (last != none) join(last, node);
+      last = node;
+    }
+  });
+  auto& hanging = room.hanging;
+  hanging.assign(end_at_nails ? problem.size() : 0, none);
+  if (end_at_nails)
+    for_each_connected(problem, connection, [&](std::span<const std::uint32_t> nodes) {
+      for (const std::uint32_t nail : nodes)
+        for (const std::uint32_t node : nodes)
+          if (is_nail(nail) && !is_nail(node)) {
+            const std::uint32_t leader = connected.root(node);
+            std::uint32_t& found = hanging[connected.root(nail)];
+            found = found == none || found == leader ? leader : several;
+          }
+    });
+  for (std::uint32_t node = 0; node < hanging.size(); ++node)
+    if (hanging[node] < several) join(node, hanging[node]);
   std::uint32_t count = 0;
-  piece_of.resize(problem.size());
+  pieces.of.resize(problem.size()), pieces.are_nails.clear();
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
     const std::uint32_t leader = connected.root(node);
-    piece_of[node] = leader == node ? count++ : piece_of[leader];
+    pieces.of[node] = leader == node ? count++ : pieces.of[leader];
   }
+  for (std::uint32_t node = 0; node < hanging.size(); ++node)
+    if (hanging[node] == several) pieces.are_nails.resize(count), pieces.are_nails[pieces.of[node]] = 1;
   return count;
 }
 

@@ -2,9 +2,13 @@
 #pragma once
 
 #include "base/disjoint_sets.h"
+#include "solver/holds.h"
 #include "solver/problem.h"
 
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace iota::solver {
@@ -13,12 +17,72 @@ namespace iota::solver {
 /// act but contacts; contacts, too; or forces between points as well.
 enum class Connection : std::uint8_t { lengths, joints, rows, rows_and_forces };
 
-/// Numbers the pieces by their lowest nodes; `piece_of` has that of each node. Returns how many there are. What acts may
-/// change in each step, so the caller keeps the room.
-std::uint32_t find_pieces(const Problem&, Connection, std::vector<std::uint32_t>& piece_of, DisjointSets& room);
-inline std::uint32_t find_pieces(const Problem& problem, Connection connection, std::vector<std::uint32_t>& piece_of) {
-  DisjointSets room;
-  return find_pieces(problem, connection, piece_of, room);
+/// Which points of a problem are connected. Nails join nothing, but for `lengths`: what hangs on one nail swings by itself. A nail
+/// (or some that rows connect) belongs to what hangs on it; if that is several pieces, it is one of its own.
+struct Pieces {
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  std::vector<std::uint32_t> of;        ///< each node; numbered by their lowest nodes
+  std::vector<std::uint8_t> are_nails;  ///< each piece: several others hang on it. Empty if there is no such piece
+  std::vector<std::uint32_t> nail_of;   ///< each node: its nail among the affine constraints, or `none`. Empty without nails
+
+  bool is_nail(std::uint32_t piece) const { return !are_nails.empty() && are_nails[piece] != 0; }
+  /// The piece that all of the nodes belong to, or hang on by a nail; `none` if these are several, or nails alone.
+  std::uint32_t of_all(std::span<const std::uint32_t> nodes) const {
+    std::uint32_t found = none;
+    for (const std::uint32_t node : nodes) {
+      const std::uint32_t piece = of[node];
+      if (piece == found || is_nail(piece)) continue;
+      if (found != none) return none;
+      found = piece;
+    }
+    return found;
+  }
+};
+
+/// What acts may change in each step, so the caller keeps this.
+struct RoomForPieces {
+  DisjointSets connected;
+  std::vector<std::uint32_t> hanging;  // on the leader of nails that are connected
+};
+
+/// Returns how many pieces there are.
+std::uint32_t find_pieces(const Problem&, Connection, Pieces&, RoomForPieces&);
+inline std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces& pieces) {
+  RoomForPieces room;
+  return find_pieces(problem, connection, pieces, room);
+}
+
+/// Adds to `holds_of(piece)` how each piece is held, by rows and by the nails that it hangs on; with `joints` contacts do not count.
+template <class HoldsOf>
+void add_holds(const Problem& problem, Connection connection, const Pieces& pieces, HoldsOf holds_of) {
+  if (pieces.are_nails.empty()) {
+    problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+      if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
+      holds_of(pieces.of[pool.nodes_of(pool.items[i]).front()]).add(pool.items[i]);
+    });
+    return;
+  }
+  const auto nails = problem.items_of<AffineConstraint>();
+  const auto add_nails = [&](std::span<const std::uint32_t> nodes, std::uint32_t piece) {
+    for (const std::uint32_t node : nodes)
+      if (pieces.is_nail(pieces.of[node])) holds_of(piece).add_nail(nails[pieces.nail_of[node]]);
+  };
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+    if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
+    const auto nodes = pool.nodes_of(pool.items[i]);
+    const std::uint32_t piece = pieces.of_all(nodes);
+    if (piece != Pieces::none) holds_of(piece).add(pool.items[i]), add_nails(nodes, piece);
+  });
+  if (connection == Connection::rows_and_forces)
+    problem.for_each_force_pool([&](const auto& pool) {
+      for (const auto& force : pool.items) {
+        const auto nodes = pool.nodes_of(force);
+        if (const std::uint32_t piece = pieces.of_all(nodes); piece != Pieces::none) add_nails(nodes, piece);
+      }
+    });
+  for (std::uint32_t piece = 0; piece < pieces.are_nails.size(); ++piece)
+    if (pieces.is_nail(piece)) holds_of(piece).are_directions = true;  // it stays where it is
 }
 
 }  // namespace iota::solver

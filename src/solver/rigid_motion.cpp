@@ -9,6 +9,15 @@ namespace iota::solver {
 
 namespace {
 
+/// visit(mass, a, b) for each node a that counts, as the nail on which several rods hang may not: see Pieces.
+template <class Counts, class Visit>
+void for_each_coupling(const Problem& problem, Counts counts, Visit visit) {
+  for (const auto& c : problem.mass_couplings) {
+    if (counts(c.a)) visit(c.mass, c.a, c.b);
+    if (counts(c.b)) visit(c.mass, c.b, c.a);
+  }
+}
+
 /// The sums over a motion, in registers: in the record each addition would wait for the last one's memory.
 template <class Counts>
 void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
@@ -27,8 +36,7 @@ void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
     const auto node = static_cast<std::uint32_t>(i);
     if (counts(i)) add(problem.mass[i], node, node);
   }
-  for (const auto& c : problem.mass_couplings)
-    if (counts(c.a)) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
+  for_each_coupling(problem, counts, add);
   motion.inertia = {{{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}};
   motion.angular_momentum = momentum;
   motion.turning = solve_semidefinite(motion.inertia, motion.angular_momentum, 1e-12);
@@ -44,8 +52,9 @@ Vec3 torque_on(const Problem& problem, const RigidMotion& motion, bool is_free, 
   Vec3 moment;
   for (std::size_t i = 0; i < problem.size(); ++i)
     if (counts(i)) moment += problem.mass[i] * (problem.position[i] - motion.center);
-  for (const auto& c : problem.mass_couplings)
-    if (counts(c.a)) moment += c.mass * (problem.position[c.a] - motion.center + problem.position[c.b] - motion.center);
+  for_each_coupling(problem, counts, [&](double mass, std::uint32_t a, std::uint32_t) {
+    moment += mass * (problem.position[a] - motion.center);
+  });
   return torque + cross(moment, problem.gravity);
 }
 
@@ -61,12 +70,11 @@ RigidMotion rigid_motion_of(const Problem& problem, std::span<const std::uint32_
     motion.center += problem.mass[i] * problem.position[i];
     momentum += problem.mass[i] * problem.velocity[i];
   }
-  for (const auto& c : problem.mass_couplings) {
-    if (!counts(c.a)) continue;
-    motion.mass += 2 * c.mass;
-    motion.center += c.mass * (problem.position[c.a] + problem.position[c.b]);
-    momentum += c.mass * (problem.velocity[c.a] + problem.velocity[c.b]);
-  }
+  for_each_coupling(problem, counts, [&](double mass, std::uint32_t a, std::uint32_t) {
+    motion.mass += mass;
+    motion.center += mass * problem.position[a];
+    momentum += mass * problem.velocity[a];
+  });
   if (!(motion.mass > 0)) return {};
   motion.center *= 1 / motion.mass;
   motion.velocity = (1 / motion.mass) * momentum;
@@ -103,7 +111,10 @@ void turn_for_energy(Problem& problem, double energy, double most_angle, const s
     const Vec3 slope = -(cross(before.angular_momentum, before.turning) + torque);
     const double steepness = norm(slope), angle = energy / steepness;
     // Beside a principal axis the slope is round-off: a body would jump by up to the largest angle, and gain by the square.
-    const double curvature = 2 * before.kinetic_energy() + norm(torque);
+    // Along the line of a heavy rod only what is light and beside it has an inertia, and would be shot away.
+    const Vec3 left = cross((1 / steepness) * slope, before.angular_momentum);
+    const double curvature = 2 * before.kinetic_energy() + norm(torque) +
+                             dot(left, solve_semidefinite(before.inertia, left, 1e-12));
     const bool is_straight = std::abs(angle) * curvature <= most_curved * steepness;
     if (!(is_straight && std::abs(angle) <= std::min(largest_angle, most_angle) && std::abs(angle) > 1e-15)) return;
     const Quaternion turn = axis_angle((1 / steepness) * slope, angle);

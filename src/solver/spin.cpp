@@ -47,21 +47,21 @@ void Spin::begin(const Problem& problem) {
 
 // The parts are found once for a structure and the rows that act. What holds them is updated in each step, since nails move.
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
-  auto& [parts, part_of] = all_parts;
-  if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of, room_for_pieces_));
+  auto& [parts, connected] = all_parts;
+  if (connected.of.size() != problem.size())
+    parts.resize(find_pieces(problem, connection, connected, room_for_pieces_));
   const bool skips_contacts = connection == Connection::joints && problem.has_used<ContactConstraint>();
   for (Part& part : parts) part.holds = {}, part.touches = false;
   if (parts.size() == 1 && !skips_contacts)
     parts.front().holds = all;
   else
-    problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-      const C& c = pool.items[i];
-      if (skips_contacts && std::is_same_v<C, ContactConstraint>) {
-        for (const std::uint32_t node : pool.nodes_of(c)) parts[part_of[node]].touches = true;
-        return;
-      }
-      parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
-    });
+    add_holds(problem, connection, connected, [&](std::uint32_t part) -> Holds& { return parts[part].holds; });
+  if (skips_contacts) {
+    const auto& contacts = problem.pool_of<ContactConstraint>();
+    for (std::size_t i = 0; i < contacts.items.size(); ++i)
+      if (contacts.acts(i))
+        for (const std::uint32_t node : contacts.nodes_of(contacts.items[i])) all_parts.of(node).touches = true;
+  }
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
 }
 
@@ -72,9 +72,9 @@ void Spin::find_rigid_pieces(const Problem& problem) {
   for (Part& part : pieces_.parts) part.is_rigid = part.holds.are_none(), may_be = may_be || part.is_rigid;
   if (!may_be) return;
   counts_.assign(pieces_.parts.size(), {});
-  for (const std::uint32_t part : pieces_.part_of) ++counts_[part].nodes;
+  for (const std::uint32_t part : pieces_.connected.of) ++counts_[part].nodes;
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-    const std::uint32_t part = pieces_.part_of[pool.nodes_of(pool.items[i]).front()];
+    const std::uint32_t part = pieces_.connected.of[pool.nodes_of(pool.items[i]).front()];
     if constexpr (std::is_same_v<C, DistanceConstraint>)
       ++counts_[part].rods;
     else if constexpr (!std::is_same_v<C, ContactConstraint>)
@@ -99,14 +99,20 @@ bool Spin::find_members(const Problem& problem) {
     if constexpr (is_joint<C>) rows_of_joints += C::rows;
   });
   if (rows_of_joints < fewest_rows) return false;
-  auto& [members, member_of] = members_;
+  auto& [members, connected] = members_;
+  const std::vector<std::uint32_t>& member_of = connected.of;
   if (member_of.size() != problem.size()) {
-    members.resize(find_pieces(problem, Connection::lengths, member_of, room_for_pieces_));
-    piece_of_.resize(members.size());
+    members.resize(find_pieces(problem, Connection::lengths, connected, room_for_pieces_));
+    piece_of_.assign(members.size(), Pieces::none);
     nodes_of_.assign(members.size(), 0), rows_of_.assign(members.size(), 0);
     for (std::uint32_t i = 0; i < problem.size(); ++i) {
-      piece_of_[member_of[i]] = pieces_.part_of[i];
-      ++nodes_of_[member_of[i]];
+      const std::uint32_t own = pieces_.connected.of[i];
+      std::uint32_t &piece = piece_of_[member_of[i]], &nodes = nodes_of_[member_of[i]];
+      if (piece == Pieces::none || pieces_.connected.is_nail(piece))
+        piece = own;
+      else if (piece != own && !pieces_.connected.is_nail(own))
+        nodes = most_nodes;  // what hangs on one nail is not one body
+      ++nodes;
     }
     problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
       if constexpr (is_joint<C>)
@@ -159,13 +165,13 @@ void Spin::find_supports(const Problem& problem) {
     if constexpr (is_joint<C>)
       for (std::size_t item = 0; item < pool.items.size(); ++item) {
         const auto nodes = pool.nodes_of(pool.items[item]);
-        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.part_of[i]); })) continue;
+        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.connected.of[i]); })) continue;
         const Gradients<C> gradients(pool.items[item], problem.position.data(), 1);
-        for_each_once(nodes, members_.part_of, [&](std::uint32_t member) {
+        for_each_once(nodes, members_.connected.of, [&](std::uint32_t member) {
           if (!is_open(member)) return;
           Wrench wrenches[C::rows];
           for (std::size_t i = 0; i < nodes.size(); ++i) {
-            if (members_.part_of[nodes[i]] != member) continue;
+            if (members_.connected.of[nodes[i]] != member) continue;
             Vec3 rows[C::rows];
             gradients.of_node(static_cast<int>(i), rows);
             const Vec3 arm = problem.position[nodes[i]] - members_.parts[member].center;
@@ -207,8 +213,8 @@ bool Spin::find_touching(const Problem& problem, const Holds& all) {
 /// Adds what each of the finer parts was given to what the coarser one around it has lost.
 void Spin::add_given(const Parts& finer, Parts& coarser) {
   std::uint32_t seen = 0;  // parts are numbered by their lowest nodes
-  for (std::uint32_t i = 0; i < finer.part_of.size(); ++i)
-    if (finer.part_of[i] == seen) coarser.of(i).lost += finer.parts[seen++].given;
+  for (std::uint32_t i = 0; i < finer.connected.of.size(); ++i)
+    if (finer.connected.of[i] == seen) coarser.of(i).lost += finer.parts[seen++].given;
 }
 
 /// Finds the clusters, and keeps the momenta of those that nothing else than a single point at rest holds.
@@ -234,7 +240,7 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
     sums.momentum += mass * v, sums.wanted_momentum += mass * start;
   };
   for (std::uint32_t i = 0; i < problem.size();) {
-    const std::uint32_t part = parts.part_of[i];
+    const std::uint32_t part = parts.connected.of[i];
     Sums sums = parts.parts[part];  // in registers while the part stays the same
     do {
       const Vec3 &v = problem.velocity[i], start = start_velocity(i);
@@ -242,7 +248,7 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
       add(sums, mass, i, start);
       sums.lost += (mass * h) * cross(v, start), sums.kinetic += mass * dot(v, v);
       sums.lost += h * cross(problem.position[i], unbalanced[i]), sums.unbalanced += h * unbalanced[i];
-    } while (++i < problem.size() && parts.part_of[i] == part);
+    } while (++i < problem.size() && parts.connected.of[i] == part);
     static_cast<Sums&>(parts.parts[part]) = sums;
   }
   for (const auto& c : problem.mass_couplings) {
@@ -260,11 +266,8 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
   }
   const auto add_moments = [&](const auto& forces) {  // which should be zero
     for (const auto& f : forces) {
-      const auto nodes = std::span(f.arm.nodes).first(f.arm.count);
-      const std::uint32_t part = parts.part_of[nodes.front()];
-      if (!f.may_act_across() ||
-          std::any_of(nodes.begin(), nodes.end(), [&](auto i) { return parts.part_of[i] != part; }))
-        continue;
+      const std::uint32_t part = parts.connected.of_all(std::span(f.arm.nodes).first(f.arm.count));
+      if (!f.may_act_across() || part == Pieces::none) continue;
       const Vec3 e1 = f.arm.value(problem.position.data()), e0 = e1 - h * f.arm.rate(problem.velocity.data());
       parts.parts[part].lost += cross(e1, h * f.force_across(e0, e1, stage));
     }
@@ -461,7 +464,7 @@ void Spin::add_momenta(const Problem& problem, Parts& parts) {
 
 void Spin::note(const Problem& problem, const Holds& all, Connection connection) {
   begin(problem);
-  if (std::exchange(noted_connection_, connection) != connection) noted_.part_of.clear();
+  if (std::exchange(noted_connection_, connection) != connection) noted_.connected.of.clear();
   if (connection == Connection::rows_and_forces)
     find_free_clusters(problem, all, noted_);
   else

@@ -26,8 +26,7 @@ class Spin {
  public:
   /// After a change of structure.
   void forget() {
-    pieces_.part_of.clear(), touching_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear();
-    noted_.part_of.clear();
+    for (Parts* parts : {&pieces_, &touching_, &clusters_, &members_, &noted_}) parts->connected.of.clear();
     wheels_.forget();
   }
   /// After a change of masses alone.
@@ -87,8 +86,8 @@ class Spin {
   };
   struct Parts {
     std::vector<Part> parts;
-    std::vector<std::uint32_t> part_of;  // of each node
-    Part& of(std::uint32_t node) { return parts[part_of[node]]; }
+    Pieces connected;
+    Part& of(std::uint32_t node) { return parts[connected.of[node]]; }
   };
   /// A force and a torque about the center, or what a row makes of a multiplier of 1.
   struct Wrench {
@@ -136,7 +135,7 @@ class Spin {
     std::uint32_t nodes = 0, rods = 0;
   };
   std::vector<Count> counts_;  // of each piece
-  DisjointSets room_for_pieces_;
+  RoomForPieces room_for_pieces_;
   std::vector<TurningBody> turning_bodies_;
 };
 

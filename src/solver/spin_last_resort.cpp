@@ -9,7 +9,8 @@ double Spin::move_rigidly(Problem& problem, double h, const Holds& all) {
   constexpr double kept = 0.5;  // of the motion that is not rigid
   begin(problem);
   find_free_clusters(problem, all, clusters_);
-  auto& [clusters, cluster_of] = clusters_;
+  std::vector<Part>& clusters = clusters_.parts;
+  const std::span<const std::uint32_t> cluster_of = clusters_.connected.of;
   for (Part& cluster : clusters) {
     cluster.mass = 0, cluster.center = cluster.momentum = cluster.lost = {};
     cluster.is_due = cluster.is_kept;

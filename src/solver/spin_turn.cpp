@@ -81,7 +81,7 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
     const Part& part = parts.parts[k];
     const auto nodes = [&](auto visit) {
       for (std::uint32_t i = 0; i < problem.size(); ++i)
-        if (parts.part_of[i] == k) visit(i);
+        if (parts.connected.of[i] == k) visit(i);
     };
     turn(axis, part.center, part.velocity(), part.chord, nodes);
   };

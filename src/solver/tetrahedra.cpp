@@ -33,7 +33,7 @@ void list_edges(const Problem& problem, Scratch& s) {
   const auto add_row = [&](std::uint32_t node) { s.rows[node] = std::min<std::uint8_t>(s.rows[node] + 1, needed); };
   for (const auto& c : pool.items) add_row(c.nodes[0]), add_row(c.nodes[1]);
   for (const auto& nail : problem.items_of<AffineConstraint>())
-    if (nail.count == 1) s.is_nailed[nail.nodes[0]] = 1, add_row(nail.nodes[0]);
+    if (nail.is_nail()) s.is_nailed[nail.nodes[0]] = 1, add_row(nail.nodes[0]);
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const auto [a, b] = pool.items[k].nodes;
     if (s.rows[a] < needed || s.rows[b] < needed || (pool.has_laws() && pool.law(k)->is_one_sided())) continue;

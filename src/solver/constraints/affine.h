@@ -36,6 +36,7 @@ struct AffineConstraint {
   }
   double curvature(const double*, int, int) const { return 0; }
   double reference_length() const { return reference; }
+  bool is_nail() const { return count == 1; }
   bool is_moving() const { return target != target_start; }
   bool is_internal() const {
     double sum = 0;
