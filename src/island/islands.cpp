@@ -160,7 +160,7 @@ void Islands::drop_marked(const Model& model, bool all) {
     if (Home* const home = entries_[a].home)
       drop(*home);
     else
-      wait(a);
+      wait(a), entries_[a].has_other_changes = true;
   }
   for (const std::uint32_t body : marked_.local.pulled) {  // a grip may be all that holds a body
     if (!model.bodies.is_alive(body)) continue;
@@ -177,8 +177,10 @@ void Islands::find_changed(const Model& model) {
   ingredient::sort_unique(marked_.local.reborn);
   homes_.assign(changed_.begin(), changed_.end());
   for (Home* const home : homes_) find_members(model, *home);
-  for (const std::uint32_t a : marked_.articulates)  // made by a cut, of a home that was dropped
-    if (!entries_[a].home) wait(a);
+  for (const std::uint32_t a : marked_.articulates) {
+    entries_[a].has_other_changes = false;
+    if (!entries_[a].home) wait(a);  // made by a cut, of a home that was dropped
+  }
 }
 
 void Islands::note_changed(Home& home) {
@@ -191,7 +193,8 @@ void Islands::find_members(const Model& model, Home& home) {
   const auto bodies = home.island.bodies();
   const auto& reborn = marked_.local.reborn;
   const auto is_its_own = [&](std::uint32_t body) {
-    return model.bodies.is_alive(body) && !std::binary_search(reborn.begin(), reborn.end(), body);
+    return model.bodies.is_alive(body) && !std::binary_search(reborn.begin(), reborn.end(), body) &&
+           !entries_[model.bodies[body].articulate].has_other_changes;
   };
   if (!std::all_of(bodies.begin(), bodies.end(), is_its_own)) return drop(home);
   members_.assign(home.articulates.begin(), home.articulates.end());

@@ -156,6 +156,7 @@ class Islands {
     std::uint32_t unit = none;  ///< while units are grouped, of one that waits
     bool is_waiting = false;    ///< for a home
     bool is_suspect = false;    ///< listed by its home
+    bool has_other_changes = false;  ///< in an update, without a home: than local ones
   };
   /// A home, or an articulate that waits for one.
   struct Unit {

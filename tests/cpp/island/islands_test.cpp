@@ -295,6 +295,31 @@ TEST(Islands, keep_inactive_bodies_that_are_tied_to_them_after_a_cut_elsewhere) 
   EXPECT_NEAR(norm(system.particles().position(near) - system.particles().position(ends.back())), 1, 1e-9);
 }
 
+// Both between two steps: it had stayed among the unknowns, and crept.
+TEST(Islands, let_go_of_a_body_that_is_cut_off_and_changes_its_kind_at_once) {
+  constexpr int links = 60;
+  for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::inactive}) {
+    System system;
+    std::vector<BodyId> bodies;
+    std::vector<ParticleId> ends;
+    for (int i = 0; i < links; ++i) {
+      bodies.push_back(system.bodies().create());
+      for (const int end : {0, 1}) ends.push_back(system.particles().create(bodies.back(), {double(i + end), 0, 0}, 1));
+      if (i > 0) (void)system.edits().combine(ends[ends.size() - 3], ends[ends.size() - 2]);
+    }
+    system.particles().nail(ends.front());
+    for (int i = 0; i < 5; ++i) (void)system.step(1.0 / 60);
+    for (const int end : {79, 81}) (void)system.edits().separate(ends[end], ends[end + 1]);
+    system.bodies().set_kind(bodies[40], kind);
+    const Vec3 place = system.particles().position(ends[80]);
+    for (int i = 0; i < 30; ++i) {
+      (void)system.step(1.0 / 60);
+      ASSERT_EQ(system.validate(), std::vector<std::string>{}) << static_cast<int>(kind) << ' ' << i;
+    }
+    EXPECT_EQ(system.particles().position(ends[80]), place) << static_cast<int>(kind);
+  }
+}
+
 // Grips on bodies whose island is new in the same update. With threads it was built by two of them at once.
 TEST(Islands, are_built_once_where_bodies_are_held_cut_and_joined_at_once) {
   for (unsigned seed = 0; seed < 12; ++seed) {
