@@ -46,9 +46,14 @@ Clipper::End end_of_rim(const ConvexPart& part, const Vec3& center, std::uint32_
   return {center + out, part.radius, {part.number, lowest_of_rim + rim}};
 }
 
+struct Ball {
+  Vec3 center;
+  double radius;
+};
+
 /// A ball that is as curved as an ellipsoid along the way that it rolls, where it touches in the middle of the step: the place that
 /// touches at its begin made rolling one of first order.
-void set_ball(const ConvexPart& part, const Vec3& direction, ConvexPart& ball) {
+Ball ball_of(const ConvexPart& part, const Vec3& direction) {
   const Vec3 turned = direction - cross(part.spin, direction), down = (1 / norm(turned)) * turned;
   const auto local = [&](const Vec3& v) {
     return Vec3{dot(v, part.axes[0]), dot(v, part.axes[1]), dot(v, part.axes[2])};
@@ -60,11 +65,15 @@ void set_ball(const ConvexPart& part, const Vec3& direction, ConvexPart& ball) {
   // By the Hessian of the support function |A d|: along t, or the mean.
   const Vec3 t = cross(s, d), a{half.x * t.x, half.y * t.y, half.z * t.z};
   const double along = dot(twice, t), squared = dot(t, t);
-  const double radius = squared > 0 ? (dot(a, a) / reach - along * along / cubed) / squared
+  const double curved = squared > 0 ? (dot(a, a) / reach - along * along / cubed) / squared
                                     : 0.5 * (dot(half, half) / reach - dot(twice, twice) / cubed);
-  ball.radius = std::clamp(radius, 0.0, dot(half, half) / std::min({half.x, half.y, half.z}));
-  ball.number = part.number, ball.is_line = false;
-  const Vec3 center = farthest(part, down) - ball.radius * down;
+  const double radius = std::clamp(curved, 0.0, dot(half, half) / std::min({half.x, half.y, half.z}));
+  return {farthest(part, down) - radius * down, radius};
+}
+
+void set_ball(const ConvexPart& part, const Vec3& direction, ConvexPart& ball) {
+  const auto [center, radius] = ball_of(part, direction);
+  ball.radius = radius, ball.number = part.number, ball.is_line = false;
   set_segment(center, center, ball);
 }
 
@@ -95,6 +104,14 @@ double drop_of_rim(const ConvexPart& part, const Vec3& normal) {
   return across * part.half.y * (1 - std::cos(2 * std::numbers::pi / corners_of_rim));
 }
 
+/// How much nearer or farther the ball of a turning ellipsoid is than the ellipsoid itself, which it touches in the middle of the
+/// step: without it what rolled fast touched with a place instead of a ball, and an egg went a body's length wrong in a second.
+double error_of_ball(const ConvexPart& part, const Vec3& down) {
+  if (part.kind != ConvexPart::Kind::ellipsoid) return 0;
+  const auto [center, radius] = ball_of(part, down);
+  return std::abs(dot(down, farthest(part, down) - center) - radius);
+}
+
 double least_gap(const std::vector<Touch>& found, std::size_t begin) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = begin; k < found.size(); ++k) least = std::min(least, found[k].gap);
@@ -120,7 +137,8 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
   const std::size_t before = found.size();
   const auto try_faces = [&](const RoundAxis& axis) {
     const double most = axis.apart - radius + same_separation * size + 2e-5 * std::abs(axis.apart) +
-                        drop_of_rim(first, axis.normal) + drop_of_rim(second, axis.normal);
+                        drop_of_rim(first, axis.normal) + drop_of_rim(second, axis.normal) +
+                        error_of_ball(first, -axis.normal) + error_of_ball(second, axis.normal);
     for (const bool is_of_first : {false, true}) {
       if (add_on_face(axis, is_of_first, anchor, within, found) && least_gap(found, before) <= most) return true;
       found.resize(before);
