@@ -248,15 +248,20 @@ struct Resistance {
   double rolling, spinning;  ///< coefficients
 };
 
-/// Resistance acts at the first place where two bodies touch, by the force at all of them in the last step. At one place it may
-/// roll in two directions and spin, along a line it may roll in one, on a face in none.
+/// Resistance acts at the first place where two bodies touch, by the force at all of them in the last step and the mean radius at its
+/// places: a cone has another one at its tip. At one place it may roll in two directions and spin, along a line it may roll in
+/// one, on a face in none.
 void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Resistance& by,
                     const Contacts::Motion& motion, std::uint32_t first) {
-  double push = 0;
-  for (const std::uint32_t slot : slots) push += model.contacts[slot].has_left() ? 0 : model.contacts[slot].push;
+  double push = 0, moment = 0, radius = 0;
+  for (const std::uint32_t slot : slots) {
+    const Contact& c = model.contacts[slot];
+    const double own = c.has_left() ? 0 : std::max(0.0, c.push), round = std::max(c.ball, c.radius - c.ball);
+    push += own, moment += own * round, radius = std::max(radius, round);
+  }
+  if (push > 0) radius = moment / push;
   for (const std::uint32_t slot : slots) {
     Contact& c = model.contacts[slot];
-    const double radius = std::max(c.ball, c.radius - c.ball);
     const bool resists = slot == slots[0] && slots.size() <= 2 && radius > 0 && has_orientation(model.bodies[c.p]) &&
                          has_orientation(model.bodies[c.q]);
     const bool rolls = resists && by.rolling > 0, spins = resists && by.spinning > 0 && slots.size() == 1;
@@ -266,7 +271,7 @@ void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Re
     if (c.roll_rows != rolls_before || c.spin_rows != spins_before) mark(model, c, true);
     if (!rolls) c.rolling = 0, c.torque = {};
     if (!spins) c.spinning = c.twist = 0;
-    c.carried = rolls || spins ? std::max(0.0, push) : 0;  // it pulls where a step was not solved
+    c.carried = rolls || spins ? push : 0;
     if (!rolls && !spins) continue;
     const Vec3 &spin_p = motion.spins[c.p != first], &spin_q = motion.spins[c.p == first];
     const HalfTurn turn_of_p(spin_p, motion.h), turn_of_q(spin_q, motion.h);
