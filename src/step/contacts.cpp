@@ -465,6 +465,54 @@ ingredient::Contacts::Motion ContactFinder::motion_in(const model::Model& model,
   return {meeting.size, {spin(meeting.first), spin(meeting.second)}, h_, {}};
 }
 
+void ContactFinder::find_touches(const model::Model& model, contact::Outlines& outlines, const Pair& pair,
+                                 const Meeting& meeting) {
+  const auto [first, second] = pair;
+  if (meeting.second) {
+    find_touches_of_two(model, outlines, pair, meeting);
+    for (const bool is_first : {false, true})
+      if (const contact::Outline& obstacle = outlines.described(is_first ? first : second); obstacle.solids.size() > 1) {
+        around_.clear();
+        for (const contact::Touch& touch : found_) around_.push_back({touch, &obstacle, is_first});
+        contact::drop_seams(around_, meeting.size);
+        found_.clear();
+        for (const auto& each : around_) found_.push_back(each.touch);
+      }
+    return;
+  }
+  if (std::exchange(around_look_, look_) != look_ || std::exchange(around_of_, first) != first)
+    look_around(model, outlines, meeting);
+  const contact::Outline* const obstacle = &outlines.described(second);
+  found_.clear();
+  for (const auto& each : around_)
+    if (each.obstacle == obstacle) found_.push_back(each.touch);
+}
+
+// Of a body with all obstacles: what is a seam of two of them is seen by the touches with both.
+void ContactFinder::look_around(const model::Model& model, contact::Outlines& outlines, const Meeting& meeting) {
+  around_.clear();
+  const std::uint32_t first = meeting.first->body;
+  for (auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), Pair{first, 0});
+       pair != pairs_.end() && pair->first == first; ++pair) {
+    if (model.bodies[pair->second].kind != BodyKind::static_ || is_sensor(model, *pair)) continue;
+    find_touches_of_two(model, outlines, *pair, meeting);
+    for (const contact::Touch& touch : found_) around_.push_back({touch, &outlines.described(pair->second), false});
+  }
+  contact::drop_seams(around_, meeting.size);
+}
+
+void ContactFinder::find_touches_of_two(const model::Model& model, contact::Outlines& outlines, const Pair& pair,
+                                        const Meeting& meeting) {
+  const auto& [mover, other, size] = meeting;
+  const ingredient::Contacts::Motion motion = motion_in(model, meeting);
+  found_.clear();
+  const contact::Outline& outline = placed(outlines, *mover);
+  if (other) (void)placed(outlines, *other);
+  const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
+  touches_.find(outline, (0.5 * h_) * motion.spins[0], outlines.described(pair.second), (0.5 * h_) * motion.spins[1],
+                within(*mover, other), found_, way);
+}
+
 bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, const Pair& pair, const Meeting& meeting,
                           std::span<const std::uint32_t> former) {
   const auto [first, second] = pair;
@@ -476,12 +524,7 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   };
   ingredient::Contacts::Motion motion = motion_in(model, meeting);
   motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
-  found_.clear();
-  const contact::Outline& outline = placed(outlines, *mover);
-  if (other) (void)placed(outlines, *other);
-  const Vec3 way = h_ * (other ? mover->velocity - other->velocity : mover->velocity);
-  touches_.find(outline, (0.5 * h_) * motion.spins[0], outlines.described(second), (0.5 * h_) * motion.spins[1],
-                within(*mover, other), found_, way);
+  find_touches(model, outlines, pair, meeting);
   keep_the_outermost(found_, size);
   if (found_.empty()) return false;
   ingredient::Contacts::take(model, first, second, former, found_, motion);

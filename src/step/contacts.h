@@ -3,6 +3,7 @@
 
 #include "contact/approach.h"
 #include "contact/outlines.h"
+#include "contact/seams.h"
 #include "contact/touches.h"
 #include "ingredient/model.h"
 #include "model/basis_weights.h"
@@ -90,6 +91,10 @@ class ContactFinder {
   Meeting meeting_of(const model::Model&, contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.
   bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
+  /// Their touches, without seams of obstacles, into found_.
+  void find_touches(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  void find_touches_of_two(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  void look_around(const model::Model&, contact::Outlines&, const Meeting&);
   /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
   bool renew(model::Model&, const contact::Outlines&, const Pair&, const Meeting&,
              std::span<const std::uint32_t> former);
@@ -149,6 +154,9 @@ class ContactFinder {
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
+  std::vector<contact::TouchOfPart> around_;  ///< those of a body with all obstacles, at a look
+  std::uint64_t around_look_ = 0;
+  std::uint32_t around_of_ = 0;
   std::vector<std::uint32_t> hasty_;
   struct Listed {
     Pair pair;

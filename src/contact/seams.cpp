@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/seams.h"
+
+#include "math/mat3.h"
+
+#include <algorithm>
+
+namespace iota::contact {
+
+namespace {
+
+constexpr double flush = 1e-5;       ///< of the size: a part that is so much higher is a step
+constexpr double beside = 1e-3;      ///< of the size: a gap between two parts that is as good as none
+constexpr double same_cosine = 1e-6; ///< below 1, of normals that count as the same
+
+/// The plane that touches the surface of the part.
+struct Plane {
+  Vec3 place, normal;  ///< the latter towards the body
+  std::uint32_t part;
+};
+
+Plane plane_of(const TouchOfPart& of) {
+  const Touch& touch = of.touch;
+  const bool has_plane = touch.is_turned == of.is_first;
+  return {has_plane ? touch.place - touch.gap * touch.normal : touch.place,
+          has_plane ? touch.normal : -1.0 * touch.normal, of.is_first ? touch.part : touch.other_part};
+}
+
+const Solid* solid_of(const TouchOfPart& of, std::uint32_t part) {
+  const auto& solids = of.obstacle->solids;
+  const auto found = std::ranges::find(solids, part, &Solid::number);
+  return found == solids.end() ? nullptr : &*found;
+}
+
+Vec3 local(const Solid& solid, const Vec3& place) { return rotate(conjugate(solid.turn), place - solid.position); }
+
+/// Not less than how far it reaches along a direction, from a place.
+double reach_along(const Solid& solid, const Vec3& direction, const Vec3& place) {
+  const Vec3 along = rotate(conjugate(solid.turn), direction);
+  const auto& [low, high] = solid.form->box;
+  return dot(direction, solid.position - place) + std::max(along.x * low.x, along.x * high.x) +
+         std::max(along.y * low.y, along.y * high.y) + std::max(along.z * low.z, along.z * high.z);
+}
+
+bool is_at(const Solid& solid, const Vec3& place, double tolerance) {
+  const Vec3 here = local(solid, place);
+  return is_within(*solid.form, here) || norm(here - closest(*solid.form, here)) <= tolerance;
+}
+
+/// Whether what touches along the plane of one cannot come to the place of the other but along this plane.
+bool covers(const TouchOfPart& one, const TouchOfPart& other, double size) {
+  const Plane plane = plane_of(one), seam = plane_of(other);
+  if (one.obstacle == other.obstacle && plane.part == seam.part) return false;
+  if (!(dot(plane.normal, seam.place - plane.place) <= flush * size)) return false;
+  if (other.touch.form == TouchForm::face && dot(plane.normal, seam.normal) > 1 - same_cosine) return false;
+  const Solid *const solid = solid_of(one, plane.part), *const far = solid_of(other, seam.part);
+  return solid && far && !far->form->is_endless && is_at(*solid, seam.place, beside * size) &&
+         reach_along(*far, plane.normal, plane.place) <= flush * size;
+}
+
+}  // namespace
+
+void drop_seams(std::vector<TouchOfPart>& touches, double size) {
+  for (std::size_t k = touches.size(); k-- > 0;) {
+    const bool is_seam =
+        std::ranges::any_of(touches, [&](const TouchOfPart& one) { return covers(one, touches[k], size); });
+    if (is_seam) touches.erase(touches.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
+}  // namespace iota::contact
