@@ -19,6 +19,7 @@ namespace {
 constexpr double lying = 0.5;
 constexpr std::uint32_t points_of_rim = 6;
 constexpr double vanishing = 1e-7, offset = 1e-3;  ///< of a size: see plane_of
+constexpr double same_normal = 1e-6;
 
 struct Plane {
   Vec3 origin, normal;
@@ -73,11 +74,12 @@ std::optional<Plane> plane_of(const PartList& other, const Vec3& place, const Ve
   return best;
 }
 
-/// A ball of the outline: its corner, its end, or the ball that touches a rim from within.
+/// A ball of the outline: its corner, its end, or the ball that touches a rim from within, where it is lowest.
 struct Feature {
   std::uint32_t number;
   Vec3 center;
   double radius;
+  bool is_lowest = false;  ///< in the direction that was asked for; others are fixed on the body
 };
 
 /// A circle around an axis, with a wire of some radius: of a disk's rim, of a torus.
@@ -87,9 +89,9 @@ void visit_rim(std::uint32_t number, const Vec3& center, const Vec3& axis, doubl
   const double along = dot(down, axis), across = std::sqrt(std::max(0.0, 1 - along * along));
   // The normal through the lowest point meets the axis in the center of a ball that touches the circle all around, so that
   // what rolls keeps its distance.
-  if (across > lying) return visit({number, center - (radius * along / across) * axis, radius / across + wire});
+  if (across > lying) return visit({number, center - (radius * along / across) * axis, radius / across + wire, true});
   const double least = 1e-3;
-  if (across > least) visit({number, center + (radius / across) * (down - along * axis), wire});
+  if (across > least) visit({number, center + (radius / across) * (down - along * axis), wire, true});
   const Vec3 side = unit(any_perpendicular(axis)), third = cross(axis, side);
   for (std::uint32_t k = 0; k < points_of_rim; ++k) {
     const double turn = 2 * std::numbers::pi * k / points_of_rim;
@@ -131,7 +133,7 @@ void visit_features(const Shape& shape, const Vec3& down, const Vec3& turn, Visi
     const double radius = squared > 0 ? (dot(a, a) / reach - along * along / cubed) / squared
                                       : 0.5 * (dot(half, half) / reach - dot(twice, twice) / cubed);
     const double ball = std::clamp(radius, 0.0, dot(half, half) / std::min({half.x, half.y, half.z}));
-    visit({0, (1 / reach) * twice - ball * ahead, ball});
+    visit({0, (1 / reach) * twice - ball * ahead, ball, true});
   }
 }
 
@@ -153,8 +155,8 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
   for (const Line* const line : body.lines)
     middle += (0.5 / static_cast<double>(body.lines.size())) * (line->a + line->b);
   const std::size_t before = found.size();
-  const auto look = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius) {
-    const std::optional<Plane> plane = plane_of(other, center, middle);
+  const auto add = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius,
+                       const std::optional<Plane>& plane) {
     if (!plane) return;
     const double gap = dot(plane->normal, center - plane->origin) - radius;
     if (!(gap <= within)) return;
@@ -165,6 +167,9 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
     touch.center = center, touch.place = center - radius * plane->normal;
     touch.origin = plane->origin, touch.normal = plane->normal, touch.radius = radius, touch.gap = gap;
     found.push_back(touch);
+  };
+  const auto look = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius) {
+    add(part, feature, center, radius, plane_of(other, center, middle));
   };
   for (const Solid* const solid : body.solids) {
     const Form& form = *solid->form;
@@ -178,9 +183,36 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
     }
     const std::optional<Plane> plane = plane_of(other, middle, middle);
     if (!plane) continue;
-    const Vec3 down = rotate(conjugate(solid->turn), -1.0 * plane->normal);
-    visit_features(form.shape, down, rotate(conjugate(solid->turn), spin), [&](const Feature& feature) {
-      look(solid->number, feature.number, to_world(feature.center), feature.radius);
+    const Quaternion back = conjugate(solid->turn);
+    const Vec3 turn = rotate(back, spin);
+    const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
+      visit_features(form.shape, rotate(back, -1.0 * beneath.normal), turn, visit);
+    };
+    // What is lowest above another plane than that beneath the middle is sought once more: the ball that touches a rim is lower than
+    // this elsewhere, and a ring bounced off the air beside a seam.
+    const auto look_again = [&](const Feature& feature, Plane here) {
+      constexpr int most = 4;
+      for (int pass = 0; pass < most; ++pass) {
+        std::optional<Feature> lowest;
+        visit_lowest_above(here, [&](const Feature& again) {
+          if (again.number == feature.number) lowest = again;
+        });
+        if (!lowest) return;
+        const Vec3 center = to_world(lowest->center);
+        const std::optional<Plane> there = plane_of(other, center, middle);
+        if (!there || !lowest->is_lowest || norm(there->normal - here.normal) <= same_normal)
+          return add(solid->number, lowest->number, center, lowest->radius, there);
+        if (pass + 1 == most) look(solid->number, lowest->number, center - lowest->radius * here.normal, 0);
+        here = *there;
+      }
+    };
+    visit_lowest_above(*plane, [&](const Feature& feature) {
+      const Vec3 center = to_world(feature.center);
+      const std::optional<Plane> here = plane_of(other, center, middle);
+      if (here && feature.is_lowest && norm(here->normal - plane->normal) > same_normal)
+        look_again(feature, *here);
+      else
+        add(solid->number, feature.number, center, feature.radius, here);
     });
   }
   for (const Line* const line : body.lines) {  // lines share points

@@ -13,25 +13,6 @@ constexpr double flush = 1e-5;       ///< of the size: a part that is so much hi
 constexpr double beside = 1e-3;      ///< of the size: a gap between two parts that is as good as none
 constexpr double same_cosine = 1e-6; ///< below 1, of normals that count as the same
 
-/// The plane that touches the surface of the part.
-struct Plane {
-  Vec3 place, normal;  ///< the latter towards the body
-  std::uint32_t part;
-};
-
-Plane plane_of(const TouchOfPart& of) {
-  const Touch& touch = of.touch;
-  const bool has_plane = touch.is_turned == of.is_first;
-  return {has_plane ? touch.place - touch.gap * touch.normal : touch.place,
-          has_plane ? touch.normal : -1.0 * touch.normal, of.is_first ? touch.part : touch.other_part};
-}
-
-const Solid* solid_of(const TouchOfPart& of, std::uint32_t part) {
-  const auto& solids = of.obstacle->solids;
-  const auto found = std::ranges::find(solids, part, &Solid::number);
-  return found == solids.end() ? nullptr : &*found;
-}
-
 Vec3 local(const Solid& solid, const Vec3& place) { return rotate(conjugate(solid.turn), place - solid.position); }
 
 /// Not less than how far it reaches along a direction, from a place.
@@ -47,15 +28,37 @@ bool is_at(const Solid& solid, const Vec3& place, double tolerance) {
   return is_within(*solid.form, here) || norm(here - closest(*solid.form, here)) <= tolerance;
 }
 
+/// A plane that touches the surface of a part.
+struct Plane {
+  Vec3 place, normal;            ///< the latter towards the body
+  const Solid* solid = nullptr;  ///< none of a line
+};
+
+/// Touches of corners do not tell of which part the plane is.
+const Solid* solid_of(const Outline& obstacle, std::uint32_t part, const Vec3& place, double tolerance) {
+  const auto& solids = obstacle.solids;
+  auto found = solids.size() == 1 ? solids.begin() : std::ranges::find(solids, part, &Solid::number);
+  if (found == solids.end())
+    found = std::ranges::find_if(solids, [&](const Solid& solid) { return is_at(solid, place, tolerance); });
+  return found == solids.end() ? nullptr : &*found;
+}
+
+Plane plane_of(const TouchOfPart& of, double size) {
+  const Touch& touch = of.touch;
+  const bool has_plane = touch.is_turned == of.is_first;
+  const Vec3 place = has_plane ? touch.place - touch.gap * touch.normal : touch.place;
+  return {place, has_plane ? touch.normal : -1.0 * touch.normal,
+          solid_of(*of.obstacle, of.is_first ? touch.part : touch.other_part, place, flush * size)};
+}
+
 /// Whether what touches along the plane of one cannot come to the place of the other but along this plane.
 bool covers(const TouchOfPart& one, const TouchOfPart& other, double size) {
-  const Plane plane = plane_of(one), seam = plane_of(other);
-  if (one.obstacle == other.obstacle && plane.part == seam.part) return false;
+  const Plane plane = plane_of(one, size), seam = plane_of(other, size);
+  if (!plane.solid || !seam.solid || plane.solid == seam.solid || seam.solid->form->is_endless) return false;
   if (!(dot(plane.normal, seam.place - plane.place) <= flush * size)) return false;
   if (other.touch.form == TouchForm::face && dot(plane.normal, seam.normal) > 1 - same_cosine) return false;
-  const Solid *const solid = solid_of(one, plane.part), *const far = solid_of(other, seam.part);
-  return solid && far && !far->form->is_endless && is_at(*solid, seam.place, beside * size) &&
-         reach_along(*far, plane.normal, plane.place) <= flush * size;
+  return is_at(*plane.solid, seam.place, beside * size) &&
+         reach_along(*seam.solid, plane.normal, plane.place) <= flush * size;
 }
 
 }  // namespace
