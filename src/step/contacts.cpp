@@ -472,15 +472,15 @@ void ContactFinder::find_touches(const model::Model& model, contact::Outlines& o
     find_touches_of_two(model, outlines, pair, meeting);
     for (const bool is_first : {false, true})
       if (const contact::Outline& obstacle = outlines.described(is_first ? first : second); obstacle.solids.size() > 1) {
-        around_.clear();
-        for (const contact::Touch& touch : found_) around_.push_back({touch, &obstacle, is_first});
-        contact::drop_seams(around_, meeting.size);
+        of_parts_.clear();
+        for (const contact::Touch& touch : found_) of_parts_.push_back({touch, &obstacle, is_first});
+        contact::drop_seams(of_parts_, meeting.size);
         found_.clear();
-        for (const auto& each : around_) found_.push_back(each.touch);
+        for (const auto& each : of_parts_) found_.push_back(each.touch);
       }
     return;
   }
-  if (std::exchange(around_look_, look_) != look_ || std::exchange(around_of_, first) != first)
+  if (const std::pair now{look_, first}; std::exchange(looked_around_, now) != now)
     look_around(model, outlines, meeting);
   const contact::Outline* const obstacle = &outlines.described(second);
   found_.clear();

@@ -154,9 +154,9 @@ class ContactFinder {
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
-  std::vector<contact::TouchOfPart> around_;  ///< those of a body with all obstacles, at a look
-  std::uint64_t around_look_ = 0;
-  std::uint32_t around_of_ = 0;
+  std::vector<contact::TouchOfPart> of_parts_;
+  std::vector<contact::TouchOfPart> around_;  ///< of a body with all obstacles, at a look
+  std::pair<std::uint64_t, std::uint32_t> looked_around_{};
   std::vector<std::uint32_t> hasty_;
   struct Listed {
     Pair pair;

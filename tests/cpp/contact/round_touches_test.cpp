@@ -74,6 +74,18 @@ TEST(RoundTouches, of_an_ellipsoid_are_those_of_the_ball_of_its_curvature) {
   EXPECT_NEAR(found[0].gap, 0, 1e-12);
 }
 
+// With the ball of the middle of the step, which is not the lowest one now.
+TEST(RoundTouches, of_an_ellipsoid_that_turns_fast_are_those_of_a_ball_too) {
+  const Outline egg = placed(Ellipsoid{{0.5, 0.4, 0.2}}, {0, 0.2, 0}), floor = placed(Box{{10, 1, 10}}, {0, -0.5, 0});
+  for (const double turn : {1e-3, 0.01, 0.1}) {  // rad in half a step
+    TouchFinder finder;
+    std::vector<Touch> found;
+    finder.find(egg, {turn, 0, 0}, floor, {}, 0.1, found);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].radius, 0.1 * 0.1 / 0.2, 0.1 * turn) << "about x it is as curved as a circle of 0.05 m";
+  }
+}
+
 TEST(RoundTouches, keep_their_names_and_number_over_noise) {
   const Cylinder log{0.2, 0.4};
   const Capsule rod{0.1, 1};
