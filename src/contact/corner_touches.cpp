@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <variant>
@@ -72,6 +73,18 @@ std::optional<Plane> plane_of(const PartList& other, const Vec3& place, const Ve
   for (const Solid* const solid : other.solids) take(plane_of(*solid, place, middle));
   for (const Line* const line : other.lines) take(plane_of(*line, place));
   return best;
+}
+
+geometry::Bounds bounds_of(const PartList& parts) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  geometry::Bounds all{{far, far, far}, {-far, -far, -far}};
+  for (const Solid* const solid : parts.solids) {
+    if (solid->form->is_endless) return {{-far, -far, -far}, {far, far, far}};
+    all = geometry::joined(all, bounds(*solid, {}));
+  }
+  for (const Line* const line : parts.lines)
+    all = geometry::joined(all, geometry::grown(geometry::joined({line->a, line->a}, {line->b, line->b}), line->radius));
+  return all;
 }
 
 /// A ball of the outline: its corner, its end, or the ball that touches a rim from within, where it is lowest.
@@ -178,7 +191,10 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
     const auto to_world = [&](const Vec3& local) { return solid->position + rotate(solid->turn, local); };
     if (form.mesh) {
       const std::vector<Vec3>& corners = corners_of(solid->form);
-      for (std::uint32_t k = 0; k < corners.size(); ++k) look(solid->number, k, to_world(corners[k]), 0);
+      const geometry::Bounds around = geometry::grown(bounds_of(other), within);
+      for (std::uint32_t k = 0; k < corners.size(); ++k)
+        if (const Vec3 corner = to_world(corners[k]); geometry::distance(around, corner) <= 0)
+          look(solid->number, k, corner, 0);
       continue;
     }
     const std::optional<Plane> plane = plane_of(other, middle, middle);

@@ -12,14 +12,8 @@ namespace iota::contact {
 namespace {
 
 geometry::Bounds box_of_line(const Line& line, const Vec3& anchor) {
-  const Vec3 reach{line.radius, line.radius, line.radius};
-  return geometry::joined({line.a - anchor - reach, line.a - anchor + reach},
-                          {line.b - anchor - reach, line.b - anchor + reach});
-}
-
-geometry::Bounds grown(geometry::Bounds box, double by) {
-  const Vec3 reach{by, by, by};
-  return {box.low - reach, box.high + reach};
+  return geometry::grown(geometry::joined({line.a - anchor, line.a - anchor}, {line.b - anchor, line.b - anchor}),
+                         line.radius);
 }
 
 const Vec3& anchor_of(const Outline& outline) {
@@ -121,7 +115,7 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
     find_corners(spin_of_first, spin_of_second, within, found);
   for (std::size_t i = 0; i < first_.count; ++i) {
     if (!first_.parts[i].is_met()) continue;
-    const geometry::Bounds box = grown(first_.parts[i].box, within);
+    const geometry::Bounds box = geometry::grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
       if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box)) {
         place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
@@ -151,14 +145,17 @@ void TouchFinder::find_corners(const Vec3& spin_of_first, const Vec3& spin_of_se
     else
       corners_.find(listed_, spin_of_first, other_listed_, within, names, found);
   };
+  // The same for both outlines, but that what is static is the second one: corners of open meshes, of rooms, are left out there.
   constexpr unsigned meshes = Part::mesh | Part::open, convex = Part::rod | Part::body;
-  constexpr std::uint32_t of_convex = 6u << 28, of_rings = 5u << 28;
+  constexpr std::uint32_t of_rings = 5u << 28, of_convex = 6u << 28, of_bodies = 7u << 28;
   look(convex | meshes | Part::ring, meshes, {});
   look(Part::body | meshes, Part::ring, {false, of_rings});
   look(meshes, convex, {false, of_convex});
   look(Part::ring, Part::body, {false, of_convex});
   look(meshes, convex | Part::ring | Part::mesh, {true, of_convex});
   look(Part::ring, Part::body | Part::mesh, {true, of_rings});
+  look(convex, Part::mesh, {true, of_bodies});
+  look(Part::body, Part::ring, {true, of_bodies});
 }
 
 }  // namespace iota::contact

@@ -17,6 +17,11 @@ inline Bounds joined(const Bounds& a, const Bounds& b) {
   return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
           {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
+/// Farther on all sides, m.
+inline Bounds grown(const Bounds& box, double by) {
+  const Vec3 reach{by, by, by};
+  return {box.low - reach, box.high + reach};
+}
 inline bool overlap(const Bounds& a, const Bounds& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
          a.low.z <= b.high.z && b.low.z <= a.high.z;
