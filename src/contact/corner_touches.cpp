@@ -83,7 +83,8 @@ geometry::Bounds bounds_of(const PartList& parts) {
     all = geometry::joined(all, bounds(*solid, {}));
   }
   for (const Line* const line : parts.lines)
-    all = geometry::joined(all, geometry::grown(geometry::joined({line->a, line->a}, {line->b, line->b}), line->radius));
+    all =
+        geometry::joined(all, geometry::grown(geometry::joined({line->a, line->a}, {line->b, line->b}), line->radius));
   return all;
 }
 
@@ -204,8 +205,8 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
     const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
       visit_features(form.shape, rotate(back, -1.0 * beneath.normal), turn, visit);
     };
-    // What is lowest above another plane than that beneath the middle is sought once more: the ball that touches a rim is lower than
-    // this elsewhere, and a ring bounced off the air beside a seam.
+    // The lowest point is sought once more above another plane than that beneath the middle: elsewhere the ball that touches a rim is
+    // lower than the rim, and a ring bounced off the air beside a seam.
     const auto look_again = [&](const Feature& feature, Plane here) {
       constexpr int most = 4;
       for (int pass = 0; pass < most; ++pass) {

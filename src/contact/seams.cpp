@@ -9,9 +9,9 @@ namespace iota::contact {
 
 namespace {
 
-constexpr double flush = 1e-5;       ///< of the size: a part that is so much higher is a step
-constexpr double beside = 1e-3;      ///< of the size: a gap between two parts that is as good as none
-constexpr double same_cosine = 1e-6; ///< below 1, of normals that count as the same
+constexpr double flush = 1e-5;        ///< of the size: a part that is so much higher is a step
+constexpr double beside = 1e-3;       ///< of the size: a gap between two parts that is as good as none
+constexpr double same_cosine = 1e-6;  ///< below 1, of normals that count as the same
 
 Vec3 local(const Solid& solid, const Vec3& place) { return rotate(conjugate(solid.turn), place - solid.position); }
 

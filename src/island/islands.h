@@ -153,9 +153,9 @@ class Islands {
   };
   struct Entry {
     Home* home = nullptr;
-    std::uint32_t unit = none;  ///< while units are grouped, of one that waits
-    bool is_waiting = false;    ///< for a home
-    bool is_suspect = false;    ///< listed by its home
+    std::uint32_t unit = none;       ///< while units are grouped, of one that waits
+    bool is_waiting = false;         ///< for a home
+    bool is_suspect = false;         ///< listed by its home
     bool has_other_changes = false;  ///< in an update, without a home: than local ones
   };
   /// A home, or an articulate that waits for one.

@@ -52,7 +52,8 @@ void Integrator::forget_past(Problem& problem) {
 void Integrator::forget_steps(Problem& problem) {
   newton_.forget_factors();
   const auto affines = problem.items_of<AffineConstraint>();
-  may_be_in_pieces_ = std::any_of(affines.begin(), affines.end(), [](const AffineConstraint& c) { return c.is_nail(); });
+  may_be_in_pieces_ =
+      std::any_of(affines.begin(), affines.end(), [](const AffineConstraint& c) { return c.is_nail(); });
   pieces_.clear();
   problem.forget_acting();
   acting_version_ = problem.acting_version();

@@ -241,7 +241,7 @@ class Integrator {
     Holds holds;
     double taken = 0, kinetic = 0;
   };
-  std::vector<Piece> pieces_;            // of a disconnected problem; else none
+  std::vector<Piece> pieces_;  // of a disconnected problem; else none
   Pieces connected_;
   RoomForPieces room_for_pieces_;
   std::vector<FreeMotion> free_motions_;  // of the explicit sub-step at hand

@@ -24,7 +24,8 @@ struct Pieces {
 
   std::vector<std::uint32_t> of;        ///< each node; numbered by their lowest nodes
   std::vector<std::uint8_t> are_nails;  ///< each piece: several others hang on it. Empty if there is no such piece
-  std::vector<std::uint32_t> nail_of;   ///< each node: its nail among the affine constraints, or `none`. Empty without nails
+  std::vector<std::uint32_t>
+      nail_of;  ///< each node: its nail among the affine constraints, or `none`. Empty without nails
 
   bool is_nail(std::uint32_t piece) const { return !are_nails.empty() && are_nails[piece] != 0; }
   /// The piece that all of the nodes belong to, or hang on by a nail; `none` if these are several, or nails alone.

@@ -113,8 +113,8 @@ void turn_for_energy(Problem& problem, double energy, double most_angle, const s
     // Beside a principal axis the slope is round-off: a body would jump by up to the largest angle, and gain by the square.
     // Along the line of a heavy rod only what is light and beside it has an inertia, and would be shot away.
     const Vec3 left = cross((1 / steepness) * slope, before.angular_momentum);
-    const double curvature = 2 * before.kinetic_energy() + norm(torque) +
-                             dot(left, solve_semidefinite(before.inertia, left, 1e-12));
+    const double curvature =
+        2 * before.kinetic_energy() + norm(torque) + dot(left, solve_semidefinite(before.inertia, left, 1e-12));
     const bool is_straight = std::abs(angle) * curvature <= most_curved * steepness;
     if (!(is_straight && std::abs(angle) <= std::min(largest_angle, most_angle) && std::abs(angle) > 1e-15)) return;
     const Quaternion turn = axis_angle((1 / steepness) * slope, angle);

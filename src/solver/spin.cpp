@@ -165,7 +165,8 @@ void Spin::find_supports(const Problem& problem) {
     if constexpr (is_joint<C>)
       for (std::size_t item = 0; item < pool.items.size(); ++item) {
         const auto nodes = pool.nodes_of(pool.items[item]);
-        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.connected.of[i]); })) continue;
+        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.connected.of[i]); }))
+          continue;
         const Gradients<C> gradients(pool.items[item], problem.position.data(), 1);
         for_each_once(nodes, members_.connected.of, [&](std::uint32_t member) {
           if (!is_open(member)) return;

@@ -471,7 +471,8 @@ void ContactFinder::find_touches(const model::Model& model, contact::Outlines& o
   if (meeting.second) {
     find_touches_of_two(model, outlines, pair, meeting);
     for (const bool is_first : {false, true})
-      if (const contact::Outline& obstacle = outlines.described(is_first ? first : second); obstacle.solids.size() > 1) {
+      if (const contact::Outline& obstacle = outlines.described(is_first ? first : second);
+          obstacle.solids.size() > 1) {
         of_parts_.clear();
         for (const contact::Touch& touch : found_) of_parts_.push_back({touch, &obstacle, is_first});
         contact::drop_seams(of_parts_, meeting.size);
@@ -488,7 +489,7 @@ void ContactFinder::find_touches(const model::Model& model, contact::Outlines& o
     if (each.obstacle == obstacle) found_.push_back(each.touch);
 }
 
-// Of a body with all obstacles: what is a seam of two of them is seen by the touches with both.
+// A seam of two obstacles is seen by the touches of the body with both.
 void ContactFinder::look_around(const model::Model& model, contact::Outlines& outlines, const Meeting& meeting) {
   around_.clear();
   const std::uint32_t first = meeting.first->body;

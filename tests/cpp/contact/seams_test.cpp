@@ -27,7 +27,9 @@ std::vector<Vec3> normals_of(const Outline& body, const std::vector<Outline>& ob
 }
 
 /// A cube of 1 m whose upper face is at a height.
-Outline tile(double x, double top = 0, std::uint32_t number = 7) { return placed(Box{{1, 1, 1}}, {x, top - 0.5, 0}, {}, number); }
+Outline tile(double x, double top = 0, std::uint32_t number = 7) {
+  return placed(Box{{1, 1, 1}}, {x, top - 0.5, 0}, {}, number);
+}
 
 const Outline ball = placed(Sphere{0.5}, {0.4, 0.5, 0});  // 0.1 m from the seam of the tiles at 0 and 1
 
@@ -73,7 +75,8 @@ TEST(Seams, at_the_top_of_a_ramp_leave_the_touches_on_it) {
 
 TEST(Seams, of_round_bodies_are_those_of_their_faces) {
   const Quaternion upright{0, 0, std::sqrt(0.5), std::sqrt(0.5)};
-  const Outline coin = placed(Cylinder{0.3, 0.1}, {0.1, 0.05, 0}, upright), wheel = placed(Torus{0.4, 0.1}, {0.4, 0.5, 0});
+  const Outline coin = placed(Cylinder{0.3, 0.1}, {0.1, 0.05, 0}, upright),
+                wheel = placed(Torus{0.4, 0.1}, {0.4, 0.5, 0});
   for (const Outline& body : {coin, wheel})
     for (const Vec3& normal : normals_of(body, {tile(0), tile(1)}, 0.2))
       EXPECT_NEAR(norm(normal - Vec3{0, 1, 0}), 0, 1e-9);

@@ -75,7 +75,8 @@ TEST(Pieces, between_two_nails_that_others_share_have_no_pivot) {
   Problem problem;
   for (int i = 0; i < 4; ++i) add_point(problem, {static_cast<double>(i), 0, 0});
   for (const std::uint32_t node : {0u, 3u}) nail(problem, node);
-  (void)add_rod(problem, 0, 1, 1), (void)add_rod(problem, 1, 3, 2), (void)add_rod(problem, 0, 2, 2), (void)add_rod(problem, 2, 3, 1);
+  (void)add_rod(problem, 0, 1, 1), (void)add_rod(problem, 1, 3, 2), (void)add_rod(problem, 0, 2, 2),
+      (void)add_rod(problem, 2, 3, 1);
   Pieces pieces;
   ASSERT_EQ(find_pieces(problem, Connection::rows, pieces), 4u);
   for (const std::uint32_t piece : {1, 2})

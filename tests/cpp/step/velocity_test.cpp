@@ -118,8 +118,7 @@ std::vector<std::unique_ptr<System>> make_pendulums(IntegrationMode mode, bool b
   std::vector<std::unique_ptr<System>> systems;
   ParticleId nail{};
   for (const int k : {0, 1}) {
-    if (systems.empty() || !on_one_nail)
-      systems.push_back(std::make_unique<System>(SystemOptions{.mode = mode}));
+    if (systems.empty() || !on_one_nail) systems.push_back(std::make_unique<System>(SystemOptions{.mode = mode}));
     System& system = *systems.back();
     const double mass = k == 0 ? 1 : light;
     const Vec3 end = k == 0 ? Vec3{0.5, -0.8, 0} : Vec3{0, -0.6, 0.5}, speed = k == 0 ? Vec3{0, 0, 1.5} : Vec3{};
@@ -150,13 +149,15 @@ TEST(Pendulums, on_one_nail_swing_as_each_of_them_alone) {
         std::vector<BodyId> together, alone;
         const auto one = make_pendulums(mode, boxes, true, light, together);
         const auto two = make_pendulums(mode, boxes, false, light, alone);
-        const std::string what = std::to_string(static_cast<int>(mode)) + (boxes ? " boxes " : " rods ") + std::to_string(light);
+        const std::string what =
+            std::to_string(static_cast<int>(mode)) + (boxes ? " boxes " : " rods ") + std::to_string(light);
         double apart = 0, leaves = 0;
         for (int i = 0; i < 240; ++i) {
           for (const auto& system : one) (void)system->step(1.0 / 60);
           for (const auto& system : two) (void)system->step(1.0 / 60);
           for (const int k : {0, 1})
-            apart = std::max(apart, norm(one[0]->bodies().center_of_mass(together[k]) - two[k]->bodies().center_of_mass(alone[k])));
+            apart = std::max(
+                apart, norm(one[0]->bodies().center_of_mass(together[k]) - two[k]->bodies().center_of_mass(alone[k])));
           leaves = std::max(leaves, std::abs(one[0]->bodies().center_of_mass(together[1]).x));
         }
         // The end-point rule gives spins back with the energy that both have lost together.
