@@ -21,20 +21,6 @@ constexpr double nearly_same = 1e-7;                           ///< of the size
 constexpr double same_separation = 1e-9;                       ///< of the size
 constexpr std::uint32_t lowest_of_rim = 64, ball_of_rim = 66;  ///< numbers of features, for both rims
 
-/// The face of a part whose normal is nearly this direction.
-std::uint32_t face_along(const ConvexPart& part, const Vec3& direction) {
-  const std::size_t count = part.kind == ConvexPart::Kind::cylinder ? 2
-                            : part.kind == ConvexPart::Kind::cone   ? 1
-                                                                    : part.normals.size();
-  std::uint32_t best = Polytope::none;
-  double least = face_sine * face_sine;
-  for (std::uint32_t f = 0; f < count; ++f) {
-    const Vec3 off = part.normals[f] - direction;
-    if (const double squared = dot(off, off); squared < least) least = squared, best = f;
-  }
-  return best;
-}
-
 /// The ball that touches a rim from within, or the lowest point of the rim, seen along `down`.
 Clipper::End end_of_rim(const ConvexPart& part, const Vec3& center, std::uint32_t rim, const Vec3& down) {
   const double along = dot(down, part.axes[0]), across = std::sqrt(std::max(0.0, 1 - along * along)),
@@ -120,6 +106,19 @@ double least_gap(const std::vector<Touch>& found, std::size_t begin) {
 
 }  // namespace
 
+std::uint32_t face_along(const ConvexPart& part, const Vec3& direction) {
+  const std::size_t count = part.kind == ConvexPart::Kind::cylinder ? 2
+                            : part.kind == ConvexPart::Kind::cone   ? 1
+                                                                    : part.normals.size();
+  std::uint32_t best = Polytope::none;
+  double least = face_sine * face_sine;
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const Vec3 off = part.normals[f] - direction;
+    if (const double squared = dot(off, off); squared < least) least = squared, best = f;
+  }
+  return best;
+}
+
 void add_touches_of_polytopes(const ConvexPart& first, const ConvexPart& second, const Vec3& way, TouchWriter& writer,
                               Clipper& clipper) {
   if (first.normals.empty() && second.normals.empty()) return add_touches_of_segments(writer);
@@ -166,6 +165,12 @@ void RoundToucher::add_touches(const ConvexPart& first, const ConvexPart& second
       .add_edges(axis->on_first, on_second, axis->normal,
                  {first.is_line ? first.end.part : first.number, name_of_place(first, -axis->normal)},
                  {second.is_line ? second.end.part : second.number, name_of_place(second, axis->normal)});
+}
+
+void RoundToucher::add_on_face_of_second(const ConvexPart& first, const ConvexPart& second, const Vec3& normal,
+                                         const Vec3& anchor, double within, std::vector<Touch>& found) {
+  first_ = &first, second_ = &second;
+  (void)add_on_face({.normal = normal}, false, anchor, within, found);
 }
 
 /// With the plane of a face of one of them. False: there is no such face, or the other one is beside it.

@@ -63,11 +63,13 @@ bool covers(const TouchOfPart& one, const TouchOfPart& other, double size) {
 
 }  // namespace
 
-void drop_seams(std::vector<TouchOfPart>& touches, double size) {
+void drop_seams(std::vector<TouchOfPart>& touches, double size, std::vector<Seam>& seams) {
   for (std::size_t k = touches.size(); k-- > 0;) {
-    const bool is_seam =
-        std::ranges::any_of(touches, [&](const TouchOfPart& one) { return covers(one, touches[k], size); });
-    if (is_seam) touches.erase(touches.begin() + static_cast<std::ptrdiff_t>(k));
+    const auto cover =
+        std::ranges::find_if(touches, [&](const TouchOfPart& one) { return covers(one, touches[k], size); });
+    if (cover == touches.end()) continue;
+    seams.push_back({touches[k].obstacle, plane_of(*cover, size).normal});
+    touches.erase(touches.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }
 

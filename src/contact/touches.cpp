@@ -105,23 +105,60 @@ void TouchFinder::find(Part& first, Part& second, const Vec3& anchor, double wit
   add_touches_of_polytopes(a, b, way, writer, clipper_);
 }
 
-void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Outline& second,
-                       const Vec3& spin_of_second, double within, std::vector<Touch>& found, const Vec3& way) {
-  if ((first.solids.empty() && first.lines.empty()) || (second.solids.empty() && second.lines.empty())) return;
-  const std::size_t before = found.size();
+void TouchFinder::find_on_face(const ConvexPart& first, const ConvexPart& second, const Vec3& normal,
+                               const Vec3& anchor, double within, std::vector<Touch>& found) {
+  if (!first.is_polytope() || !second.is_polytope())
+    return round_.add_on_face_of_second(first, second, normal, anchor, within, found);
+  Axis axis{.second = face_along(second, normal), .is_farthest = false};
+  if (axis.second == Polytope::none) return;
+  TouchWriter writer(first, second, anchor, within, found);
+  clipper_.add_touches(axis, writer, 4);
+}
+
+template <class Visit>
+void TouchFinder::for_each_near(const Outline& first, const Vec3& spin_of_first, const Outline& second,
+                                const Vec3& spin_of_second, double within, Visit visit) {
   const Vec3 anchor = anchor_of(second);
-  list(first, anchor, first_), list(second, anchor, second_);
-  if ((first_.kinds | second_.kinds) > (Part::rod | Part::body))
-    find_corners(spin_of_first, spin_of_second, within, found);
   for (std::size_t i = 0; i < first_.count; ++i) {
     if (!first_.parts[i].is_met()) continue;
     const geometry::Bounds box = geometry::grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
       if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box)) {
         place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
-        find(first_.parts[i], second_.parts[k], anchor, within, way, found);
+        visit(first_.parts[i], second_.parts[k], anchor);
       }
   }
+}
+
+namespace {
+
+bool is_nothing(const Outline& outline) { return outline.solids.empty() && outline.lines.empty(); }
+
+}  // namespace
+
+void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Outline& second,
+                       const Vec3& spin_of_second, double within, std::vector<Touch>& found, const Vec3& way) {
+  if (is_nothing(first) || is_nothing(second)) return;
+  const std::size_t before = found.size();
+  list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
+  if ((first_.kinds | second_.kinds) > (Part::rod | Part::body))
+    find_corners(spin_of_first, spin_of_second, within, found);
+  for_each_near(first, spin_of_first, second, spin_of_second, within,
+                [&](Part& one, Part& other, const Vec3& anchor) { find(one, other, anchor, within, way, found); });
+  if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
+}
+
+void TouchFinder::find_on_faces(const Outline& first, const Vec3& spin_of_first, const Outline& second,
+                                const Vec3& spin_of_second, const Vec3& normal, double within,
+                                std::vector<Touch>& found) {
+  if (is_nothing(first) || is_nothing(second)) return;
+  const std::size_t before = found.size();
+  list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
+  for_each_near(first, spin_of_first, second, spin_of_second, within,
+                [&](const Part& one, const Part& other, const Vec3& anchor) {
+                  if (one.kind != Part::ring && other.kind != Part::ring)
+                    find_on_face(one.placed, other.placed, normal, anchor, within, found);
+                });
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
 }
 

@@ -31,6 +31,9 @@ class TouchFinder {
   /// relative to the second in the coming step, m, where known: see find_axis.
   void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
             double within, std::vector<Touch>& found, const Vec3& way = {});
+  /// Of these only the touches with faces of the second outline along a normal, which points towards the first one.
+  void find_on_faces(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
+                     const Vec3& normal, double within, std::vector<Touch>& found);
 
  private:
   struct Part {
@@ -62,6 +65,12 @@ class TouchFinder {
   void find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within, std::vector<Touch>& found);
   void place(Part&, const Vec3& spin, const Vec3& anchor);
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
+  void find_on_face(const ConvexPart& first, const ConvexPart& second, const Vec3& normal, const Vec3& anchor,
+                    double within, std::vector<Touch>& found);
+  /// visit(first, second, anchor): convex parts and rings whose boxes are near each other.
+  template <class Visit>
+  void for_each_near(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
+                     double within, Visit visit);
 
   Parts first_, second_;
   Clipper clipper_;

@@ -41,7 +41,7 @@ struct Pieces {
   }
 };
 
-/// What acts may change in each step, so the caller keeps this.
+/// The caller keeps this room, as rows that act may change in each step.
 struct RoomForPieces {
   DisjointSets connected;
   std::vector<std::uint32_t> hanging;  // on the leader of nails that are connected

@@ -473,9 +473,9 @@ void ContactFinder::find_touches(const model::Model& model, contact::Outlines& o
     for (const bool is_first : {false, true})
       if (const contact::Outline& obstacle = outlines.described(is_first ? first : second);
           obstacle.solids.size() > 1) {
-        of_parts_.clear();
+        of_parts_.clear(), seams_.clear();
         for (const contact::Touch& touch : found_) of_parts_.push_back({touch, &obstacle, is_first});
-        contact::drop_seams(of_parts_, meeting.size);
+        contact::drop_seams(of_parts_, meeting.size, seams_);
         found_.clear();
         for (const auto& each : of_parts_) found_.push_back(each.touch);
       }
@@ -499,7 +499,25 @@ void ContactFinder::look_around(const model::Model& model, contact::Outlines& ou
     find_touches_of_two(model, outlines, *pair, meeting);
     for (const contact::Touch& touch : found_) around_.push_back({touch, &outlines.described(pair->second), false});
   }
-  contact::drop_seams(around_, meeting.size);
+  seams_.clear();
+  contact::drop_seams(around_, meeting.size, seams_);
+  add_faces_of_seams(model, outlines, meeting);
+}
+
+// Beyond its seam what lies on a face is on it, whatever else was nearer to its edge.
+void ContactFinder::add_faces_of_seams(const model::Model& model, contact::Outlines& outlines, const Meeting& meeting) {
+  const ingredient::Contacts::Motion motion = motion_in(model, meeting);
+  for (auto seam = seams_.begin(); seam != seams_.end(); ++seam) {
+    const auto is_same = [&](const contact::Seam& other) {
+      return other.obstacle == seam->obstacle && other.normal == seam->normal;
+    };
+    const auto is_of = [&](const contact::TouchOfPart& known) { return known.obstacle == seam->obstacle; };
+    if (std::any_of(seams_.begin(), seam, is_same) || std::ranges::any_of(around_, is_of)) continue;
+    found_.clear();
+    touches_.find_on_faces(placed(outlines, *meeting.first), (0.5 * h_) * motion.spins[0], *seam->obstacle, {},
+                           seam->normal, within(*meeting.first, nullptr), found_);
+    for (const contact::Touch& touch : found_) around_.push_back({touch, seam->obstacle, false});
+  }
 }
 
 void ContactFinder::find_touches_of_two(const model::Model& model, contact::Outlines& outlines, const Pair& pair,

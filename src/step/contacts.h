@@ -95,6 +95,7 @@ class ContactFinder {
   void find_touches(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   void find_touches_of_two(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   void look_around(const model::Model&, contact::Outlines&, const Meeting&);
+  void add_faces_of_seams(const model::Model&, contact::Outlines&, const Meeting&);
   /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
   bool renew(model::Model&, const contact::Outlines&, const Pair&, const Meeting&,
              std::span<const std::uint32_t> former);
@@ -155,6 +156,7 @@ class ContactFinder {
   std::vector<Sensed> sensed_;
   std::vector<contact::Touch> found_;
   std::vector<contact::TouchOfPart> of_parts_;
+  std::vector<contact::Seam> seams_;
   std::vector<contact::TouchOfPart> around_;  ///< of a body with all obstacles, at a look
   std::pair<std::uint64_t, std::uint32_t> looked_around_{};
   std::vector<std::uint32_t> hasty_;

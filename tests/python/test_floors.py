@@ -106,3 +106,35 @@ def test_a_floor_of_many_pieces_is_as_one(kind: str) -> None:
         for floor in FLOORS:
             apart = np.linalg.norm(way(kind, floor, seed) - alone, axis=1).max()
             assert apart < 1e-4, f"{kind} on {floor}, seed {seed}: {apart:.1e} of its size"
+
+
+def way_of_rope(floor: str, seed: int) -> NDArray[np.float64]:
+    """The places of a rope of rods that is thrown onto the floor."""
+    random = np.random.default_rng(seed)
+    system = iota.System(mode="energy_keeping", threads=1)
+    system.usual_material = iota.Material(friction=0.4)
+    lay(system, floor, 20, seed)
+    along = np.array([random.normal(), 0.2, random.normal()])
+    along *= 0.25 / np.linalg.norm(along)
+    velocity = tuple(random.normal(size=3) * (3, 0.3, 3))
+    points: list[Any] = []
+    for k in range(12):
+        rod = system.body()
+        rod.radius = 0.05
+        ends = [rod.particle(tuple(np.array([0, 0.5, 0]) + (k + i) * along), 0.1, velocity) for i in (0, 1)]
+        if points:
+            points[-1].combine(ends[0])
+        points.append(ends[1])
+    places = []
+    for _ in range(240):
+        system.step(1 / 240)
+        places.append([tuple(point.position) for point in points])
+    return np.array(places)
+
+
+def test_a_rope_on_tiles_lies_as_on_a_plane() -> None:
+    for seed in range(4):
+        alone = way_of_rope("half-space", seed)
+        for floor in FLOORS:
+            apart = np.linalg.norm(way_of_rope(floor, seed) - alone, axis=2).max()
+            assert apart < 0.02, f"rope on {floor}, seed {seed}: {apart:.1e} m"

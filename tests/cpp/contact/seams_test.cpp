@@ -19,7 +19,8 @@ std::vector<Vec3> normals_of(const Outline& body, const std::vector<Outline>& ob
   for (const Outline& obstacle : obstacles)
     for (const Touch& touch : is_first ? touches_of(obstacle, body, within) : touches_of(body, obstacle, within))
       touches.push_back({touch, &obstacle, is_first});
-  drop_seams(touches, 1);
+  std::vector<Seam> seams;
+  drop_seams(touches, 1, seams);
   std::vector<Vec3> normals;
   for (const auto& [touch, obstacle, first] : touches)
     normals.push_back(touch.is_turned == first ? touch.normal : -touch.normal);
