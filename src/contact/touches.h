@@ -31,7 +31,7 @@ class TouchFinder {
   /// relative to the second in the coming step, m, where known: see find_axis.
   void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
             double within, std::vector<Touch>& found, const Vec3& way = {});
-  /// Of these only the touches with faces of the second outline along a normal, which points towards the first one.
+  /// Appends only touches with faces of the second outline along a normal, which points towards the first one.
   void find_on_faces(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,
                      const Vec3& normal, double within, std::vector<Touch>& found);
 
