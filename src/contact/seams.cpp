@@ -28,12 +28,6 @@ bool is_at(const Solid& solid, const Vec3& place, double tolerance) {
   return is_within(*solid.form, here) || norm(here - closest(*solid.form, here)) <= tolerance;
 }
 
-/// A plane that touches the surface of a part.
-struct Plane {
-  Vec3 place, normal;            ///< the latter towards the body
-  const Solid* solid = nullptr;  ///< none of a line
-};
-
 /// Touches of corners do not tell of which part the plane is.
 const Solid* solid_of(const Outline& obstacle, std::uint32_t part, const Vec3& place, double tolerance) {
   const auto& solids = obstacle.solids;
@@ -43,32 +37,34 @@ const Solid* solid_of(const Outline& obstacle, std::uint32_t part, const Vec3& p
   return found == solids.end() ? nullptr : &*found;
 }
 
-Plane plane_of(const TouchOfPart& of, double size) {
+void find_plane(TouchOfPart& of, double size) {
   const Touch& touch = of.touch;
   const bool has_plane = touch.is_turned == of.is_first;
-  const Vec3 place = has_plane ? touch.place - touch.gap * touch.normal : touch.place;
-  return {place, has_plane ? touch.normal : -1.0 * touch.normal,
-          solid_of(*of.obstacle, of.is_first ? touch.part : touch.other_part, place, flush * size)};
+  of.place = has_plane ? touch.place - touch.gap * touch.normal : touch.place;
+  of.normal = has_plane ? touch.normal : -1.0 * touch.normal;
+  of.solid = solid_of(*of.obstacle, of.is_first ? touch.part : touch.other_part, of.place, flush * size);
 }
 
 /// Whether what touches along the plane of one cannot come to the place of the other but along this plane.
 bool covers(const TouchOfPart& one, const TouchOfPart& other, double size) {
-  const Plane plane = plane_of(one, size), seam = plane_of(other, size);
-  if (!plane.solid || !seam.solid || plane.solid == seam.solid || seam.solid->form->is_endless) return false;
-  if (!(dot(plane.normal, seam.place - plane.place) <= flush * size)) return false;
-  if (other.touch.form == TouchForm::face && dot(plane.normal, seam.normal) > 1 - same_cosine) return false;
-  return is_at(*plane.solid, seam.place, beside * size) &&
-         reach_along(*seam.solid, plane.normal, plane.place) <= flush * size;
+  if (one.solid == other.solid || !one.solid || !other.solid || other.solid->form->is_endless) return false;
+  if (!(dot(one.normal, other.place - one.place) <= flush * size)) return false;
+  if (other.touch.form == TouchForm::face && dot(one.normal, other.normal) > 1 - same_cosine) return false;
+  return is_at(*one.solid, other.place, beside * size) &&
+         reach_along(*other.solid, one.normal, one.place) <= flush * size;
 }
 
 }  // namespace
 
 void drop_seams(std::vector<TouchOfPart>& touches, double size, std::vector<Seam>& seams) {
+  for (TouchOfPart& each : touches) find_plane(each, size);
+  const auto is_of_first = [&](const TouchOfPart& each) { return each.solid == touches.front().solid; };
+  if (std::ranges::all_of(touches, is_of_first)) return;
   for (std::size_t k = touches.size(); k-- > 0;) {
     const auto cover =
         std::ranges::find_if(touches, [&](const TouchOfPart& one) { return covers(one, touches[k], size); });
     if (cover == touches.end()) continue;
-    seams.push_back({touches[k].obstacle, plane_of(*cover, size).normal});
+    seams.push_back({touches[k].obstacle, cover->normal});
     touches.erase(touches.begin() + static_cast<std::ptrdiff_t>(k));
   }
 }

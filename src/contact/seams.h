@@ -13,6 +13,9 @@ struct TouchOfPart {
   Touch touch;
   const Outline* obstacle = nullptr;
   bool is_first = false;  ///< the obstacle is the first outline of the touch
+  // Found by drop_seams: the part, none of a line, and its plane.
+  const Solid* solid = nullptr;
+  Vec3 place, normal;  ///< on its surface, and towards the body
 };
 
 /// A part of an obstacle whose edge or side is no place to meet it: what touches it does so with its face along a normal.

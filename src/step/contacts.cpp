@@ -474,7 +474,8 @@ void ContactFinder::find_touches(const model::Model& model, contact::Outlines& o
       if (const contact::Outline& obstacle = outlines.described(is_first ? first : second);
           obstacle.solids.size() > 1) {
         of_parts_.clear(), seams_.clear();
-        for (const contact::Touch& touch : found_) of_parts_.push_back({touch, &obstacle, is_first});
+        for (const contact::Touch& touch : found_)
+          of_parts_.push_back({.touch = touch, .obstacle = &obstacle, .is_first = is_first});
         contact::drop_seams(of_parts_, meeting.size, seams_);
         found_.clear();
         for (const auto& each : of_parts_) found_.push_back(each.touch);
@@ -497,7 +498,8 @@ void ContactFinder::look_around(const model::Model& model, contact::Outlines& ou
        pair != pairs_.end() && pair->first == first; ++pair) {
     if (model.bodies[pair->second].kind != BodyKind::static_ || is_sensor(model, *pair)) continue;
     find_touches_of_two(model, outlines, *pair, meeting);
-    for (const contact::Touch& touch : found_) around_.push_back({touch, &outlines.described(pair->second), false});
+    for (const contact::Touch& touch : found_)
+      around_.push_back({.touch = touch, .obstacle = &outlines.described(pair->second)});
   }
   seams_.clear();
   contact::drop_seams(around_, meeting.size, seams_);
@@ -516,7 +518,7 @@ void ContactFinder::add_faces_of_seams(const model::Model& model, contact::Outli
     found_.clear();
     touches_.find_on_faces(placed(outlines, *meeting.first), (0.5 * h_) * motion.spins[0], *seam->obstacle, {},
                            seam->normal, within(*meeting.first, nullptr), found_);
-    for (const contact::Touch& touch : found_) around_.push_back({touch, seam->obstacle, false});
+    for (const contact::Touch& touch : found_) around_.push_back({.touch = touch, .obstacle = seam->obstacle});
   }
 }
 

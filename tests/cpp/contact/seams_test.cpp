@@ -18,12 +18,11 @@ std::vector<Vec3> normals_of(const Outline& body, const std::vector<Outline>& ob
   std::vector<TouchOfPart> touches;
   for (const Outline& obstacle : obstacles)
     for (const Touch& touch : is_first ? touches_of(obstacle, body, within) : touches_of(body, obstacle, within))
-      touches.push_back({touch, &obstacle, is_first});
+      touches.push_back({.touch = touch, .obstacle = &obstacle, .is_first = is_first});
   std::vector<Seam> seams;
   drop_seams(touches, 1, seams);
   std::vector<Vec3> normals;
-  for (const auto& [touch, obstacle, first] : touches)
-    normals.push_back(touch.is_turned == first ? touch.normal : -touch.normal);
+  for (const TouchOfPart& each : touches) normals.push_back(each.normal);
   return normals;
 }
 
