@@ -17,7 +17,7 @@ bool DistanceForm::joins_nodes(const JointArms& j) {
   const auto single = [&](int place) {
     return j.places[place].nodes[0].second == 1 && j.places[place].constant == Vec3{};
   };
-  return single(a_origin) && single(b_origin);
+  return single(a_origin) && single(b_origin) && j.places[a_origin].nodes[0].first != j.places[b_origin].nodes[0].first;
 }
 
 solver::SpanConstraint DistanceForm::span_row(const JointArms& j) {

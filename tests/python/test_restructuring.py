@@ -283,3 +283,23 @@ def test_an_obstacle_is_of_an_articulate_without_bodies_and_bodies_of_one_are_in
         ends[k][1].combine(ends[k + 1][0])
     assert rods[2].articulate.bodies == rods and len(rods[4].articulate) == 5
     assert system.obstacle(iota.Box((1, 1, 1)), (0, 9, 0)).articulate.bodies == []
+
+
+def test_a_rod_beside_a_closing_that_cannot_be_met_is_a_conflict_and_no_error() -> None:
+    """The rod's ends follow one point once the particle that was pulled off it goes back to its body."""
+    system = iota.System()
+    body = system.body()
+    near, far = body.particle((0, 0, 0)), body.particle((1, 0, 0))
+    hinged = system.body()
+    other = hinged.particle((0, 0, 0))
+    hinged.particle((-0.3, 1, 0))
+    near.combine(other)
+    point = system.body().particle((1, 0, 0))
+    far.combine(point)
+    twin = point.separate(point).created_particles[0]
+    twin.combine(other, over=0.14)  # which are a metre apart in one rigid body
+    assert system.step(1 / 60).unconverged == 1
+    system.rod(twin, far)
+    for _ in range(40):
+        system.step(1 / 240)
+    assert np.isfinite(system.positions).all()
