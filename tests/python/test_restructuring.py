@@ -297,7 +297,7 @@ def test_a_rod_beside_a_closing_that_cannot_be_met_is_a_conflict_and_no_error() 
     point = system.body().particle((1, 0, 0))
     far.combine(point)
     twin = point.separate(point).created_particles[0]
-    twin.combine(other, over=0.14)  # which are a metre apart in one rigid body
+    twin.combine(other, over=0.14)  # which are 1 m apart in one rigid body
     assert system.step(1 / 60).unconverged == 1
     system.rod(twin, far)
     for _ in range(40):
