@@ -37,7 +37,8 @@ bool find_nails(const Problem& problem, std::vector<std::uint32_t>& nail_of) {
 
 }  // namespace
 
-std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces& pieces, RoomForPieces& room) {
+std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces& pieces, RoomForPieces& room,
+                          Nails nails) {
   constexpr std::uint32_t none = Pieces::none, several = none - 1;
   DisjointSets& connected = room.connected;
   connected.reset(problem.size());
@@ -67,8 +68,9 @@ std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces&
             found = found == none || found == leader ? leader : several;
           }
     });
-  for (std::uint32_t node = 0; node < hanging.size(); ++node)
-    if (hanging[node] < several) join(node, hanging[node]);
+  if (nails == Nails::with_what_hangs_on_them)
+    for (std::uint32_t node = 0; node < hanging.size(); ++node)
+      if (hanging[node] < several) join(node, hanging[node]);
   std::uint32_t count = 0;
   pieces.of.resize(problem.size()), pieces.are_nails.clear();
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
@@ -76,7 +78,8 @@ std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces&
     pieces.of[node] = leader == node ? count++ : pieces.of[leader];
   }
   for (std::uint32_t node = 0; node < hanging.size(); ++node)
-    if (hanging[node] == several) pieces.are_nails.resize(count), pieces.are_nails[pieces.of[node]] = 1;
+    if (hanging[node] == several || (hanging[node] != none && nails == Nails::apart))
+      pieces.are_nails.resize(count), pieces.are_nails[pieces.of[node]] = 1;
   return count;
 }
 

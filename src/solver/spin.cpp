@@ -49,7 +49,7 @@ void Spin::begin(const Problem& problem) {
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
   auto& [parts, connected] = all_parts;
   if (connected.of.size() != problem.size())
-    parts.resize(find_pieces(problem, connection, connected, room_for_pieces_));
+    parts.resize(find_pieces(problem, connection, connected, room_for_pieces_, Nails::apart));
   const bool skips_contacts = connection == Connection::joints && problem.has_used<ContactConstraint>();
   for (Part& part : parts) part.holds = {}, part.touches = false;
   if (parts.size() == 1 && !skips_contacts)

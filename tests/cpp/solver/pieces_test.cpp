@@ -71,6 +71,26 @@ TEST(Pieces, have_the_nails_on_which_nothing_else_hangs) {
   EXPECT_EQ(holds_of(problem, Connection::rows, pieces, 2)[1].pivot(), (Vec3{4, 0, 0}));
 }
 
+/// A rod whose first end is tied to the middle of two nails, which are as the points of a static body.
+TEST(Pieces, that_a_ball_joint_with_a_static_body_holds_turn_about_its_ball_if_nails_are_apart) {
+  Problem problem;
+  for (int i = 0; i < 4; ++i) add_point(problem, {static_cast<double>(i), 0, 0});
+  nail(problem, 0), nail(problem, 2);
+  (void)add_rod(problem, 1, 3, 2);
+  AffineConstraint ball{.nodes = {0, 2, 1}, .weights = {0.5, 0.5, -1}, .count = 3};
+  add(problem, ball);
+  Pieces pieces;
+  RoomForPieces room;
+  EXPECT_EQ(find_pieces(problem, Connection::rows, pieces, room), 1u);
+  EXPECT_EQ(find_pieces(problem, Connection::rows, pieces, room, Nails::apart), 2u);
+  EXPECT_EQ(pieces.of, (Numbers{0, 1, 0, 1}));
+  EXPECT_EQ(holds_of(problem, Connection::rows, pieces, 2)[1].pivot(), (Vec3{1, 0, 0}));
+
+  AffineConstraint direction{.nodes = {0, 2, 1, 3}, .weights = {1, -1, -1, 1}, .count = 4};
+  add(problem, direction);
+  EXPECT_FALSE(holds_of(problem, Connection::rows, pieces, 2)[1].pivot()) << "a direction is held, too";
+}
+
 TEST(Pieces, between_two_nails_that_others_share_have_no_pivot) {
   Problem problem;
   for (int i = 0; i < 4; ++i) add_point(problem, {static_cast<double>(i), 0, 0});

@@ -168,6 +168,33 @@ TEST(Pendulums, on_one_nail_swing_as_each_of_them_alone) {
       }
 }
 
+/// Its angular momentum about the vertical stays, whatever the ball joint is with. A static body took half of it in 2 s.
+TEST(Pendulums, on_static_and_scripted_bodies_swing_as_those_of_the_world) {
+  for (const IntegrationMode mode : end_point_modes) {
+    Vec3 in_world;
+    for (const BodyKind kind : {BodyKind::dynamic, BodyKind::static_, BodyKind::scripted}) {
+      System system({.mode = mode});
+      const Vec3 place{0.4, -0.4, 0.1}, spin{0, 5, 0};
+      const BodyId box = system.bodies().create(
+          Box{{0.5, 0.3, 0.2}}, {.mass = 2, .position = place, .velocity = cross(spin, place), .spin = spin});
+      JointSpec joint{.kind = ConstraintKind::ball, .a = box};
+      if (kind != BodyKind::dynamic) {
+        joint.b = system.bodies().create(Sphere{0.05}, {.mass = 1});
+        system.bodies().set_kind(joint.b, kind);
+      }
+      (void)system.joints().create(joint);
+      (void)system.step(1e-6);
+      const auto about = [&] { return system.angular_momentum().y; };
+      const double start = about();
+      for (int i = 0; i < 120; ++i) (void)system.step(1.0 / 60);
+      EXPECT_NEAR(about(), start, 0.01 * start);
+      const Vec3 end = system.bodies().center_of_mass(box);
+      if (kind == BodyKind::dynamic) in_world = end;
+      EXPECT_LT(norm(end - in_world), 1e-6);
+    }
+  }
+}
+
 /// Gravity has no torque about the vertical through the nail, which is at the origin.
 TEST(Velocities, of_what_circles_about_a_nail_keep_the_angular_momentum_about_the_vertical) {
   for (const bool block : {false, true}) {
