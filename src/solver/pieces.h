@@ -26,11 +26,9 @@ enum class Connection : std::uint8_t { lengths, joints, rows, rows_and_forces };
 struct Pieces {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  std::vector<std::uint32_t> of;  ///< each node; numbered by their lowest nodes
-  std::vector<std::uint8_t>
-      are_nails;  ///< each piece: of nails alone, on which others hang. Empty if there is no such piece
-  std::vector<std::uint32_t>
-      nail_of;  ///< each node: its nail among the affine constraints, or `none`. Empty without nails
+  std::vector<std::uint32_t> of;        ///< each node; numbered by their lowest nodes
+  std::vector<std::uint8_t> are_nails;  ///< each piece: of nails alone, on which others hang; empty if none is
+  std::vector<std::uint32_t> nail_of;   ///< each node: its nail of the affine constraints, or `none`; may be empty
 
   bool is_nail(std::uint32_t piece) const { return !are_nails.empty() && are_nails[piece] != 0; }
   /// The piece that all of the nodes belong to, or hang on by a nail; `none` if these are several, or nails alone.

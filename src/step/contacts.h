@@ -91,9 +91,11 @@ class ContactFinder {
   Meeting meeting_of(const model::Model&, contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.
   bool touch(model::Model&, contact::Outlines&, const Pair&, const Meeting&, std::span<const std::uint32_t> former);
-  /// Their touches, without seams of obstacles, into found_.
+  /// Their touches, into found_: without seams, and with the faces beyond these.
   void find_touches(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  /// The same by these two alone.
   void find_touches_of_two(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  /// The touches of the first one with all that is static, into around_.
   void look_around(const model::Model&, contact::Outlines&, const Meeting&);
   void add_faces_of_seams(const model::Model&, contact::Outlines&, const Meeting&);
   /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
