@@ -25,6 +25,7 @@ void HeldForces::switch_off(std::uint32_t slot, const std::string& why, StepRepo
 void HeldForces::add_force(std::uint32_t slot, const Vec3& on_p) {
   ingredient::Bond& bond = model_.bonds[slot];
   bond.held_force = on_p;
+  if (bond.is_within_body(model_)) return;
   model_.pushes.make(model_.particles[bond.p].ring).force += on_p;
   model_.pushes.make(model_.particles[bond.q].ring).force -= on_p;
 }

@@ -27,6 +27,10 @@ struct Bond : model::Ends {
   /// Whether it is solved implicitly, so that its two ends belong to one problem.
   bool ties() const { return acts() && implicit; }
   bool acts() const { return active && !muted; }
+  /// Whether it is between points of one rigid body, which a held force does not move: it spun the body up.
+  bool is_within_body(const model::Structure& structure) const {
+    return structure.particles[p].body == structure.particles[q].body;
+  }
 };
 
 /// Forces between two particles. Implicit ones, of the positions at the end of the step, are in the problem of an

@@ -350,3 +350,24 @@ def test_a_name_is_that_of_a_law_or_of_a_function_of_the_script(space: iota.Syst
         space.bond(*pair, "fred")
     with pytest.raises(ValueError, match="did you mean 'stiff'"):
         space.bond(*pair, "stif")
+
+
+@pytest.mark.parametrize("mode", ["plausible", "robust", "energy_keeping", "accurate"])
+def test_a_held_law_between_points_of_one_rigid_body_does_not_move_it(mode: Any) -> None:
+    """It had a torque about the place where the body turned to in the step: the body spun up."""
+    places = []
+    for strength in (0, 50):
+        system = iota.System(gravity=(0, 0, 0), mode=mode)
+        body = system.body()
+        p, q = body.particle((0, 0, 0), 1, (0, 1, 0)), body.particle((1, 0, 0), 2, (0, -2, 0.5))
+        r = body.particle((0, 1, 0.3), 1, (0.3, 0, 0))
+        bonds = [
+            system.bond(p, q, "gravity", strength=strength, softening=0.01, implicit=False),
+            system.bond(q, r, "spring", stiffness=10 * strength, length=0.5, implicit=False),
+        ]
+        for _ in range(240):
+            system.step(1 / 60)
+        places.append([tuple(point.position) for point in (p, q, r)])
+        assert abs(system.energy.external_work) < 1e-6
+        assert strength == 0 or min(abs(bond.force) for bond in bonds) > 50  # it is there
+    np.testing.assert_allclose(places[1], places[0], atol=1e-9)
