@@ -82,9 +82,7 @@ geometry::Bounds bounds_of(const PartList& parts) {
     if (solid->form->is_endless) return {{-far, -far, -far}, {far, far, far}};
     all = geometry::joined(all, bounds(*solid, {}));
   }
-  for (const Line* const line : parts.lines)
-    all =
-        geometry::joined(all, geometry::grown(geometry::joined({line->a, line->a}, {line->b, line->b}), line->radius));
+  for (const Line* const line : parts.lines) all = geometry::joined(all, bounds(*line, {}));
   return all;
 }
 
@@ -217,7 +215,7 @@ void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& 
         if (!lowest) return;
         const Vec3 center = to_world(lowest->center);
         const std::optional<Plane> there = plane_of(other, center, middle);
-        if (!there || !lowest->is_lowest || norm(there->normal - here.normal) <= same_normal)
+        if (!there || norm(there->normal - here.normal) <= same_normal)
           return add(solid->number, lowest->number, center, lowest->radius, there);
         if (pass + 1 == most) look(solid->number, lowest->number, center - lowest->radius * here.normal, 0);
         here = *there;

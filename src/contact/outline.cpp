@@ -185,6 +185,11 @@ Bounds bounds(const Solid& solid, const Vec3& anchor) {
   return {middle - reach, middle + reach};
 }
 
+Bounds bounds(const Line& line, const Vec3& anchor) {
+  const Vec3 a = line.a - anchor, b = line.b - anchor;
+  return geometry::grown(geometry::joined({a, a}, {b, b}), line.radius);
+}
+
 Bounds bounds(const Outline& outline) {
   constexpr double far = std::numeric_limits<double>::infinity();
   Bounds all{{far, far, far}, {-far, -far, -far}};
@@ -192,10 +197,7 @@ Bounds bounds(const Outline& outline) {
     if (solid.form->is_endless) return {{-far, -far, -far}, {far, far, far}};
     all = joined(all, bounds(solid, {}));
   }
-  for (const Line& line : outline.lines) {
-    const Vec3 reach{line.radius, line.radius, line.radius};
-    all = joined(all, joined(Bounds{line.a - reach, line.a + reach}, Bounds{line.b - reach, line.b + reach}));
-  }
+  for (const Line& line : outline.lines) all = joined(all, bounds(line, {}));
   return all;
 }
 

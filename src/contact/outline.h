@@ -74,7 +74,8 @@ bool is_overlapped(const Outline&, const Solid& probe);
 double reach(const Outline&, const Vec3& place);
 /// The box of all parts; infinite for an endless one.
 geometry::Bounds bounds(const Outline&);
-/// The box of a solid, relative to an anchor.
+/// The box of a part, relative to an anchor.
 geometry::Bounds bounds(const Solid&, const Vec3& anchor);
+geometry::Bounds bounds(const Line&, const Vec3& anchor);
 
 }  // namespace iota::contact

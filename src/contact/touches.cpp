@@ -11,11 +11,6 @@ namespace iota::contact {
 
 namespace {
 
-geometry::Bounds box_of_line(const Line& line, const Vec3& anchor) {
-  return geometry::grown(geometry::joined({line.a - anchor, line.a - anchor}, {line.b - anchor, line.b - anchor}),
-                         line.radius);
-}
-
 const Vec3& anchor_of(const Outline& outline) {
   return outline.solids.empty() ? outline.lines.front().a : outline.solids.front().position;
 }
@@ -68,7 +63,7 @@ void TouchFinder::list(const Outline& outline, const Vec3& anchor, Parts& parts)
   }
   for (const Line& line : outline.lines) {
     Part& part = add(parts);
-    part.line = &line, part.kind = Part::rod, part.box = box_of_line(line, anchor);
+    part.line = &line, part.kind = Part::rod, part.box = bounds(line, anchor);
     parts.kinds |= part.kind;
   }
 }

@@ -9,23 +9,6 @@
 namespace iota::contact {
 namespace {
 
-/// An L of two boxes as one mesh: a step of height 1 at x = 0.
-Mesh step_mesh() {
-  const std::vector<Vec3> front{{-1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 2, 1}, {-1, 2, 1}};
-  Mesh mesh;
-  mesh.vertices = front;
-  for (Vec3 place : front) place.z = -1, mesh.vertices.push_back(place);
-  for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}, {0u, 3u, 5u}, {3u, 4u, 5u}}) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a + 6, c + 6, b + 6});
-  }
-  for (std::uint32_t k = 0; k < 6; ++k) {
-    const std::uint32_t next = (k + 1) % 6;
-    mesh.triangles.push_back({k, k + 6, next}), mesh.triangles.push_back({next, k + 6, next + 6});
-  }
-  return mesh;
-}
-
 TEST(CornerTouches, of_a_box_on_a_step_are_its_corners) {
   const auto found = touches_of(placed(Box{{0.2, 0.2, 0.2}}, {0.5, 1.1, 0}), placed(step_mesh(), {}), 0.01);
   ASSERT_EQ(found.size(), 4u);

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -228,28 +227,13 @@ TEST(Touches, are_found_without_allocations_once_warm) {
   EXPECT_EQ(found.size(), 6u);
 }
 
-/// Two boxes that make an L, as one mesh.
-Mesh corner_of_two() {
-  const std::vector<Vec3> front{{-1, -1, 0.4}, {1, -1, 0.4}, {1, 0, 0.4}, {0, 0, 0.4}, {0, 1, 0.4}, {-1, 1, 0.4}};
-  Mesh mesh;
-  mesh.vertices = front;
-  for (Vec3 place : front) place.z *= -1, mesh.vertices.push_back(place);
-  for (const auto& [a, b, c] : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}, {0u, 3u, 5u}, {3u, 4u, 5u}})
-    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a + 6, c + 6, b + 6});
-  for (std::uint32_t k = 0; k < 6; ++k) {
-    const std::uint32_t next = (k + 1) % 6;
-    mesh.triangles.push_back({k, k + 6, next}), mesh.triangles.push_back({next, k + 6, next + 6});
-  }
-  return mesh;
-}
-
 // A ring that was created after a box fell through it.
 TEST(Touches, do_not_depend_on_which_body_comes_first) {
   RandomShapes random(5);
   constexpr int kinds = RandomShapes::kinds + 2;
   const auto shape_of = [&](int kind) -> Shape {
     if (kind == RandomShapes::kinds) return Torus{0.6, 0.15, random.number(0, 0.5)};
-    return kind > RandomShapes::kinds ? Shape(corner_of_two()) : random.make(kind, 0.7);
+    return kind > RandomShapes::kinds ? Shape(step_mesh()) : random.make(kind, 0.7);
   };
   int found_any = 0;
   for (int a = 0; a < kinds; ++a)
