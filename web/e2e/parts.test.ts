@@ -2,7 +2,7 @@
 // Each ready part of interaction by each way to reach it; docs/interaction.md has the table.
 
 import { afterAll, beforeAll, beforeEach, describe, expect, it } from "vitest";
-import { Browser, type Place, type Tab } from "./browser.ts";
+import { Browser, distance, type Place, type Tab } from "./browser.ts";
 import { HeadsetTab } from "./headset.ts";
 import { freePort, WorldServer } from "./server.ts";
 
@@ -311,18 +311,22 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
   });
 
   itIf(name !== "keyboard")("a body is dragged by a force, which is written at the hand, and thrown", async () => {
-    const [x, y, z] = await hold(ball);
-    await user.moveTo([x + 0.2, y + 0.4, z]);
-    await expect.poll(() => user.force(), { message: "the force is written" }).toMatch(/^\d+(\.\d)? N$/);
-    await tab.until("it comes to the hand", (id) => {
-      const [held] = iota.holds();
-      return Math.hypot(...iota.bodyPosition(id).map((value, axis) => value - held.target[axis])) < 0.12;
-    }, ball);
-    await user.moveTo([x + 0.2, y - 0.4, z]);
-    await tab.until("it moves on", ([id, from]) => iota.bodyPosition(id)[1] < from, [ball, y + 0.3] as const);
-    await letGo();
-    const at = await tab.position(ball);
-    await tab.until("it flies on", ([id, from]) => Math.hypot(...iota.bodyPosition(id).map((value, axis) => value - from[axis])) > 0.2, [ball, at] as const);
+    // A busy machine may hold up the release until the ball rests at the hand: then it does not fly, and is thrown again.
+    await expect.poll(async () => {
+      const [x, y, z] = await hold(ball);
+      await user.moveTo([x + 0.2, y + 0.4, z]);
+      await expect.poll(() => user.force(), { message: "the force is written" }).toMatch(/^\d+(\.\d)? N$/);
+      await tab.until("it comes to the hand", (id) => {
+        const [held] = iota.holds();
+        return Math.hypot(...iota.bodyPosition(id).map((value, axis) => value - held.target[axis])) < 0.12;
+      }, ball);
+      await user.moveTo([x + 0.2, y - 0.4, z]);
+      await tab.until("it moves on", ([id, from]) => iota.bodyPosition(id)[1] < from, [ball, y + 0.3] as const);
+      await letGo();
+      const at = await tab.position(ball);
+      await tab.goOn(1);
+      return distance(await tab.position(ball), at);
+    }, { message: "it flies on" }).toBeGreaterThan(0.2);
   });
 
   itIf(name !== "keyboard")("a piece is carried exactly", async () => {
