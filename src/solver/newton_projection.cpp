@@ -144,10 +144,14 @@ void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses
 // kinetic energy afterwards; `energy` is that before. After a step, rates within the tolerance are left alone.
 std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted& wanted, double energy) {
   constexpr double leverage = 10;  // of speeds relative to those that drive them
+  // Two corners that rebound at different speeds can hardly stick both. With a softness of 1e-6 they pushed each other with a
+  // thousand times the impulse of the impact, so that both seemed to slip.
+  constexpr double softness_in_impacts = 1e-2;
   double most = energy * (1 + 1e-9);
   for (const double compliance : row_compliances) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = wanted.fraction();
+    if (wanted.has_impacts) stage.softness = softness_in_impacts;
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     double drive = find_rates(problem, wanted);
     if (wanted.is_after_step && !wanted.has_impacts && drive == 0) return {};

@@ -52,10 +52,6 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   return {g + ((1 - part) * stiffness - damping) / total * before, 1 / total};
 }
 
-/// Rows that are eliminated before their points by their own compliance need as much of it where that of forces is nothing: else
-/// balls that met had 1e-4 rad/s of round-off. Only in the matrix: what it leaves is removed by another pass.
-inline constexpr double softness_of_projections = 1e-8;
-
 /// The way of tangential row r in a (sub-)step in which it sticks, m: the integral of its rate, 0 over a whole step.
 template <ConeConstraint C>
 double way_of([[maybe_unused]] const C& c, [[maybe_unused]] int r, const Stage& stage) {
@@ -65,7 +61,9 @@ double way_of([[maybe_unused]] const C& c, [[maybe_unused]] int r, const Stage& 
 }
 
 /// The equations of a cone's rows, where their values are g; `mobilities`: sum |G|^2 / m of each. Positions and impulses, on
-/// which finite forces have no effect, have no friction.
+/// which finite forces have no effect, have no friction. Soft rows are eliminated before their points, so that in projections they
+/// need a softness, too: without it balls that met had 1e-4 rad/s of round-off. It is in the matrix only, and other passes remove
+/// what it leaves.
 template <ConeConstraint C>
 ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const double* g, const double* mobilities,
                            const Stage& stage) {
@@ -79,9 +77,10 @@ ConeEquations equations_of(const ConstraintPool<C>& pool, std::size_t i, const d
   if (!stage.is_projection()) return pool.items[i].equations(state, pool.multiplier(i), values, natural);
   state.direction = 0;
   ConeEquations e = pool.items[i].equations(state, pool.multiplier(i), values, natural);
+  constexpr double of_reaction = 1e-8;
   for (int r = 0; r < C::rows; ++r)
     if (pool.items[i].compliance_of(r) > 0 && pool.is_equation(i, r))
-      e.by_multiplier[r][r] -= softness_of_projections * natural[r];
+      e.value[r] = values[r], e.by_multiplier[r][r] = -(C::is_tangent(r) ? stage.softness : of_reaction) * natural[r];
   return e;
 }
 

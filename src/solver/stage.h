@@ -19,6 +19,7 @@ struct Stage {
   double fraction = 1;                   ///< of the step, for targets that move during it
   double fraction_start = 0;             ///< start of this (sub-)step
   double compliance = exact_rows;        ///< relative: multiplies sum |G|^2 / (inertia m) of each row
+  double softness = 1e-6;                ///< the same, of places that stick in a projection; see equations_of
 
   double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link
   int max_iterations = 60;
