@@ -540,11 +540,11 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     row.first_side = has_world_plane(c) ? 0 : c.of_p;
     row.weights = c.weights;  // they tell which arms are places of the world: Problem::set_origin
     problem.add(row, {owner, {}, slot});
-    solver::BilinearConstraint roll;
+    solver::ResistanceConstraint roll;
     roll.nodes = row.nodes, roll.count = row.count, roll.first_side = row.first_side;
     for (std::uint8_t k = 0; k < c.roll_rows; ++k) problem.add(roll, {owner, {k}, slot});
     if (c.spin_rows > 0) problem.add(roll, {owner, {spin_row}, slot});
-    if (c.roll_rows + c.spin_rows > 0) (void)problem.pool_of<solver::BilinearConstraint>().law(0);
+    if (c.roll_rows + c.spin_rows > 0) (void)problem.pool_of<solver::ResistanceConstraint>().law(0);
   }
 }
 
@@ -579,27 +579,49 @@ double size_of(const solver::ContactConstraint& row, const Contact& c, const Pro
 
 namespace {
 
-/// The force that would stop the bodies at their contact if nothing else held them, N: for a step in which they begin to touch.
+/// The mean force in the step by which bodies that begin to touch would stop and rebound if nothing else held them, N.
 double stopping_force(const Model& model, const Contact& c, std::span<const std::uint32_t> at, const IslandNodes& nodes,
                       double h, const Problem& problem) {
-  double gap = std::max(0.0, Contacts::gap(model, c) - c.depth), compliance = 0;
+  double gap = std::max(0.0, Contacts::gap(model, c) - c.depth), speed = 0, fall = 0, mobility = 0;
   for (std::uint32_t i = 0; i < c.point_count; ++i) {
-    const double w = c.weights[Arm::center][i];
+    const double w = c.weights[Arm::center][i], along = w * dot(c.normal, problem.velocity[at[i]]);
     const bool is_free = !nodes.pinned[at[i]];
-    Vec3 way = h * problem.velocity[at[i]];
-    if (is_free) way += 0.5 * h * h * problem.gravity, compliance += 0.5 * h * h * w * w / problem.mass[at[i]];
-    gap += w * dot(c.normal, way);
+    speed += along;
+    if (is_free) fall += w * dot(c.normal, h * problem.gravity), mobility += w * w / problem.mass[at[i]];
   }
-  return compliance > 0 ? std::max(0.0, -gap / compliance) : 0;
+  const bool meets = gap + h * (speed + 0.5 * fall) < 0;
+  const double rebound = speed < -h * norm(problem.gravity) ? c.restitution * speed : 0;
+  return meets && mobility > 0 ? std::max(0.0, -(speed + rebound + fall) / (h * mobility)) : 0;
+}
+
+/// The places of contacts in their pool, by their slots.
+using ItemsBySlot = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Of the one or two contacts of two bodies.
+std::array<std::uint32_t, 2> items_of_both(const Model& model, const Contact& c, const ItemsBySlot& items) {
+  std::array<std::uint32_t, 2> found{none, none};
+  const auto [mover, other] = has_points(model.bodies[c.p]) ? std::pair(c.p, c.q) : std::pair(c.q, c.p);
+  model.contacts.for_each_of(mover, [&](std::uint32_t slot) {
+    if (model.contacts[slot].p != other && model.contacts[slot].q != other) return;
+    const auto at = std::lower_bound(items.begin(), items.end(), std::pair(slot, 0u));
+    if (at != items.end() && at->first == slot) found[found[0] != none] = at->second;
+  });
+  return found;
 }
 
 /// The rows against rolling and spinning: the angle between a direction of p and one of q is held, up to a torque.
 void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
-  if (!problem.has_used<solver::BilinearConstraint>()) return;
-  auto& rows = problem.pool_of<solver::BilinearConstraint>();
-  for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+  if (!problem.has_used<solver::ResistanceConstraint>()) return;
+  auto& rows = problem.pool_of<solver::ResistanceConstraint>();
+  thread_local ItemsBySlot items;
+  items.clear();
+  for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    items.emplace_back(key.slot, static_cast<std::uint32_t>(i));
+  });
+  std::sort(items.begin(), items.end());
+  for_each_item_of<solver::ResistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
-    solver::BilinearConstraint& row = rows.items[i];
+    solver::ResistanceConstraint& row = rows.items[i];
     Sides sides(model, c.p, c.q);
     const bool spins = key.part[0] == spin_row;
     const Vec3& along = spins ? c.spin_second : key.part[0] == 0 ? c.roll_first : c.roll_second;
@@ -612,8 +634,9 @@ void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& 
       for (std::uint32_t k = 0; k < count; ++k) row.weights[arm][first + k] = end[k] - start[k];
     };
     set_arm(0, spins ? c.spinner : c.roller, false), set_arm(1, along, true);
-    const double force = c.carried > 0 ? c.carried : stopping_force(model, c, row.nodes, nodes, h, problem);
-    const double most = (spins ? c.spinning : c.rolling) * force;
+    row.share = spins ? c.spinning : c.rolling;
+    row.contacts = items_of_both(model, c, items), row.begins = !(c.carried > 0);
+    const double most = row.share * (row.begins ? stopping_force(model, c, row.nodes, nodes, h, problem) : c.carried);
     rows.law(i)[0] = {.lower = -most, .upper = most, .is_rate = true};
     *rows.multiplier(i) = spins ? c.twist : dot(c.torque, along);
   });
@@ -690,9 +713,9 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
     c.impulse = before - (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
     c.torque = {}, c.twist = 0;
   });
-  if (!problem.has_used<solver::BilinearConstraint>()) return;
-  const auto& rolls = problem.pool_of<solver::BilinearConstraint>();
-  for_each_item_of<solver::BilinearConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+  if (!problem.has_used<solver::ResistanceConstraint>()) return;
+  const auto& rolls = problem.pool_of<solver::ResistanceConstraint>();
+  for_each_item_of<solver::ResistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     Contact& c = model.contacts[key.slot];
     if (key.part[0] == spin_row)
       c.twist = *rolls.multiplier(i);

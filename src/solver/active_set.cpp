@@ -109,7 +109,7 @@ ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, 
 
 void ActiveSet::begin(Problem& problem, const Stage& stage) {
   fewest_wrong_ = std::numeric_limits<int>::max(), stalled_ = 0;
-  softening_ = 0, has_softened_ = false;
+  softening_ = 0, has_softened_ = false, followed_ = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
@@ -134,6 +134,32 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
       }
     }
   });
+}
+
+// With the force of the step before, resistance went on with that of an impact, a hundred times the weight, and in flight.
+bool ActiveSet::follow_reactions(Problem& problem, const Stage& stage) {
+  constexpr double same = 1e-3;
+  constexpr int most = 4;
+  if (!problem.has_used<ResistanceConstraint>() || followed_ == most) return false;
+  auto& pool = problem.pool_of<ResistanceConstraint>();
+  const auto& contacts = problem.pool_of<ContactConstraint>();
+  bool any = false;
+  for (std::size_t i = 0; i < pool.items.size(); ++i) {
+    const ResistanceConstraint& c = pool.items[i];
+    if (c.contacts[0] == ResistanceConstraint::none || (c.begins && stage.is_mid_point())) continue;
+    double reaction = 0;
+    for (const std::uint32_t k : c.contacts)
+      if (k != ResistanceConstraint::none) reaction += std::max(0.0, -contacts.multiplier(k)[0]);
+    RowLaw& law = *pool.law(i);
+    const double bound = c.share * reaction;
+    if (std::abs(bound - law.upper) <= same * std::max(bound, law.upper)) continue;
+    law.lower = -bound, law.upper = bound, any = true;
+    RowStates::Row& state = pool.states.rows_[i];
+    if (bound == 0 && state.side == 0) state.side = 1;
+    if (state.side != 0) *pool.multiplier(i) = state.side * bound;
+  }
+  followed_ += any;
+  return any;
 }
 
 int ActiveSet::count_met(const Problem& problem) {

@@ -21,6 +21,9 @@ class ActiveSet {
   /// the tolerance do not change.
   bool choose(Problem&, const Stage&, const Vec3* x);
   static constexpr int most_softenings = 6;
+  /// Gives resistances the bounds of the present reactions; returns whether these differ from the former by more than a thousandth.
+  /// Reactions hardly depend on such torques, so that it ends after one or two times; at most a few since `begin`.
+  bool follow_reactions(Problem&, const Stage&);
   /// Number of rows that became free since `begin`.
   static int count_met(const Problem&);
 
@@ -65,7 +68,7 @@ class ActiveSet {
 
   void soften(Problem&, const Stage&, const Vec3* x);
 
-  int fewest_wrong_ = 0, stalled_ = 0;
+  int fewest_wrong_ = 0, stalled_ = 0, followed_ = 0;
   double softening_ = 0;  // of rate rows, in their natural compliances
   bool has_softened_ = false;
 };

@@ -112,7 +112,8 @@ void HeapPoints::load(const Problem& problem, const HeapBodies& bodies, std::spa
   points_.clear(), by_height_.clear();
   are_new_ = false;
   const Vec3 up = unit_or(-1.0 * problem.gravity, {0, 1, 0});
-  for (std::size_t i = 0; i < problem.items_of<ContactConstraint>().size(); ++i) {
+  places_.assign(problem.items_of<ContactConstraint>().size(), {});
+  for (std::size_t i = 0; i < places_.size(); ++i) {
     Point point;
     if (!load_point(problem, bodies, motions, i, rate, up, point)) continue;
     are_new_ = are_new_ || point.forces[0] == 0;
@@ -159,6 +160,7 @@ void HeapPoints::pack(std::span<const HeapMotion> motions, double h) {
       lines[r]->way.set(lane, point.ways[r]);
       lines[r]->drift[lane] = dot(point.drift, point.ways[r]), lines[r]->impulse[lane] = h * point.forces[r];
     }
+    places_[point.row] = {number, lane};
     begin.rows[lane] = point.row, begin.half[lane] = point.is_at_rest ? 0 : 0.5;
     begin.restitution[lane] = point.restitution;
     begin.arm_a.set(lane, point.arm_a), begin.arm_b.set(lane, point.arm_b);

@@ -26,6 +26,13 @@ class HeapPoints {
   bool are_new() const { return are_new_; }
   void warm(std::span<HeapMotion>) const;
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
+  /// Of an item of the pool, in the present sub-step, N s; with that of a rebound, of what met faster than this.
+  double normal_impulse(std::uint32_t item, double least) const {
+    const auto [pack, lane] = places_[item];
+    if (pack == none) return 0;
+    const PackBegin& begin = begins_[pack];
+    return (begin.approach[lane] > least ? 1 + begin.restitution[lane] : 1) * packs_[pack].normal.impulse[lane];
+  }
   /// Gaps and directions at the places of the bodies, h seconds later.
   void refresh(const HeapBodies&, std::span<const HeapMotion>, double h);
   /// Ends a sub-step.
@@ -96,6 +103,11 @@ class HeapPoints {
 
   std::vector<Pack> packs_;
   std::vector<PackBegin> begins_;
+  struct PlaceInPacks {
+    std::uint32_t pack = none;
+    int lane = 0;
+  };
+  std::vector<PlaceInPacks> places_;  // of each item of the pool
   bool are_new_ = false;
   // Scratch, kept for its capacity.
   std::vector<Point> points_;

@@ -79,8 +79,11 @@ bool HeapTies::find(const Problem& problem, const HeapBodies& bodies) {
 }
 
 void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h) {
+  resistances_.clear();
   visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
     const C& c = pool.items[tie.item];
+    if constexpr (std::is_same_v<C, ResistanceConstraint>)
+      resistances_.push_back({static_cast<std::uint32_t>(&tie - ties_.data()), c.contacts, c.share});
     tie.moves = c.is_moving(), tie.size = c.reference_length();
     for (const std::uint32_t node : pool.nodes_of(c)) tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
     for (int r = 0; r < C::rows; ++r) {
@@ -212,7 +215,7 @@ void HeapTies::sweep(std::span<HeapMotion> motions, const HeapSoftness& soft, do
     }
     for (int r = 0; r < tie.rows; ++r) {
       const RowLaw& law = tie.law[r];
-      if (law.is_off() || !(tie.by_mass[r] > 0)) continue;
+      if ((law.is_off() && tie.impulse[r] == 0) || !(tie.by_mass[r] > 0)) continue;
       const double rate = rate_of(tie, r, motions), before = tie.impulse[r], mass = 1 / tie.by_mass[r];
       double after = before;
       if (law.is_compliant()) {

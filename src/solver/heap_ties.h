@@ -47,6 +47,17 @@ class HeapTies {
   /// Whether a body has a copy of a shared point beside it, which would be a point of it in the next step.
   bool are_copies_apart() const;
   void warm(std::span<HeapMotion>);
+  /// Resistance has the bounds of what its contacts carry: impulse_of(contact), along the normal in a sub-step of h seconds, N s.
+  template <class ImpulseOf>
+  void bound_resistances(ImpulseOf impulse_of, double h) {
+    for (const Resistance& resistance : resistances_) {
+      double impulse = 0;
+      for (const std::uint32_t contact : resistance.contacts)
+        if (contact != ResistanceConstraint::none) impulse += impulse_of(contact);
+      RowLaw& law = ties_[resistance.tie].law[0];
+      law.upper = resistance.share * impulse / h, law.lower = -law.upper;
+    }
+  }
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
   /// Ends a sub-step. Returns the work of rows that drive, J.
   double add_up();
@@ -100,6 +111,12 @@ class HeapTies {
 
   std::vector<Tie> ties_;    // by pools, copies last
   std::vector<Side> sides_;  // of the ties
+  struct Resistance {
+    std::uint32_t tie;
+    std::array<std::uint32_t, 2> contacts;
+    double share;
+  };
+  std::vector<Resistance> resistances_;
   std::vector<Vec3> x_, x_next_;
   // The ties of equations, and the factor that projects onto them.
   std::vector<std::uint32_t> equations_;

@@ -108,6 +108,11 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
             std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
       }
     }
+    if (are_final && !(residual_.worst > stage.tolerance) && !stage.is_projection() &&
+        active_set_.follow_reactions(problem, stage)) {
+      factor_will_do = false;
+      measure(problem, stage);
+    }
     if (!(residual_.worst > stage.tolerance) || report.iterations >= most_iterations) break;
     ++report.iterations;
     served_on = factor_will_do;

@@ -13,7 +13,7 @@ template <class Visit>
 void for_each_connected(const Problem& problem, Connection connection, Visit visit) {
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
     if (connection == Connection::lengths && !std::is_same_v<C, DistanceConstraint>) return;
-    if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
+    if (connection == Connection::joints && is_of_contact<C>) return;
     visit(pool.nodes_of(pool.items[i]));
   });
   if (connection == Connection::rows_and_forces)

@@ -82,7 +82,7 @@ template <class HoldsOf>
 void add_holds(const Problem& problem, Connection connection, const Pieces& pieces, HoldsOf holds_of) {
   if (pieces.are_nails.empty()) {
     problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-      if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
+      if (connection == Connection::joints && is_of_contact<C>) return;
       holds_of(pieces.of[pool.nodes_of(pool.items[i]).front()]).add(pool.items[i]);
     });
     return;
@@ -96,7 +96,7 @@ void add_holds(const Problem& problem, Connection connection, const Pieces& piec
       if (const AffineConstraint* const nail = nail_at(node)) holds_of(piece).add_nail(*nail);
   };
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-    if (connection == Connection::joints && std::is_same_v<C, ContactConstraint>) return;
+    if (connection == Connection::joints && is_of_contact<C>) return;
     const C& c = pool.items[i];
     const auto nodes = pool.nodes_of(c);
     const std::uint32_t piece = pieces.of_all(nodes);

@@ -25,7 +25,7 @@ void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::ui
 /// pushes it. As parts of one piece a rolling ball lost 40 % of its speed in 2 s, a spinning one as much, and a light body paid
 /// with its motion for the spin of a heavy one.
 template <class C>
-constexpr bool is_joint = !std::is_same_v<C, DistanceConstraint> && !std::is_same_v<C, ContactConstraint>;
+constexpr bool is_joint = !std::is_same_v<C, DistanceConstraint> && !is_of_contact<C>;
 
 /// The pseudoinverse of an inertia. For points on a line it is zero along the line.
 Mat3 pseudoinverse(const Mat3& inertia) {
@@ -77,7 +77,7 @@ void Spin::find_rigid_pieces(const Problem& problem) {
     const std::uint32_t part = pieces_.connected.of[pool.nodes_of(pool.items[i]).front()];
     if constexpr (std::is_same_v<C, DistanceConstraint>)
       ++counts_[part].rods;
-    else if constexpr (!std::is_same_v<C, ContactConstraint>)
+    else if constexpr (!is_of_contact<C>)
       pieces_.parts[part].is_rigid = false;
   });
   const auto drop = [&](const auto& forces) {

@@ -10,6 +10,7 @@
 #include "solver/constraints/curve.h"
 #include "solver/constraints/distance.h"
 #include "solver/constraints/friction_line.h"
+#include "solver/constraints/resistance.h"
 #include "solver/constraints/span.h"
 #include "solver/constraints/surface.h"
 #include "solver/constraints/surface_pair.h"
@@ -141,7 +142,12 @@ template <template <class> class Pool>
 using ConstraintPools =
     std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,
                Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>,
-               Pool<SpanConstraint>, Pool<CouplingConstraint>, Pool<FrictionLineConstraint>, Pool<ContactConstraint>>;
+               Pool<SpanConstraint>, Pool<CouplingConstraint>, Pool<FrictionLineConstraint>, Pool<ContactConstraint>,
+               Pool<ResistanceConstraint>>;
+
+/// Rows where bodies touch, which end when they part.
+template <class C>
+constexpr bool is_of_contact = std::is_same_v<C, ContactConstraint> || std::is_same_v<C, ResistanceConstraint>;
 
 template <class C>
 struct CheckConstraint {

@@ -153,9 +153,9 @@ Vec3 spin_after_falling_on_an_edge(IntegrationMode mode, double tilt, double tim
   const double lean = std::numbers::pi / 4 + 0.3, a = std::sin(tilt / 2), b = std::cos(tilt / 2),
                c = std::sin(lean / 2), d = std::cos(lean / 2);
   const BodyId box = system.bodies().create(Box{{0.4, 0.4, 0.6}}, {.position = {0, 0.4, 0},
-                                                                  .orientation = {a * d, -a * c, b * c, b * d},
-                                                                  .velocity = {1 / time, -2 / time, 0},
-                                                                  .spin = {1 / time, 0, 0}});
+                                                                   .orientation = {a * d, -a * c, b * c, b * d},
+                                                                   .velocity = {1 / time, -2 / time, 0},
+                                                                   .spin = {1 / time, 0, 0}});
   for (int i = 0; i < 12; ++i) (void)system.step(time / 120);
   return time * system.bodies().angular_velocity(box);
 }
@@ -328,6 +328,50 @@ TEST(RollingResistance, between_two_that_move_keeps_both_momenta) {
   EXPECT_LT(norm(system.momentum() - linear), 1e-10 * norm(linear));
   EXPECT_LT(norm(system.angular_momentum() - angular), 1e-7 * norm(linear));
   EXPECT_GT(norm(system.bodies().angular_velocity(b)), 1e-3);
+}
+
+/// The share of its spin that the law says, of what a ball that falls without friction loses by resistance until some time after.
+double share_of_loss(IntegrationMode mode, bool by_sweeps, const Material& material, double height, double per_second) {
+  constexpr double radius = 0.1, spin = 30, after = 0.05;
+  System system = make_hall(material, mode);
+  if (by_sweeps) system.set_budget({.contacts = 1});
+  const bool rolls = material.rolling > 0;
+  const BodyId ball = system.bodies().create(
+      Sphere{radius}, {.position = {0, radius + height, 0}, .spin = rolls ? Vec3{0, 0, spin} : Vec3{0, spin, 0}});
+  const double speed = std::sqrt(2 * g * height), fall = speed / g;
+  const int steps = static_cast<int>(std::lround((fall + after) * per_second));
+  for (int i = 0; i < steps; ++i) (void)system.step(1 / per_second);
+  const double rests = material.restitution > 0 ? 0 : steps / per_second - fall;
+  const double law =
+      2.5 * (material.rolling + material.spinning) / radius * (speed * (1 + material.restitution) + g * rests);
+  return (spin - norm(system.bodies().angular_velocity(ball))) / law;
+}
+
+TEST(RollingResistance, and_that_against_spinning_take_their_share_of_an_impact_once) {
+  for (const bool rolls : {true, false})
+    for (const double e : {0.0, 0.5})
+      for (const double height : {0.3, 0.31, 0.33}) {
+        const Material material{
+            .friction = 0, .restitution = e, .rolling = rolls ? 0.02 : 0, .spinning = rolls ? 0 : 0.02};
+        const auto share = [&](IntegrationMode mode, bool by_sweeps) {
+          return share_of_loss(mode, by_sweeps, material, height, 240);
+        };
+        EXPECT_NEAR(share(IntegrationMode::energy_keeping, false), 1, 0.02) << height << " m, restitution " << e;
+        EXPECT_NEAR(share(IntegrationMode::robust, false), 1, 0.08) << height << " m, restitution " << e;
+        EXPECT_NEAR(share(IntegrationMode::robust, true), 1, 0.02) << height << " m, restitution " << e;
+      }
+}
+
+TEST(RollingResistance, takes_what_its_law_says_from_a_fast_spin_in_every_mode) {
+  for (const IntegrationMode mode : both_modes)
+    for (const Vec3& spin : {Vec3{0, 0, 30}, Vec3{0, 30, 0}}) {
+      constexpr double radius = 0.1, h = 1.0 / 60;
+      System system = make_hall(Material{.friction = 0, .rolling = 0.02, .spinning = 0.02}, mode);
+      const BodyId ball = system.bodies().create(Sphere{radius}, {.position = {0, radius, 0}, .spin = spin});
+      for (int i = 0; i < 30; ++i) (void)system.step(h);
+      const double loss = 2.5 * 0.02 * g / radius * 30 * h;
+      EXPECT_NEAR(norm(system.bodies().angular_velocity(ball)), 30 - loss, 0.01 * loss);
+    }
 }
 
 TEST(Materials, refuse_coefficients_without_a_meaning) {

@@ -82,7 +82,8 @@ Example<AffineConstraint> example(Random& random, AffineConstraint c) {
   return {c, x};
 }
 
-Example<BilinearConstraint> example(Random& random, BilinearConstraint c) {
+template <std::derived_from<BilinearConstraint> C>
+Example<C> example(Random& random, C c) {
   auto x = two_bodies(random);
   add_point(c, 0, random.whole(0, 1), random.vec()), add_point(c, 1, random.whole(0, 1), random.vec());
   c.constant_start[0] = random.vec(), c.constant[0] = random.vec(), c.set_constant(1, random.vec());
