@@ -597,7 +597,7 @@ double stopping_force(const Model& model, const Contact& c, std::span<const std:
 /// The places of contacts in their pool, by their slots.
 using ItemsBySlot = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Of the one or two contacts of two bodies.
+/// The items of the one or two contacts of two bodies.
 std::array<std::uint32_t, 2> items_of_both(const Model& model, const Contact& c, const ItemsBySlot& items) {
   std::array<std::uint32_t, 2> found{none, none};
   const auto [mover, other] = has_points(model.bodies[c.p]) ? std::pair(c.p, c.q) : std::pair(c.q, c.p);

@@ -26,7 +26,7 @@ class HeapPoints {
   bool are_new() const { return are_new_; }
   void warm(std::span<HeapMotion>) const;
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
-  /// Of an item of the pool, in the present sub-step, N s; with that of a rebound, of what met faster than this.
+  /// The impulse of an item of the pool in the present sub-step, N s, with that of a rebound if it met faster than this.
   double normal_impulse(std::uint32_t item, double least) const {
     const auto [pack, lane] = places_[item];
     if (pack == none) return 0;
