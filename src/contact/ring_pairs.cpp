@@ -3,6 +3,7 @@
 // a function of one variable: by samples, and a golden section around each of them.
 #include "contact/ring_pairs.h"
 
+#include "contact/minima.h"
 #include "math/mat3.h"
 
 #include <algorithm>
@@ -19,7 +20,6 @@ constexpr int ring_samples = 128, rod_samples = 64, side_by_side_samples = 6;
 constexpr double side_by_side = 0.95;  ///< cosine
 constexpr double lying_share = 1e-3;
 constexpr double skew = 0.25, aside = 0.6;  ///< cosine; of the distance of touching wires
-constexpr int golden_steps = 44;
 constexpr std::uint32_t first_quarter = 0x100, first_sample = 0x200;  ///< numbers of features
 
 /// A ring or a rod.
@@ -38,63 +38,17 @@ struct Wire {
   int samples() const { return ring ? ring_samples : dot(along, along) > 0 ? rod_samples : 0; }
 };
 
-struct Meeting {
-  double share, distance;
-};
-
-/// The quarter of a ring around the end of an axis, so that its number stays while links hang in each other.
-std::uint32_t quarter_of(const Ring& ring, const Vec3& point) {
-  const double x = dot(point - ring.middle, ring.axes[0]) / (ring.radius + ring.half_stretch),
-               y = dot(point - ring.middle, ring.axes[1]) / ring.radius;
-  return std::abs(x) > std::abs(y) ? (x > 0 ? 0 : 1) : (y > 0 ? 2 : 3);
-}
-
-double refine(const auto& distance, double low, double high) {
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  double a = high - golden * (high - low), b = low + golden * (high - low), at_a = distance(a), at_b = distance(b);
-  for (int step = 0; step < golden_steps; ++step) {
-    if (at_a < at_b) {
-      high = b, b = a, at_b = at_a, a = high - golden * (high - low), at_a = distance(a);
-    } else {
-      low = a, a = b, at_a = at_b, b = low + golden * (high - low), at_b = distance(b);
-    }
-  }
-  return at_a < at_b ? a : b;
-}
-
 /// The two nearest minima of the distance of a curve's points from a ring.
-int find_meetings(const Wire& curve, const Ring& ring, double limit, Meeting (&meetings)[2]) {
+int find_meetings(const Wire& curve, const Ring& ring, double limit, Minimum (&meetings)[2]) {
   const auto distance = [&](double share) {
     const Vec3 point = curve.point(share);
     return norm(point - ring.nearest(point));
   };
-  const int count = curve.samples();
-  if (count == 0) {
+  if (curve.samples() == 0) {
     meetings[0] = {0, distance(0)};
     return 1;
   }
-  double sampled[ring_samples + 1];
-  const int last = curve.ring ? count - 1 : count;
-  for (int k = 0; k <= last; ++k) sampled[k] = distance(static_cast<double>(k) / count);
-  // One on the other: all places are as near.
-  const auto [least, most] = std::minmax_element(sampled, sampled + last + 1);
-  if (curve.ring && *most - *least < lying_share * ring.tube) return 0;
-  int found = 0;
-  for (int k = 0; k <= last; ++k) {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    const double before = k > 0 ? sampled[k - 1] : curve.ring ? sampled[last] : none;
-    const double after = k < last ? sampled[k + 1] : curve.ring ? sampled[0] : none;
-    if (!(sampled[k] < before && sampled[k] <= after)) continue;
-    double low = (k - 1.0) / count, high = (k + 1.0) / count;
-    if (!curve.ring) low = std::max(low, 0.0), high = std::min(high, 1.0);
-    const double share = refine(distance, low, high), apart = distance(share);
-    if (!(apart <= limit)) continue;
-    if (found < 2)
-      meetings[found++] = {share, apart};
-    else if (Meeting& worse = meetings[meetings[0].distance > meetings[1].distance ? 0 : 1]; apart < worse.distance)
-      worse = {share, apart};
-  }
-  return found;
+  return find_minima(distance, {curve.samples(), curve.ring != nullptr, limit, lying_share * ring.tube}, meetings);
 }
 
 }  // namespace
@@ -130,6 +84,11 @@ Vec3 Ring::nearest(const Vec3& place) const {
   const double u = x - center, rho = std::sqrt(u * u + y * y);
   if (!(rho > 0)) return middle + center * axes[0] + radius * axes[1];
   return middle + (center + radius * u / rho) * axes[0] + (radius * y / rho) * axes[1];
+}
+
+std::uint32_t Ring::quarter(const Vec3& point) const {
+  const double x = dot(point - middle, axes[0]) / (radius + half_stretch), y = dot(point - middle, axes[1]) / radius;
+  return std::abs(x) > std::abs(y) ? (x > 0 ? 0 : 1) : (y > 0 ? 2 : 3);
 }
 
 Vec3 Ring::tangent(const Vec3& point) const {
@@ -187,14 +146,14 @@ void RingToucher::add_touches(const Solid* first, const ConvexPart* first_rod, c
       writer.add_wires(on_first, on_second, a.tangent(on_first), a.bend(on_first), b.tangent(on_second),
                        b.bend(on_second), of_first, of_second);
   };
-  Meeting meetings[2];
+  Minimum meetings[2];
   const int count = find_meetings(curve, ring, limit, meetings);
   std::uint32_t former = 0;
   for (int k = 0; k < count; ++k) {
     const Vec3 point = curve.point(meetings[k].share), on_ring = ring.nearest(point);
     // The end of a rod touches a round wire.
     const bool is_end = !curve.ring && !(meetings[k].share > 1e-6 && meetings[k].share < 1 - 1e-6);
-    std::uint32_t feature = first_quarter + quarter_of(curve.ring ? *curve.ring : ring, curve.ring ? point : on_ring);
+    std::uint32_t feature = first_quarter + (curve.ring ? *curve.ring : ring).quarter(curve.ring ? point : on_ring);
     if (feature == former) feature += 8;
     former = feature;
     const Vec3 tangent = ring.tangent(on_ring);

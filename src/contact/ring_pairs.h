@@ -23,6 +23,8 @@ struct Ring {
   Vec3 tangent(const Vec3& point) const;
   /// Towards the center of curvature, by its radius, 1/m; zero where it is straight.
   Vec3 bend(const Vec3& point) const;
+  /// The quarter around the end of an axis, 0 to 3, so that its number stays while links hang in each other.
+  std::uint32_t quarter(const Vec3& point) const;
 };
 Ring make_ring(const Solid& torus, const Vec3& anchor);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/touches.h"
 
+#include "contact/ring_parts.h"
 #include "geometry/box_tree.h"
 
 #include <algorithm>
@@ -91,7 +92,10 @@ void TouchFinder::find(Part& first, Part& second, const Vec3& anchor, double wit
                        std::vector<Touch>& found) {
   const ConvexPart &a = first.placed, &b = second.placed;
   if (first.kind == Part::ring || second.kind == Part::ring) {
-    if (first.kind == Part::body || second.kind == Part::body) return;
+    if (second.kind == Part::body)
+      return add_touches_of_ring(*first.solid, *second.solid, b, false, anchor, within, found);
+    if (first.kind == Part::body)
+      return add_touches_of_ring(*second.solid, *first.solid, a, true, anchor, within, found);
     return RingToucher::add_touches(first.solid, first.kind == Part::rod ? &a : nullptr, second.solid,
                                     second.kind == Part::rod ? &b : nullptr, anchor, within, found);
   }
@@ -136,8 +140,7 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
   if (is_nothing(first) || is_nothing(second)) return;
   const std::size_t before = found.size();
   list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
-  if ((first_.kinds | second_.kinds) > (Part::rod | Part::body))
-    find_corners(spin_of_first, spin_of_second, within, found);
+  if ((first_.kinds | second_.kinds) >= Part::mesh) find_corners(spin_of_first, spin_of_second, within, found);
   for_each_near(first, spin_of_first, second, spin_of_second, within,
                 [&](Part& one, Part& other, const Vec3& anchor) { find(one, other, anchor, within, way, found); });
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
@@ -181,13 +184,11 @@ void TouchFinder::find_corners(const Vec3& spin_of_first, const Vec3& spin_of_se
   constexpr unsigned meshes = Part::mesh | Part::open, convex = Part::rod | Part::body;
   constexpr std::uint32_t of_rings = 5u << 28, of_convex = 6u << 28, of_bodies = 7u << 28;
   look(convex | meshes | Part::ring, meshes, {});
-  look(Part::body | meshes, Part::ring, {false, of_rings});
+  look(meshes, Part::ring, {false, of_rings});
   look(meshes, convex, {false, of_convex});
-  look(Part::ring, Part::body, {false, of_convex});
   look(meshes, convex | Part::ring | Part::mesh, {true, of_convex});
-  look(Part::ring, Part::body | Part::mesh, {true, of_rings});
+  look(Part::ring, Part::mesh, {true, of_rings});
   look(convex, Part::mesh, {true, of_bodies});
-  look(Part::body, Part::ring, {true, of_bodies});
 }
 
 }  // namespace iota::contact

@@ -18,9 +18,9 @@ namespace iota::contact {
 
 /// Finds the touches of two outlines.
 ///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
-///   Rings          with each other, with balls and rods: see RingToucher
+///   Rings          with each other, with balls and rods: see RingToucher; with other convex parts: see add_touches_of_ring
 ///   Half-spaces, meshes that are open or not convex   corners, ends and rims of the other outline; and those of a mesh
-///                  against a convex part, likewise of a ring against one that is neither a ball nor a rod
+///                  against a convex part or a ring
 class TouchFinder {
  public:
   TouchFinder() = default;

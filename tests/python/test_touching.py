@@ -89,3 +89,54 @@ def test_bodies_act_on_each_other_where_they_touch_and_along_their_normal(kinds:
         assert (
             np.linalg.norm(along - normal) < 0.01
         )  # it has moved by a part of a thousandth since the contact was found
+
+
+def bars() -> dict[str, iota.Shape]:
+    """Bars along x of a radius of 5 cm, or about."""
+    around = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    corners = [(x, 0.05 * np.cos(a), 0.05 * np.sin(a)) for x in (-0.5, 0.5) for a in around]
+    return {
+        "capsule": iota.Capsule(0.05, 1),
+        "cylinder": iota.Cylinder(0.05, 1),
+        "rounded cylinder": iota.Cylinder(0.05, 1, 0.01),
+        "box": iota.Box((1, 0.1, 0.1)),
+        "rounded box": iota.Box((1, 0.1, 0.1), 0.02),
+        "hull": iota.Mesh.convex_hull(corners),
+        "ellipsoid": iota.Ellipsoid((1, 0.1, 0.1)),
+        "cone": iota.Cone(0.06, 1),
+    }
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust"])
+@pytest.mark.parametrize("kind", list(bars()))
+def test_a_ring_hangs_on_a_bar_of_any_shape_and_swings(kind: str, mode: str) -> None:
+    system = iota.System(mode=mode, threads=1)
+    bar = iota.Material(friction=0.3)
+    quarter = np.sqrt(0.5)
+    system.obstacle(bars()[kind], position=(0, 2, 0), orientation=(0, quarter, 0, quarter), material=bar)
+    ring = system.body(
+        shape=iota.Torus(0.3, 0.04), mass=1, material=bar, position=(0.03, 1.81, 0.05), orientation=(0.1, -0.2, 0.05, 1)
+    )
+    heights, energies = [], []
+    for _ in range(240):
+        system.step(1 / 120)
+        heights.append(ring.position.y)
+        energies.append(system.energy.total)
+    assert 1.74 < min(heights) and max(heights) < 1.82  # its inner edge is 26 cm below the top of the bar
+    assert np.diff(energies).max() < 1e-5  # of 18 J
+
+
+@pytest.mark.parametrize("kind", ["cylinder", "box", "hull"])
+def test_two_links_of_solids_hold_each_other_by_a_ring(kind: str) -> None:
+    """A heavy bar hangs in a ring that hangs on a bar; all of it moves."""
+    system = iota.System(threads=1)
+    material = iota.Material(friction=0.3)
+    quarter = np.sqrt(0.5)
+    along_z = (0, quarter, 0, quarter)
+    system.obstacle(bars()[kind], position=(0, 2, 0), orientation=along_z, material=material)
+    system.body(shape=iota.Torus(0.3, 0.04), mass=0.5, material=material, position=(0, 1.795, 0))
+    load = system.body(shape=bars()[kind], mass=20, material=material, position=(0, 1.58, 0), orientation=along_z)
+    load.velocity = (0.5, 0, 0)
+    for _ in range(360):
+        system.step(1 / 120)
+    assert load.position.y == pytest.approx(1.59, abs=0.12)
