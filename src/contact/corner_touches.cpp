@@ -30,8 +30,15 @@ Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
 
 double size_of(const Form& form) { return form.is_endless ? 1 : norm(form.box.high - form.box.low); }
 
+/// Whether an open mesh is between two places.
+bool is_behind(const geometry::TriangleTree& mesh, const Vec3& from, const Vec3& place) {
+  const double far = norm(place - from);
+  return far > 0 && mesh.ray(from, (1 / far) * (place - from), far).has_value();
+}
+
 /// The plane that touches a solid nearest to a place of a body, whose middle is outside. A place on the surface says nothing
-/// about the normal: a place a little nearer to the middle does. An open mesh has its outside where the middle is.
+/// about the normal: a place a little nearer to the middle does. An open mesh has its outside where the middle is, beyond
+/// which it is only where it is between both: the end of a beam that lies on a rail is not in it.
 std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3& middle) {
   const Form& form = *solid.form;
   const Quaternion back = conjugate(solid.turn);
@@ -48,7 +55,9 @@ std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3&
     const Vec3 further = point + std::min(1.0, offset * size / norm(outwards)) * outwards;
     away = further - closest(form, further);
     if (!(norm(away) > 0)) return {};
-  } else if (form.mesh && !form.mesh->is_closed() ? dot(away, outwards) < 0 : is_within(form, local)) {
+  } else if (form.mesh && !form.mesh->is_closed()
+                 ? dot(away, outwards) < 0 && is_behind(*form.mesh, point + outwards, local)
+                 : is_within(form, local)) {
     away = -1.0 * away;
   }
   return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away))};

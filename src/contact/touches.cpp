@@ -16,6 +16,17 @@ const Vec3& anchor_of(const Outline& outline) {
   return outline.solids.empty() ? outline.lines.front().a : outline.solids.front().position;
 }
 
+constexpr std::uint32_t of_edges = 8u << 28;  ///< numbers of features
+
+/// A corner of a mesh, or of a body on a face, touches also as a place of an edge.
+void add_unless_known(const Touch& touch, double size, std::vector<Touch>& found) {
+  constexpr double same = 1e-3;  // of the size, and below a cosine of 1
+  const bool is_known = std::any_of(found.begin(), found.end(), [&](const Touch& other) {
+    return norm(other.place - touch.place) < same * size && std::abs(dot(other.normal, touch.normal)) > 1 - same;
+  });
+  if (!is_known) found.push_back(touch);
+}
+
 /// Lines share points, so that they may find the same touch twice.
 void drop_duplicates(std::vector<Touch>& found, std::size_t begin) {
   const auto is_same = [](const Touch& a, const Touch& b) {
@@ -143,7 +154,68 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
   if ((first_.kinds | second_.kinds) >= Part::mesh) find_corners(spin_of_first, spin_of_second, within, found);
   for_each_near(first, spin_of_first, second, spin_of_second, within,
                 [&](Part& one, Part& other, const Vec3& anchor) { find(one, other, anchor, within, way, found); });
+  if ((first_.kinds | second_.kinds) >= Part::mesh) {
+    const Vec3 anchor = anchor_of(second);
+    find_on_edges(first_, spin_of_first, second_, true, anchor, within, found);
+    find_on_edges(second_, spin_of_second, first_, false, anchor, within, found);
+  }
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
+}
+
+const MeshEdges& TouchFinder::edges_of(const std::shared_ptr<const Form>& form) {
+  const auto known = edges_.find(form.get());
+  if (known != edges_.end() && !known->second.form.expired()) return *known->second.edges;
+  std::erase_if(edges_, [](const auto& each) { return each.second.form.expired(); });
+  Edges& edges = edges_[form.get()];
+  edges.form = form;
+  return edges.edges.emplace(form->mesh->mesh(), form->mesh->is_closed());
+}
+
+void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second,
+                                const Vec3& anchor, double within, std::vector<Touch>& found) {
+  for (std::size_t m = 0; m < meshes.count; ++m) {
+    const Part& mesh = meshes.parts[m];
+    if (mesh.is_met() || !mesh.solid->form->mesh) continue;
+    const Solid& solid = *mesh.solid;
+    const MeshEdges& edges = edges_of(solid.form);
+    const Vec3 position = solid.position - anchor;
+    const Quaternion back = conjugate(solid.turn);
+    for (std::size_t k = 0; k < bodies.count; ++k) {
+      Part& body = bodies.parts[k];
+      if (!body.is_met()) continue;
+      const geometry::Bounds box = geometry::grown(body.box, within);
+      const Vec3 middle = rotate(back, 0.5 * (box.low + box.high) - position);
+      const double reach = 0.5 * norm(box.high - box.low);
+      edges.overlapping(
+          geometry::grown({middle, middle}, reach), [&](std::uint32_t number, const MeshEdges::Edge& edge) {
+            const Vec3 a = position + rotate(solid.turn, edge.a), b = position + rotate(solid.turn, edge.b);
+            if (!geometry::overlap(box, geometry::joined({a, a}, {b, b}))) return;
+            place(body, spin, anchor);
+            set_edge(solid, number, a, b);
+            on_edge_.clear();
+            if (are_meshes_second)
+              find(body, edge_, anchor, within, {}, on_edge_);
+            else
+              find(edge_, body, anchor, within, {}, on_edge_);
+            for (Touch& touch : on_edge_) {
+              if (!edge.may_push(rotate(back, touch.is_turned == are_meshes_second ? -touch.normal : touch.normal)))
+                continue;
+              std::uint32_t& feature = are_meshes_second ? touch.other_feature : touch.feature;
+              if (feature < of_edges) feature = edge_.placed.line.feature;  // a round body names corners of a rod
+              add_unless_known(touch, reach, found);
+            }
+          });
+    }
+  }
+}
+
+void TouchFinder::set_edge(const Solid& solid, std::uint32_t number, const Vec3& a, const Vec3& b) {
+  edge_.solid = &solid, edge_.kind = Part::rod;
+  ConvexPart& rod = edge_.placed;
+  rod.radius = 0, rod.spin = {}, rod.is_line = true, rod.number = solid.number;
+  rod.line = {solid.number, of_edges + 3 * number};
+  rod.end = {solid.number, of_edges + 3 * number + 1}, rod.other_end = {solid.number, of_edges + 3 * number + 2};
+  set_segment(a, b, rod);
 }
 
 void TouchFinder::find_on_faces(const Outline& first, const Vec3& spin_of_first, const Outline& second,

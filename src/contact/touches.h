@@ -3,6 +3,7 @@
 
 #include "contact/corner_touches.h"
 #include "contact/manifold.h"
+#include "contact/mesh_edges.h"
 #include "contact/outline.h"
 #include "contact/ring_pairs.h"
 #include "contact/round_touches.h"
@@ -20,7 +21,7 @@ namespace iota::contact {
 ///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
 ///   Rings          with each other, with balls and rods: see RingToucher; with other convex parts: see add_touches_of_ring
 ///   Half-spaces, meshes that are open or not convex   corners, ends and rims of the other outline; and those of a mesh
-///                  against a convex part or a ring
+///                  against a convex part or a ring; and the edges of meshes against convex parts and rings
 class TouchFinder {
  public:
   TouchFinder() = default;
@@ -63,6 +64,11 @@ class TouchFinder {
   Part& add(Parts&);
   const Polytope* hull_of(const std::shared_ptr<const Form>&);
   void find_corners(const Vec3& spin_of_first, const Vec3& spin_of_second, double within, std::vector<Touch>& found);
+  /// Touches of convex parts and rings with the edges of meshes that are open or not convex: see MeshEdges.
+  void find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second, const Vec3& anchor,
+                     double within, std::vector<Touch>& found);
+  const MeshEdges& edges_of(const std::shared_ptr<const Form>&);
+  void set_edge(const Solid&, std::uint32_t number, const Vec3& a, const Vec3& b);
   void place(Part&, const Vec3& spin, const Vec3& anchor);
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
   void find_on_face(const ConvexPart& first, const ConvexPart& second, const Vec3& normal, const Vec3& anchor,
@@ -78,6 +84,13 @@ class TouchFinder {
   CornerFinder corners_;
   PartList listed_, other_listed_;
   std::map<const Form*, Hull> hulls_;  ///< of meshes
+  struct Edges {
+    std::weak_ptr<const Form> form;
+    std::optional<MeshEdges> edges;
+  };
+  std::map<const Form*, Edges> edges_;  ///< of meshes
+  Part edge_;
+  std::vector<Touch> on_edge_;
 };
 
 }  // namespace iota::contact

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/box_tree.h"
+
+#include <iota/shapes.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace iota::contact {
+
+/// The edges of a mesh on which another body may lie though no corner of either touches the other: where faces bend, or end. Edges
+/// within a flat face are none, also if its triangles have corners of their own there. In the mesh's frame.
+class MeshEdges {
+ public:
+  struct Edge {
+    Vec3 a, b;
+    Vec3 into[2];  ///< unit vectors at right angles to it, along its faces; the second is zero where there is one face
+    Vec3 normal;   ///< of one face, where there is one
+    bool has_two() const { return dot(into[1], into[1]) > 0; }
+    /// Whether a body may be pushed away in this direction, and not by one of the faces. An edge where a face ends pushes about
+    /// along the normal alone: its neighbor may only not fit, and would stop what slides.
+    bool may_push(const Vec3& away) const;
+  };
+
+  /// is_closed: edges of hollows are none.
+  MeshEdges(const Mesh&, bool is_closed);
+
+  /// Calls visit(number, edge) with those whose boxes overlap this one.
+  template <class Visit>
+  void overlapping(const geometry::Bounds& box, Visit visit) const {
+    tree_.overlapping(box, [&](std::uint32_t edge) { visit(edge, edges_[edge]); });
+  }
+  std::size_t size() const { return edges_.size(); }
+
+ private:
+  std::vector<Edge> edges_;
+  geometry::BoxTree tree_;
+};
+
+}  // namespace iota::contact

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edges of meshes, on which bodies lie without corners.
+#include "contact/mesh_edges.h"
+
+#include "placed.h"
+
+#include <gtest/gtest.h>
+
+namespace iota::contact {
+namespace {
+
+/// A box of triangles; `is_split`: each triangle has corners of its own.
+Mesh box_of_triangles(const Vec3& half, bool is_split) {
+  Mesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.vertices.push_back({k & 4 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 1 ? half.z : -half.z});
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  if (!is_split) return mesh;
+  Mesh split;
+  for (const auto& triangle : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(split.vertices.size());
+    for (const std::uint32_t corner : triangle) split.vertices.push_back(mesh.vertices[corner]);
+    split.triangles.push_back({first, first + 1, first + 2});
+  }
+  return split;
+}
+
+TEST(MeshEdges, are_those_where_faces_bend_and_not_those_within_a_face) {
+  for (const bool is_closed : {true, false})
+    for (const bool is_split : {true, false})
+      EXPECT_EQ(MeshEdges(box_of_triangles({1, 2, 3}, is_split), is_closed).size(), 12u);
+  EXPECT_EQ(MeshEdges(step_mesh(), true).size(), 17u);  // of 18 one is in the hollow
+}
+
+TEST(MeshEdges, push_between_the_normals_of_their_faces) {
+  const MeshEdges edges(box_of_triangles({1, 1, 1}, false), true);
+  int count = 0;
+  edges.overlapping({{0.9, 0.9, -0.1}, {1.1, 1.1, 0.1}}, [&](std::uint32_t, const MeshEdges::Edge& edge) {
+    ++count;
+    EXPECT_TRUE(edge.may_push({0.6, 0.8, 0}));
+    EXPECT_TRUE(edge.may_push({0, 1, 0}));
+    EXPECT_FALSE(edge.may_push({-0.6, 0.8, 0}));
+    EXPECT_FALSE(edge.may_push({0, -1, 0}));
+  });
+  EXPECT_EQ(count, 1);
+}
+
+TEST(MeshEdges, hold_a_beam_of_any_shape_that_lies_across_them) {
+  const Outline rail = placed(box_of_triangles({0.1, 0.1, 1}, false), {});
+  Outline open = rail;
+  open.solids[0].form = make_open_form(box_of_triangles({0.1, 0.1, 1}, true));
+  const Vec3 above{0.03, 0.2 - 1e-3, 0.2};
+  for (const Shape& beam : {Shape{Box{{2, 0.2, 0.2}}}, Shape{Box{{2, 0.2, 0.2}, 0.02}}, Shape{Capsule{0.1, 2}},
+                            Shape{Cylinder{0.1, 2}}, Shape{Ellipsoid{{20, 0.2, 0.2}}}}) {
+    const auto touches = touches_of(placed(beam, above), open, 0.01);
+    ASSERT_FALSE(touches.empty()) << beam.index();
+    for (const Touch& touch : touches) {
+      EXPECT_NEAR((touch.is_turned ? -1 : 1) * touch.normal.y, 1, 0.02) << beam.index();
+      EXPECT_NEAR(touch.gap, -1e-3, 1e-3) << beam.index();
+      for (const Touch& other : touches)
+        EXPECT_TRUE(&other == &touch || other.feature != touch.feature || other.other_feature != touch.other_feature);
+    }
+    EXPECT_NEAR(least_gap_of(touches_of(open, placed(beam, above), 0.01)), least_gap_of(touches), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace iota::contact
