@@ -4,18 +4,24 @@
 #include "math/mat3.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace iota::contact {
 
 namespace {
 
-geometry::Bounds box_of(const Vec3& a, const Vec3& b) {
-  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-          {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+/// The first of all corners at the same place, of each: files have one for each color and normal.
+std::vector<std::uint32_t> number_places(const std::vector<Vec3>& places) {
+  std::vector<std::uint32_t> order(places.size()), number(places.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t k) { return std::tuple(places[k].x, places[k].y, places[k].z, k); };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    number[order[i]] = i > 0 && places[order[i]] == places[order[i - 1]] ? number[order[i - 1]] : order[i];
+  return number;
 }
 
 }  // namespace
@@ -28,41 +34,38 @@ bool MeshEdges::Edge::may_push(const Vec3& away) const {
 
 MeshEdges::MeshEdges(const Mesh& mesh, bool is_closed) {
   constexpr double flat = 1e-3;  // sine of the angle between two faces
-  // Corners at the same place are one: files have one for each color and normal.
-  std::map<std::array<double, 3>, std::uint32_t> places;
-  std::vector<std::uint32_t> corner_of;
-  for (const Vec3& v : mesh.vertices)
-    corner_of.push_back(
-        places.try_emplace({v.x, v.y, v.z}, static_cast<std::uint32_t>(corner_of.size())).first->second);
-  struct Face {
+  struct Side {
+    std::uint32_t low, high;  // numbers of corners
     Vec3 normal, into;
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Face>> faces;
+  std::vector<Side> sides;
+  const std::vector<std::uint32_t> corner_of = number_places(mesh.vertices);
   for (const auto& triangle : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 &a = mesh.vertices[triangle[k]], &b = mesh.vertices[triangle[(k + 1) % 3]],
-                 &c = mesh.vertices[triangle[(k + 2) % 3]];
+      const std::uint32_t from = triangle[k], to = triangle[(k + 1) % 3];
+      const Vec3 &a = mesh.vertices[from], &b = mesh.vertices[to], &c = mesh.vertices[triangle[(k + 2) % 3]];
       const Vec3 normal = unit_or(cross(b - a, c - a), {});
-      const auto ends = std::minmax(corner_of[triangle[k]], corner_of[triangle[(k + 1) % 3]]);
-      if (ends.first != ends.second && normal != Vec3{})
-        faces[{ends.first, ends.second}].push_back({normal, unit_or(cross(normal, b - a), {})});
+      const auto [low, high] = std::minmax(corner_of[from], corner_of[to]);
+      if (low != high && normal != Vec3{}) sides.push_back({low, high, normal, unit_or(cross(normal, b - a), {})});
     }
-  for (const auto& [ends, there] : faces) {
-    if (there.size() > 2) continue;
-    Edge edge{.a = mesh.vertices[ends.first],
-              .b = mesh.vertices[ends.second],
-              .into = {there[0].into},
-              .normal = there[0].normal};
-    if (there.size() == 2) {
-      const Vec3& next = there[1].into;
-      if (norm(cross(there[0].into, next)) < flat && dot(there[0].into, next) < 0) continue;
-      if (is_closed && dot(there[0].normal, next) > 0) continue;  // a hollow
+  const auto ends = [](const Side& side) { return std::pair(side.low, side.high); };
+  std::stable_sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return ends(a) < ends(b); });
+  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+    end = begin + 1;
+    while (end < sides.size() && ends(sides[end]) == ends(sides[begin])) ++end;
+    const Side& one = sides[begin];
+    Edge edge{.a = mesh.vertices[one.low], .b = mesh.vertices[one.high], .into = {one.into}, .normal = one.normal};
+    if (end - begin > 2) continue;
+    if (end - begin == 2) {
+      const Vec3& next = sides[begin + 1].into;
+      if (norm(cross(one.into, next)) < flat && dot(one.into, next) < 0) continue;
+      if (is_closed && dot(one.normal, next) > 0) continue;  // a hollow
       edge.into[1] = next;
     }
     edges_.push_back(edge);
   }
   std::vector<geometry::Bounds> boxes;
-  for (const Edge& edge : edges_) boxes.push_back(box_of(edge.a, edge.b));
+  for (const Edge& edge : edges_) boxes.push_back(geometry::joined({edge.a, edge.a}, {edge.b, edge.b}));
   tree_.build(boxes);
 }
 

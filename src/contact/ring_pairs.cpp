@@ -19,7 +19,7 @@ namespace {
 constexpr int ring_samples = 128, rod_samples = 64, side_by_side_samples = 6;
 constexpr double side_by_side = 0.95;  ///< cosine
 constexpr double lying_share = 1e-3;
-constexpr double skew = 0.25, aside = 0.6;  ///< cosine; of the distance of touching wires
+constexpr double skew = 0.25, aside = 0.6;                            ///< cosine; of the distance of touching wires
 constexpr std::uint32_t first_quarter = 0x100, first_sample = 0x200;  ///< numbers of features
 
 /// A ring or a rod.

@@ -140,3 +140,36 @@ def test_two_links_of_solids_hold_each_other_by_a_ring(kind: str) -> None:
     for _ in range(360):
         system.step(1 / 120)
     assert load.position.y == pytest.approx(1.59, abs=0.12)
+
+
+def rails_of_triangles() -> tuple[list[tuple[float, ...]], list[tuple[int, int, int]]]:
+    """Two bars along z with a square section of 10 cm, 1 m apart, whose upper faces are at 0.55 m."""
+    sides = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    sides += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    corners: list[tuple[float, ...]] = []
+    triangles = []
+    for middle in (-0.5, 0.5):
+        triangles += [tuple(corner + len(corners) for corner in side) for side in sides]
+        corners += itertools.product((middle - 0.05, middle + 0.05), (0.45, 0.55), (-1.5, 1.5))
+    return corners, triangles
+
+
+@pytest.mark.parametrize("is_closed", [True, False])
+def test_beams_of_any_shape_lie_across_rails_of_triangles(is_closed: bool) -> None:
+    beams = {
+        "box": (iota.Box((2, 0.1, 0.1)), 0.05),
+        "rounded box": (iota.Box((2, 0.1, 0.1), 0.02), 0.05),
+        "plank": (iota.Box((2, 0.05, 0.6)), 0.025),
+        "capsule": (iota.Capsule(0.05, 2), 0.05),
+        "cylinder": (iota.Cylinder(0.05, 2), 0.05),
+        "hull": (iota.Mesh.convex_hull(list(itertools.product((-1, 1), (-0.05, 0.05), (-0.05, 0.05)))), 0.05),
+    }
+    for kind, (shape, half) in beams.items():
+        system = iota.System(threads=1)
+        system.usual_material = iota.Material(friction=0.5)
+        rails = iota.Mesh(*rails_of_triangles(), closed=is_closed)
+        system.obstacle(rails, material=system.usual_material)
+        beam = system.body(shape=shape, mass=1, position=(0.02, 0.7, 0.03))
+        system.step(1 / 120, 240)
+        assert beam.position.y == pytest.approx(0.55 + half, abs=1e-6), kind
+        assert abs(beam.position.x - 0.02) < 1e-2, kind
