@@ -19,7 +19,7 @@ def build() -> tuple[iota.World, wrecking_ball.Wrecker]:
 def run(world: iota.World, made: wrecking_ball.Wrecker, seconds: float) -> float:
     """Returns the widest gap between links, and between the last one and the ball, m, from their places."""
     widest = 0.0
-    for _ in solved_steps(world, seconds):
+    for _ in solved_steps(world, seconds, gap=1e-4):  # where bricks jam, sweeps may leave 4e-5 m
         ends = [[particle.position for particle in link.particles[:2]] for link in made.chain]
         lengths = [abs(lower - upper) for upper, lower in ends]
         widest = max(widest, *(abs(length - wrecking_ball.LENGTH / wrecking_ball.LINKS) for length in lengths))
