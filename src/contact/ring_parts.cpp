@@ -108,7 +108,8 @@ void add_touches_of_ring(const Solid& torus, const Solid& solid, const ConvexPar
   for (Vec3& axis : seen.axes) axis = rotate(back, axis);
   const auto distance = [&](double share) {
     const Vec3 p = seen.point(share);
-    return is_within(form, p) ? 0.0 : norm(p - closest(form, p));
+    const double apart = norm(p - closest(form, p));
+    return is_within(form, p) ? -apart : apart;
   };
   Minimum minima[4];
   const int count = find_minima(
@@ -178,19 +179,20 @@ void add_touches_of_ring(const Solid& torus, const Solid& solid, const ConvexPar
   bool lies = false;
   for (int k = 0; k < count; ++k) {
     const Vec3 local = seen.point(minima[k].share), on_surface = closest(form, local);
-    if (is_within(form, local) || !(norm(local - on_surface) > on_border * part.size)) continue;
-    const Vec3 normal = unit_or(local - on_surface, {}), across = unit_or(cross(normal, seen.tangent(local)), {});
-    const Nearby there = nearby_of(local, on_surface, normal, across);
+    if (!(norm(local - on_surface) > on_border * part.size)) continue;
+    const bool is_inside = is_within(form, local);
+    const Vec3 normal = unit_or(is_inside ? on_surface - local : local - on_surface, {});
+    const Vec3 across = unit_or(cross(normal, seen.tangent(local)), any_perpendicular(normal));
+    const Nearby there = is_inside ? Nearby{Kind::plane, on_surface} : nearby_of(local, on_surface, normal, across);
     const Vec3 bend = seen.bend(local);
     const double inwards = dot(bend, normal), flat = dot(normal, seen.axes[2]);
     const bool is_plane = there.kind == Kind::plane, rolls = is_plane && flat * flat < 1 - rolling * rolling;
     // A ring that rolls keeps its touch all around, others have one in each quarter.
     taken[k] = first_feature + (rolls ? first_rolling : seen.quarter(local));
     while (std::find(taken, taken + k, taken[k]) != taken + k) taken[k] += 4;
-    if (is_plane && (inwards > 0 || seen.half_stretch > 0))
-      add_lowest(normal, taken[k]);
-    else
-      add(there, local, normal, taken[k]);
+    const std::size_t before = found.size();
+    if (is_plane && !is_inside && (inwards > 0 || seen.half_stretch > 0)) add_lowest(normal, taken[k]);
+    if (found.size() == before) add(there, local, normal, taken[k]);
     if (!is_plane || rolls || lies) continue;
     lies = true;
     add_around(normal, minima[k].share);

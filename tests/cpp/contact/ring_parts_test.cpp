@@ -84,6 +84,16 @@ TEST(RingParts, have_six_places_at_least_around_a_ring_that_lies_on_a_face) {
     }
 }
 
+TEST(RingParts, push_a_ring_out_of_a_face_behind_which_its_middle_line_is) {
+  for (const Shape& shape : {Shape{Box{{0.3, 0.3, 4}}}, Shape{Cylinder{0.15, 0.3}}}) {
+    const Outline ring = placed(Torus{0.2, 0.03}, {0.29, 0, 0}), solid = placed(shape, {});
+    const auto touches = touches_of(ring, solid, 0.01);
+    ASSERT_FALSE(touches.empty());
+    EXPECT_NEAR(least_gap_of(touches), -0.06 - 0.03, 1e-6);  // its middle line is 6 cm deep
+    for (const Touch& touch : touches) EXPECT_GT((touch.is_turned ? -1 : 1) * touch.normal.x, 0.9);
+  }
+}
+
 TEST(RingParts, have_two_places_of_a_link_that_stands_on_its_side) {
   for (const double lean : {0.0, 1e-6}) {
     const Outline link = placed(Torus{0.2, 0.03, 0.3}, {0, 0.23 + 0.15 * std::sin(lean), 0},
