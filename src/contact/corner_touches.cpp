@@ -161,12 +161,7 @@ void visit_features(const Shape& shape, const Vec3& down, const Vec3& turn, Visi
 }  // namespace
 
 const std::vector<Vec3>& CornerFinder::corners_of(const std::shared_ptr<const Form>& form) {
-  const auto known = corners_.find(form.get());
-  if (known != corners_.end() && !known->second.form.expired()) return known->second.places;
-  std::erase_if(corners_, [](const auto& each) { return each.second.form.expired(); });
-  Corners& corners = corners_[form.get()];
-  corners = {form, convex_hull(form->mesh->vertices()).vertices};
-  return corners.places;
+  return corners_.of(form, [&] { return convex_hull(form->mesh->vertices()).vertices; });
 }
 
 void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& other, double within,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contact/form_cache.h"
 #include "contact/outline.h"
 #include "contact/touch.h"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -37,11 +37,7 @@ class CornerFinder {
  private:
   const std::vector<Vec3>& corners_of(const std::shared_ptr<const Form>&);
 
-  struct Corners {
-    std::weak_ptr<const Form> form;
-    std::vector<Vec3> places;
-  };
-  std::map<const Form*, Corners> corners_;  ///< of meshes: the vertices of their hulls
+  FormCache<std::vector<Vec3>> corners_;  ///< of meshes: the vertices of their hulls
 };
 
 }  // namespace iota::contact

@@ -45,14 +45,9 @@ void drop_duplicates(std::vector<Touch>& found, std::size_t begin) {
 }  // namespace
 
 const Polytope* TouchFinder::hull_of(const std::shared_ptr<const Form>& form) {
-  const auto known = hulls_.find(form.get());
-  if (known != hulls_.end() && !known->second.form.expired())
-    return known->second.polytope ? &*known->second.polytope : nullptr;
-  std::erase_if(hulls_, [](const auto& each) { return each.second.form.expired(); });
-  Hull& hull = hulls_[form.get()];
-  hull.form = form;
-  hull.polytope = form->mesh->is_closed() ? try_polytope(form->mesh->mesh()) : std::nullopt;
-  return hull.polytope ? &*hull.polytope : nullptr;
+  const std::optional<Polytope>& hull = hulls_.of(
+      form, [&] { return form->mesh->is_closed() ? try_polytope(form->mesh->mesh()) : std::optional<Polytope>(); });
+  return hull ? &*hull : nullptr;
 }
 
 TouchFinder::Part& TouchFinder::add(Parts& parts) {
@@ -151,24 +146,16 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
   if (is_nothing(first) || is_nothing(second)) return;
   const std::size_t before = found.size();
   list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
-  if ((first_.kinds | second_.kinds) >= Part::mesh) find_corners(spin_of_first, spin_of_second, within, found);
+  const bool has_meshes = (first_.kinds | second_.kinds) >= Part::mesh;
+  if (has_meshes) find_corners(spin_of_first, spin_of_second, within, found);
   for_each_near(first, spin_of_first, second, spin_of_second, within,
                 [&](Part& one, Part& other, const Vec3& anchor) { find(one, other, anchor, within, way, found); });
-  if ((first_.kinds | second_.kinds) >= Part::mesh) {
+  if (has_meshes) {
     const Vec3 anchor = anchor_of(second);
     find_on_edges(first_, spin_of_first, second_, true, anchor, within, found);
     find_on_edges(second_, spin_of_second, first_, false, anchor, within, found);
   }
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
-}
-
-const MeshEdges& TouchFinder::edges_of(const std::shared_ptr<const Form>& form) {
-  const auto known = edges_.find(form.get());
-  if (known != edges_.end() && !known->second.form.expired()) return *known->second.edges;
-  std::erase_if(edges_, [](const auto& each) { return each.second.form.expired(); });
-  Edges& edges = edges_[form.get()];
-  edges.form = form;
-  return edges.edges.emplace(form->mesh->mesh(), form->mesh->is_closed());
 }
 
 void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second,
@@ -177,7 +164,8 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
     const Part& mesh = meshes.parts[m];
     if (mesh.is_met() || !mesh.solid->form->mesh) continue;
     const Solid& solid = *mesh.solid;
-    const MeshEdges& edges = edges_of(solid.form);
+    const MeshEdges& edges =
+        edges_.of(solid.form, [&] { return MeshEdges(solid.form->mesh->mesh(), solid.form->mesh->is_closed()); });
     const Vec3 position = solid.position - anchor;
     const Quaternion back = conjugate(solid.turn);
     for (std::size_t k = 0; k < bodies.count; ++k) {

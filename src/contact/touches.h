@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/corner_touches.h"
+#include "contact/form_cache.h"
 #include "contact/manifold.h"
 #include "contact/mesh_edges.h"
 #include "contact/outline.h"
@@ -10,7 +11,6 @@
 #include "contact/touch.h"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -55,10 +55,6 @@ class TouchFinder {
     std::size_t count = 0;
     unsigned kinds = 0;  ///< bits
   };
-  struct Hull {
-    std::weak_ptr<const Form> form;
-    std::optional<Polytope> polytope;
-  };
   static Part::Kind kind_of(const Solid&, bool is_hull);
   void list(const Outline&, const Vec3& anchor, Parts&);
   Part& add(Parts&);
@@ -67,7 +63,6 @@ class TouchFinder {
   /// Touches of convex parts and rings with the edges of meshes that are open or not convex: see MeshEdges.
   void find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second, const Vec3& anchor,
                      double within, std::vector<Touch>& found);
-  const MeshEdges& edges_of(const std::shared_ptr<const Form>&);
   void set_edge(const Solid&, std::uint32_t number, const Vec3& a, const Vec3& b);
   void place(Part&, const Vec3& spin, const Vec3& anchor);
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
@@ -83,12 +78,8 @@ class TouchFinder {
   RoundToucher round_{clipper_};
   CornerFinder corners_;
   PartList listed_, other_listed_;
-  std::map<const Form*, Hull> hulls_;  ///< of meshes
-  struct Edges {
-    std::weak_ptr<const Form> form;
-    std::optional<MeshEdges> edges;
-  };
-  std::map<const Form*, Edges> edges_;  ///< of meshes
+  FormCache<std::optional<Polytope>> hulls_;  ///< of meshes, if they are convex
+  FormCache<MeshEdges> edges_;
   Part edge_;
   std::vector<Touch> on_edge_;
 };

@@ -611,7 +611,7 @@ std::array<std::uint32_t, 2> items_of_both(const Model& model, const Contact& c,
 
 /// The rows against rolling and spinning: the angle between a direction of p and one of q is held, up to a torque.
 void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
-  if (!problem.has_used<solver::ResistanceConstraint>()) return;
+  if (problem.items_of<solver::ResistanceConstraint>().empty()) return;
   auto& rows = problem.pool_of<solver::ResistanceConstraint>();
   thread_local ItemsBySlot items;
   items.clear();

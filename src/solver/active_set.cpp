@@ -147,11 +147,8 @@ bool ActiveSet::follow_reactions(Problem& problem, const Stage& stage) {
   for (std::size_t i = 0; i < pool.items.size(); ++i) {
     const ResistanceConstraint& c = pool.items[i];
     if (c.contacts[0] == ResistanceConstraint::none || (c.begins && stage.is_mid_point())) continue;
-    double reaction = 0;
-    for (const std::uint32_t k : c.contacts)
-      if (k != ResistanceConstraint::none) reaction += std::max(0.0, -contacts.multiplier(k)[0]);
     RowLaw& law = *pool.law(i);
-    const double bound = c.share * reaction;
+    const double bound = c.bound([&](std::uint32_t k) { return std::max(0.0, -contacts.multiplier(k)[0]); });
     if (std::abs(bound - law.upper) <= same * std::max(bound, law.upper)) continue;
     law.lower = -bound, law.upper = bound, any = true;
     RowStates::Row& state = pool.states.rows_[i];

@@ -239,7 +239,7 @@ double Heap::power_of(const Vec3& gravity) const {
 void Heap::sweep(const Problem& problem, double h, const HeapSoftness& soft, int times) {
   const double least = h * norm(problem.gravity);
   for (int k = 0; k < times; ++k) {
-    ties_.bound_resistances([&](std::uint32_t contact) { return points_.normal_impulse(contact, least); }, h);
+    ties_.bound_resistances(problem, [&](std::uint32_t contact) { return points_.normal_impulse(contact, least); }, h);
     ties_.sweep(motions_, soft, h);
     forces_.sweep(problem, motions_, h);
     points_.sweep(motions_, soft, h);

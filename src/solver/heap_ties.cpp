@@ -83,7 +83,7 @@ void HeapTies::begin(const Problem& problem, const HeapBodies& bodies, double h)
   visit_rows(problem, [&]<class C>(Tie& tie, const ConstraintPool<C>& pool) {
     const C& c = pool.items[tie.item];
     if constexpr (std::is_same_v<C, ResistanceConstraint>)
-      resistances_.push_back({static_cast<std::uint32_t>(&tie - ties_.data()), c.contacts, c.share});
+      resistances_.push_back(static_cast<std::uint32_t>(&tie - ties_.data()));
     tie.moves = c.is_moving(), tie.size = c.reference_length();
     for (const std::uint32_t node : pool.nodes_of(c)) tie.moves = tie.moves || bodies.all[bodies.owner[node]].is_driven;
     for (int r = 0; r < C::rows; ++r) {

@@ -49,13 +49,10 @@ class HeapTies {
   void warm(std::span<HeapMotion>);
   /// Resistance has the bounds of what its contacts carry: impulse_of(contact), along the normal in a sub-step of h seconds, N s.
   template <class ImpulseOf>
-  void bound_resistances(ImpulseOf impulse_of, double h) {
-    for (const Resistance& resistance : resistances_) {
-      double impulse = 0;
-      for (const std::uint32_t contact : resistance.contacts)
-        if (contact != ResistanceConstraint::none) impulse += impulse_of(contact);
-      RowLaw& law = ties_[resistance.tie].law[0];
-      law.upper = resistance.share * impulse / h, law.lower = -law.upper;
+  void bound_resistances(const Problem& problem, ImpulseOf impulse_of, double h) {
+    for (const std::uint32_t k : resistances_) {
+      RowLaw& law = ties_[k].law[0];
+      law.upper = problem.items_of<ResistanceConstraint>()[ties_[k].item].bound(impulse_of) / h, law.lower = -law.upper;
     }
   }
   void sweep(std::span<HeapMotion>, const HeapSoftness&, double h);
@@ -109,14 +106,9 @@ class HeapTies {
   double rate_of(const Tie&, int row, std::span<const HeapMotion>) const;
   void give(Tie&, int row, double impulse, std::span<HeapMotion>);
 
-  std::vector<Tie> ties_;    // by pools, copies last
-  std::vector<Side> sides_;  // of the ties
-  struct Resistance {
-    std::uint32_t tie;
-    std::array<std::uint32_t, 2> contacts;
-    double share;
-  };
-  std::vector<Resistance> resistances_;
+  std::vector<Tie> ties_;                   // by pools, copies last
+  std::vector<Side> sides_;                 // of the ties
+  std::vector<std::uint32_t> resistances_;  // ties
   std::vector<Vec3> x_, x_next_;
   // The ties of equations, and the factor that projects onto them.
   std::vector<std::uint32_t> equations_;
