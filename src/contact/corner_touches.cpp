@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/corner_touches.h"
 
+#include "contact/ring_sides.h"
 #include "math/mat3.h"
 #include "shape/shape_list.h"
 
@@ -9,6 +10,8 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <utility>
 #include <variant>
 
 namespace iota::contact {
@@ -21,9 +24,22 @@ constexpr double lying = 0.5;
 constexpr std::uint32_t points_of_rim = 6;
 constexpr double vanishing = 1e-7, offset = 1e-3;  ///< of a size: see plane_of
 constexpr double same_normal = 1e-6;
+constexpr double beside = 1e-3;  ///< of the size: what is so little beside a face is still over it
 
 struct Plane {
   Vec3 origin, normal;
+  std::uint32_t side = 0;  ///< of a mesh: see side_of
+};
+
+/// A face of a mesh near a body.
+struct Face {
+  const Solid& solid;
+  Plane plane;
+  Vec3 corners[3];
+
+  Face turned_over() const {
+    return {solid, {plane.origin, -plane.normal, plane.side ^ 1}, {corners[0], corners[1], corners[2]}};
+  }
 };
 
 Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
@@ -31,9 +47,49 @@ Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
 double size_of(const Form& form) { return form.is_endless ? 1 : norm(form.box.high - form.box.low); }
 
 /// Whether an open mesh is between two places.
-bool is_behind(const geometry::TriangleTree& mesh, const Vec3& from, const Vec3& place) {
+bool is_between(const geometry::TriangleTree& mesh, const Vec3& from, const Vec3& place) {
   const double far = norm(place - from);
   return far > 0 && mesh.ray(from, (1 / far) * (place - from), far).has_value();
+}
+
+/// One of six sides of a mesh, two opposite ones after each other, by which touches with its faces are named: what slides or rolls on many triangles keeps its touch, and
+/// has another one with a wall. The axes are in no symmetry of a usual mesh.
+std::uint32_t side_of(const Vec3& local_normal) {
+  const Quaternion askew = normalized(Quaternion{0.07, 0.11, 0.05, 1});
+  const Vec3 n = rotate(askew, local_normal), size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  if (size.y >= size.x && size.y >= size.z) return n.y > 0 ? 0 : 1;
+  if (size.x >= size.z) return n.x > 0 ? 2 : 3;
+  return n.z > 0 ? 4 : 5;
+}
+
+/// visit(face): of meshes, those that may be at most `within` away from a place of a body, on the side of its middle if they are open.
+template <class Visit>
+void visit_faces(const PartList& other, const Vec3& place, double within, const Vec3& middle, Visit visit) {
+  for (const Solid* const solid : other.solids) {
+    const auto& mesh = solid->form->mesh;
+    if (!mesh) continue;
+    const Quaternion back = conjugate(solid->turn);
+    const Vec3 local = rotate(back, place - solid->position), inside = rotate(back, middle - solid->position);
+    const auto to_world = [&](const Vec3& p) { return solid->position + rotate(solid->turn, p); };
+    mesh->near(local, within, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      Vec3 normal = unit_or(cross(b - a, c - a), {});
+      if (!mesh->is_closed() && dot(normal, inside - a) < 0) normal = -normal;
+      if (normal == Vec3{} || !(std::abs(dot(normal, local - a)) <= within)) return;
+      visit(Face{*solid,
+                 {to_world(a), rotate(solid->turn, normal), side_of(normal)},
+                 {to_world(a), to_world(b), to_world(c)}});
+    });
+  }
+}
+
+/// Whether a place is over a face, or so little beside it.
+bool is_over(const Face& face, const Vec3& place, double beside) {
+  const Vec3 around = cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &from = face.corners[k], along = face.corners[(k + 1) % 3] - from;
+    if (dot(cross(along, place - from), around) < -beside * norm(along) * norm(around)) return false;
+  }
+  return true;
 }
 
 /// The plane that touches a solid nearest to a place of a body, whose middle is outside. A place on the surface says nothing
@@ -56,11 +112,12 @@ std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3&
     away = further - closest(form, further);
     if (!(norm(away) > 0)) return {};
   } else if (form.mesh && !form.mesh->is_closed()
-                 ? dot(away, outwards) < 0 && is_behind(*form.mesh, point + outwards, local)
+                 ? dot(away, outwards) < 0 && is_between(*form.mesh, point + outwards, local)
                  : is_within(form, local)) {
     away = -1.0 * away;
   }
-  return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away))};
+  return Plane{solid.position + rotate(solid.turn, point), rotate(solid.turn, unit(away)),
+               form.mesh ? side_of(unit(away)) : 0};
 }
 
 std::optional<Plane> plane_of(const Line& line, const Vec3& place) {
@@ -82,6 +139,39 @@ std::optional<Plane> plane_of(const PartList& other, const Vec3& place, const Ve
   for (const Solid* const solid : other.solids) take(plane_of(*solid, place, middle));
   for (const Line* const line : other.lines) take(plane_of(*line, place));
   return best;
+}
+
+/// Whether no other face is nearer to a place behind this one.
+bool is_nearest(const Face& face, const Vec3& place, double depth, double tolerance) {
+  const Vec3 local = rotate(conjugate(face.solid.turn), place - face.solid.position);
+  return depth <= norm(local - closest(*face.solid.form, local)) + tolerance;
+}
+
+/// Whether a place is in a closed mesh, or parted by an open one from the middle of its body.
+bool is_through(const Solid& solid, const Vec3& place, const Vec3& middle) {
+  const Quaternion back = conjugate(solid.turn);
+  const Vec3 local = rotate(back, place - solid.position);
+  return solid.form->mesh->is_closed() ? is_within(*solid.form, local)
+                                       : is_between(*solid.form->mesh, rotate(back, middle - solid.position), local);
+}
+
+/// Touches of one feature with faces of one side are numbered in the same order when the body moves along them.
+void number_touches(std::span<Touch> touches) {
+  constexpr std::uint32_t sides = 8;
+  constexpr Vec3 order{0.48, 0.61, 0.63};
+  const auto plane_name = [](Touch& touch) -> std::uint32_t& {
+    return touch.is_turned ? touch.feature : touch.other_feature;
+  };
+  const auto is_same = [](const Touch& a, const Touch& b) {
+    return a.part == b.part && a.feature == b.feature && a.other_part == b.other_part &&
+           a.other_feature == b.other_feature;
+  };
+  std::vector<std::uint32_t> ranks;
+  for (const Touch& touch : touches)
+    ranks.push_back(static_cast<std::uint32_t>(std::ranges::count_if(touches, [&](const Touch& other) {
+      return is_same(touch, other) && dot(other.normal, order) < dot(touch.normal, order);
+    })));
+  for (std::size_t k = 0; k < touches.size(); ++k) plane_name(touches[k]) += sides * ranks[k];
 }
 
 geometry::Bounds bounds_of(const PartList& parts) {
@@ -167,82 +257,114 @@ const std::vector<Vec3>& CornerFinder::corners_of(const std::shared_ptr<const Fo
 void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& other, double within,
                         const Names& names, std::vector<Touch>& found) {
   if (body.is_empty() || other.is_empty()) return;
-  Vec3 middle;
+  struct Ball {
+    std::uint32_t part, feature;
+    Vec3 center;
+    double radius;
+  };
+  Vec3 middle;  // of the part, and its size
+  double size = 0;
   for (const Line* const line : body.lines)
     middle += (0.5 / static_cast<double>(body.lines.size())) * (line->a + line->b);
   const std::size_t before = found.size();
-  const auto add = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius,
-                       const std::optional<Plane>& plane) {
-    if (!plane) return;
-    const double gap = dot(plane->normal, center - plane->origin) - radius;
+  const auto any_found = [&](auto test) {
+    return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), test);
+  };
+  const auto add = [&](const Ball& ball, const Plane& plane) {
+    const double gap = dot(plane.normal, ball.center - plane.origin) - ball.radius;
     if (!(gap <= within)) return;
     Touch touch;
-    touch.part = part, touch.feature = feature, touch.other_feature = names.planes;
+    touch.part = ball.part, touch.feature = ball.feature, touch.other_feature = names.planes + plane.side;
     if (names.is_turned) std::swap(touch.part, touch.other_part), std::swap(touch.feature, touch.other_feature);
     touch.is_turned = names.is_turned;
-    touch.center = center, touch.place = center - radius * plane->normal;
-    touch.origin = plane->origin, touch.normal = plane->normal, touch.radius = radius, touch.gap = gap;
-    found.push_back(touch);
+    touch.center = ball.center, touch.place = ball.center - ball.radius * plane.normal;
+    touch.origin = plane.origin, touch.normal = plane.normal, touch.radius = ball.radius, touch.gap = gap;
+    const bool is_known = any_found([&](const Touch& one) {
+      return one.part == touch.part && one.other_part == touch.other_part &&
+             norm(one.normal - touch.normal) <= same_normal &&
+             (names.is_turned ? one.other_feature == touch.other_feature : one.feature == touch.feature);
+    });
+    if (!is_known) found.push_back(touch);
   };
-  const auto look = [&](std::uint32_t part, std::uint32_t feature, const Vec3& center, double radius) {
-    add(part, feature, center, radius, plane_of(other, center, middle));
+  // In a corner of a room a feature touches three faces: all count, not only the nearest one.
+  const auto add_on_face = [&](const Ball& ball, const Face& face) {
+    const Vec3& normal = face.plane.normal;
+    const double gap = dot(normal, ball.center - face.plane.origin) - ball.radius, tolerance = vanishing * size;
+    const Vec3 place = ball.center - ball.radius * normal;
+    if (!(gap <= within) || !is_over(face, place, beside * size)) return;
+    if (gap < -tolerance && !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle)))
+      return;
+    add(ball, face.plane);
+  };
+  // A ring has its wire on both sides of an open mesh.
+  const auto add_of_ring = [&](const Ball& ball, double tube, const RingSides& sides, const Face& face) {
+    const Vec3 &normal = face.plane.normal, place = ball.center - ball.radius * normal;
+    const double gap = dot(normal, place - face.plane.origin), tolerance = vanishing * size;
+    if (!(gap <= within) || !is_over(face, place, beside * size)) return;
+    if (gap < -tolerance && !is_nearest(face, place, -gap, tolerance)) return;
+    if (sides.is_through(place + tube * normal) == gap < -tube) add(ball, face.plane);
+  };
+  const auto look = [&](const Ball& ball) {
+    if (const std::optional<Plane> plane = plane_of(other, ball.center, middle)) add(ball, *plane);
+    visit_faces(other, ball.center, ball.radius + within, middle, [&](const Face& face) { add_on_face(ball, face); });
   };
   for (const Solid* const solid : body.solids) {
     const Form& form = *solid->form;
     if (form.is_endless) continue;
-    middle = solid->position + rotate(solid->turn, 0.5 * (form.box.low + form.box.high));
     const auto to_world = [&](const Vec3& local) { return solid->position + rotate(solid->turn, local); };
+    middle = to_world(0.5 * (form.box.low + form.box.high)), size = size_of(form);
     if (form.mesh) {
       const std::vector<Vec3>& corners = corners_of(solid->form);
       const geometry::Bounds around = geometry::grown(bounds_of(other), within);
       for (std::uint32_t k = 0; k < corners.size(); ++k)
         if (const Vec3 corner = to_world(corners[k]); geometry::distance(around, corner) <= 0)
-          look(solid->number, k, corner, 0);
+          look({solid->number, k, corner, 0});
       continue;
     }
-    const std::optional<Plane> plane = plane_of(other, middle, middle);
-    if (!plane) continue;
     const Quaternion back = conjugate(solid->turn);
     const Vec3 turn = rotate(back, spin);
     const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
-      visit_features(form.shape, rotate(back, -1.0 * beneath.normal), turn, visit);
+      visit_features(form.shape, rotate(back, -1.0 * beneath.normal), turn, [&](const Feature& feature) {
+        visit(Ball{solid->number, feature.number, to_world(feature.center), feature.radius}, feature.is_lowest);
+      });
     };
-    // The lowest point is sought once more above another plane than that beneath the middle: elsewhere the ball that touches a rim is
-    // lower than the rim, and a ring bounced off the air beside a seam.
-    const auto look_again = [&](const Feature& feature, Plane here) {
-      constexpr int most = 4;
-      for (int pass = 0; pass < most; ++pass) {
-        std::optional<Feature> lowest;
-        visit_lowest_above(here, [&](const Feature& again) {
-          if (again.number == feature.number) lowest = again;
-        });
-        if (!lowest) return;
-        const Vec3 center = to_world(lowest->center);
-        const std::optional<Plane> there = plane_of(other, center, middle);
-        if (!there || norm(there->normal - here.normal) <= same_normal)
-          return add(solid->number, lowest->number, center, lowest->radius, there);
-        if (pass + 1 == most) look(solid->number, lowest->number, center - lowest->radius * here.normal, 0);
-        here = *there;
+    for (const Solid* const half_space : other.solids) {
+      if (!half_space->form->is_endless) continue;
+      const Plane plane = *plane_of(*half_space, middle, middle);
+      visit_lowest_above(plane, [&](const Ball& ball, bool) { add(ball, plane); });
+    }
+    std::uint32_t looked = 0;  // bits of features
+    std::optional<RingSides> sides;
+    const Solid* sides_of = nullptr;
+    const auto* const torus = std::get_if<Torus>(&form.shape);
+    visit_faces(other, middle, 0.5 * size + within, middle, [&](const Face& face) {
+      if (torus && !face.solid.form->mesh->is_closed()) {
+        if (sides_of != &face.solid) sides.emplace(*solid, face.solid), sides_of = &face.solid;
+        for (const Face& one : {face, face.turned_over()})
+          visit_lowest_above(one.plane, [&](const Ball& ball, bool) { add_of_ring(ball, torus->tube, *sides, one); });
+        return;
       }
-    };
-    visit_lowest_above(*plane, [&](const Feature& feature) {
-      const Vec3 center = to_world(feature.center);
-      const std::optional<Plane> here = plane_of(other, center, middle);
-      if (here && feature.is_lowest && norm(here->normal - plane->normal) > same_normal)
-        look_again(feature, *here);
-      else
-        add(solid->number, feature.number, center, feature.radius, here);
+      visit_lowest_above(face.plane, [&](const Ball& ball, bool is_lowest) {
+        add_on_face(ball, face);
+        // Beneath the bottom of a valley a corner is over none of its faces.
+        const bool may_be_in = !is_lowest && dot(face.plane.normal, ball.center - face.plane.origin) < 0;
+        if (!may_be_in || (looked >> ball.feature & 1)) return;
+        looked |= 1u << ball.feature;
+        const std::optional<Plane> plane = plane_of(other, ball.center, middle);
+        if (plane && dot(plane->normal, ball.center - plane->origin) < 0) add(ball, *plane);
+      });
     });
   }
   for (const Line* const line : body.lines) {  // lines share points
     const auto is_known = [&](std::uint32_t particle) {
-      return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), [&](const Touch& touch) {
-        return (names.is_turned ? touch.other_part : touch.part) == particle;
-      });
+      return any_found(
+          [&](const Touch& touch) { return (names.is_turned ? touch.other_part : touch.part) == particle; });
     };
-    if (!is_known(line->p)) look(line->p, 0, line->a, line->radius);
-    if (!is_known(line->q)) look(line->q, 0, line->b, line->radius);
+    size = line->radius;
+    if (!is_known(line->p)) look({line->p, 0, line->a, line->radius});
+    if (!is_known(line->q)) look({line->q, 0, line->b, line->radius});
   }
+  number_touches(std::span(found).subspan(before));
 }
 
 }  // namespace iota::contact

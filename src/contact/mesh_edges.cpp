@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/mesh_edges.h"
 
+#include "contact/manifold.h"
+#include "contact/segments.h"
 #include "math/mat3.h"
 
 #include <algorithm>
@@ -65,8 +67,59 @@ MeshEdges::MeshEdges(const Mesh& mesh, bool is_closed) {
     edges_.push_back(edge);
   }
   std::vector<geometry::Bounds> boxes;
-  for (const Edge& edge : edges_) boxes.push_back(geometry::joined({edge.a, edge.a}, {edge.b, edge.b}));
+  for (const Edge& edge : edges_) boxes.push_back(geometry::around(edge.a, edge.b));
   tree_.build(boxes);
+}
+
+void add_touches_of_edges(const EdgedSolid& first, const EdgedSolid& second, std::uint32_t first_feature,
+                          const Vec3& anchor, double within, std::vector<Touch>& found) {
+  constexpr double parallel = 0.02;  // sine of the angle between two edges that do not cross
+  constexpr double deepest = 0.1;    // of the smaller mesh
+  const ConvexPart thin;
+  TouchWriter writer(thin, thin, anchor, within, found);
+  const auto size = [](const EdgedSolid& of) { return norm(of.solid.form->box.high - of.solid.form->box.low); };
+  const auto to_anchor = [&](const EdgedSolid& of, const Vec3& p) {
+    return of.solid.position - anchor + rotate(of.solid.turn, p);
+  };
+  const auto from_anchor = [&](const EdgedSolid& of, const Vec3& p) {
+    return rotate(conjugate(of.solid.turn), p - (of.solid.position - anchor));
+  };
+  // Beneath an edge with a right angle a place is on the border: a little further inwards it is not.
+  const auto is_beneath = [&](const EdgedSolid& of, const MeshEdges::Edge& edge, const Vec3& p, double depth) {
+    return is_within(*of.solid.form, from_anchor(of, p) - 0.5 * depth * edge.outwards());
+  };
+  const double most = deepest * std::min(size(first), size(second)), reach = 0.5 * size(second) + within;
+  const geometry::Bounds& box = second.solid.form->box;
+  const Vec3 middle = from_anchor(first, to_anchor(second, 0.5 * (box.low + box.high)));
+  first.edges.overlapping(geometry::grown({middle, middle}, reach), [&](std::uint32_t i, const MeshEdges::Edge& one) {
+    const Vec3 a = to_anchor(first, one.a), b = to_anchor(first, one.b);
+    const geometry::Bounds seen =
+        geometry::grown(geometry::around(from_anchor(second, a), from_anchor(second, b)), std::max(within, most));
+    second.edges.overlapping(seen, [&](std::uint32_t k, const MeshEdges::Edge& other) {
+      const Vec3 c = to_anchor(second, other.a), d = to_anchor(second, other.b), across = cross(b - a, d - c);
+      if (!(norm(across) > parallel * norm(b - a) * norm(d - c))) return;
+      const NearestOfSegments nearest = nearest_of_segments(a, b, c, d);
+      const Vec3 between = nearest.on_first - nearest.on_second;
+      Vec3 normal = unit_or(across, {});
+      if (dot(between, normal) < 0) normal = -normal;
+      // At an end of one of them a corner touches, which is met by itself.
+      constexpr double beside_normal = 1e-6;
+      if (norm(between - dot(between, normal) * normal) > beside_normal * (norm(between) + norm(b - a))) return;
+      const auto may_push = [&](const Vec3& away) {
+        return other.may_push(rotate(conjugate(second.solid.turn), away)) &&
+               one.may_push(rotate(conjugate(first.solid.turn), -away));
+      };
+      if (!may_push(normal)) {
+        const double depth = norm(between);
+        const bool is_in = depth <= most && may_push(-normal) && is_beneath(second, other, nearest.on_first, depth) &&
+                           is_beneath(first, one, nearest.on_second, depth);
+        if (!is_in) return;
+        normal = -normal;
+      }
+      writer.add_edges(nearest.on_first, nearest.on_second, normal, {first.solid.number, first_feature + 3 * i},
+                       {second.solid.number, first_feature + 3 * k});
+    });
+  });
 }
 
 }  // namespace iota::contact

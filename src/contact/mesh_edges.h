@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contact/outline.h"
+#include "contact/touch.h"
 #include "geometry/box_tree.h"
+#include "math/mat3.h"
 
 #include <iota/shapes.h>
 
@@ -19,6 +22,8 @@ class MeshEdges {
     Vec3 into[2];  ///< unit vectors at right angles to it, along its faces; the second is zero where there is one face
     Vec3 normal;   ///< of one face, where there is one
     bool has_two() const { return dot(into[1], into[1]) > 0; }
+    /// Away from both faces where they bend, or the normal of one.
+    Vec3 outwards() const { return has_two() ? unit_or(-(into[0] + into[1]), normal) : normal; }
     /// Whether a body may be pushed away in this direction, and not by one of the faces. An edge where a face ends pushes about
     /// along the normal alone: its neighbor may only not fit, and would stop what slides.
     bool may_push(const Vec3& away) const;
@@ -38,5 +43,14 @@ class MeshEdges {
   std::vector<Edge> edges_;
   geometry::BoxTree tree_;
 };
+
+/// A mesh at its place, with its edges.
+struct EdgedSolid {
+  const Solid& solid;
+  const MeshEdges& edges;
+};
+/// Appends the touches of edges of two meshes that cross each other. first_feature: of their names.
+void add_touches_of_edges(const EdgedSolid& first, const EdgedSolid& second, std::uint32_t first_feature,
+                          const Vec3& anchor, double within, std::vector<Touch>& found);
 
 }  // namespace iota::contact

@@ -187,7 +187,7 @@ Bounds bounds(const Solid& solid, const Vec3& anchor) {
 
 Bounds bounds(const Line& line, const Vec3& anchor) {
   const Vec3 a = line.a - anchor, b = line.b - anchor;
-  return geometry::grown(geometry::joined({a, a}, {b, b}), line.radius);
+  return geometry::grown(geometry::around(a, b), line.radius);
 }
 
 Bounds bounds(const Outline& outline) {

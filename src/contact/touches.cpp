@@ -154,8 +154,23 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
     const Vec3 anchor = anchor_of(second);
     find_on_edges(first_, spin_of_first, second_, true, anchor, within, found);
     find_on_edges(second_, spin_of_second, first_, false, anchor, within, found);
+    find_between_edges(anchor, within, found);
   }
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
+}
+
+double TouchFinder::reach(const Part& part, const Vec3& direction, const Vec3& anchor) {
+  if (part.kind != Part::ring) return dot(direction, farthest(part.placed, direction)) + part.placed.radius;
+  const Vec3 far = shape::support(part.solid->form->shape, rotate(conjugate(part.solid->turn), direction));
+  return dot(direction, part.solid->position - anchor + rotate(part.solid->turn, far));
+}
+
+bool TouchFinder::may_meet(const MeshEdges::Edge& edge, const Vec3& a, const Vec3& b, const Vec3& outwards,
+                           const Part& body, const Vec3& anchor, double within) {
+  const double of_a = dot(outwards, a), of_b = dot(outwards, b);
+  const double below = edge.has_two() ? 0 : within;  // an edge where a face ends has two outsides
+  return -reach(body, -outwards, anchor) - std::max(of_a, of_b) <= within &&
+         reach(body, outwards, anchor) - std::min(of_a, of_b) >= -below;
 }
 
 void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second,
@@ -164,8 +179,7 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
     const Part& mesh = meshes.parts[m];
     if (mesh.is_met() || !mesh.solid->form->mesh) continue;
     const Solid& solid = *mesh.solid;
-    const MeshEdges& edges =
-        edges_.of(solid.form, [&] { return MeshEdges(solid.form->mesh->mesh(), solid.form->mesh->is_closed()); });
+    const MeshEdges& edges = edges_of(solid);
     const Vec3 position = solid.position - anchor;
     const Quaternion back = conjugate(solid.turn);
     for (std::size_t k = 0; k < bodies.count; ++k) {
@@ -177,8 +191,9 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
       edges.overlapping(
           geometry::grown({middle, middle}, reach), [&](std::uint32_t number, const MeshEdges::Edge& edge) {
             const Vec3 a = position + rotate(solid.turn, edge.a), b = position + rotate(solid.turn, edge.b);
-            if (!geometry::overlap(box, geometry::joined({a, a}, {b, b}))) return;
+            if (!geometry::overlap(box, geometry::around(a, b))) return;
             place(body, spin, anchor);
+            if (!may_meet(edge, a, b, rotate(solid.turn, edge.outwards()), body, anchor, within)) return;
             set_edge(solid, number, a, b);
             on_edge_.clear();
             if (are_meshes_second)
@@ -195,6 +210,19 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
           });
     }
   }
+}
+
+const MeshEdges& TouchFinder::edges_of(const Solid& solid) {
+  return edges_.of(solid.form, [&] { return MeshEdges(solid.form->mesh->mesh(), solid.form->mesh->is_closed()); });
+}
+
+void TouchFinder::find_between_edges(const Vec3& anchor, double within, std::vector<Touch>& found) {
+  const auto is_edged = [](const Part& part) { return !part.is_met() && part.solid->form->mesh; };
+  for (std::size_t i = 0; i < first_.count; ++i)
+    for (std::size_t k = 0; k < second_.count; ++k)
+      if (const Part &one = first_.parts[i], &other = second_.parts[k]; is_edged(one) && is_edged(other))
+        add_touches_of_edges({*one.solid, edges_of(*one.solid)}, {*other.solid, edges_of(*other.solid)}, of_edges,
+                             anchor, within, found);
 }
 
 void TouchFinder::set_edge(const Solid& solid, std::uint32_t number, const Vec3& a, const Vec3& b) {

@@ -21,7 +21,7 @@ namespace iota::contact {
 ///   Convex parts   four points at most of each two: faces, edges and corners of both are looked at
 ///   Rings          with each other, with balls and rods: see RingToucher; with other convex parts: see add_touches_of_ring
 ///   Half-spaces, meshes that are open or not convex   corners, ends and rims of the other outline; and those of a mesh
-///                  against a convex part or a ring; and the edges of meshes against convex parts and rings
+///                  against a convex part or a ring; and the edges of meshes against convex parts, rings and each other
 class TouchFinder {
  public:
   TouchFinder() = default;
@@ -63,6 +63,14 @@ class TouchFinder {
   /// Touches of convex parts and rings with the edges of meshes that are open or not convex: see MeshEdges.
   void find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second, const Vec3& anchor,
                      double within, std::vector<Touch>& found);
+  /// Touches of edges of meshes that are open or not convex with each other.
+  void find_between_edges(const Vec3& anchor, double within, std::vector<Touch>& found);
+  const MeshEdges& edges_of(const Solid&);
+  /// Whether a body may touch an edge from a to b on its outer side. What is on the other side of one in a hollow meets its faces.
+  static bool may_meet(const MeshEdges::Edge&, const Vec3& a, const Vec3& b, const Vec3& outwards, const Part& body,
+                       const Vec3& anchor, double within);
+  /// How far it reaches along a unit vector, m.
+  static double reach(const Part&, const Vec3& direction, const Vec3& anchor);
   void set_edge(const Solid&, std::uint32_t number, const Vec3& a, const Vec3& b);
   void place(Part&, const Vec3& spin, const Vec3& anchor);
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);

@@ -17,6 +17,8 @@ inline Bounds joined(const Bounds& a, const Bounds& b) {
   return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
           {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
+/// The box around two places.
+inline Bounds around(const Vec3& a, const Vec3& b) { return joined({a, a}, {b, b}); }
 /// Farther on all sides, m.
 inline Bounds grown(const Bounds& box, double by) {
   const Vec3 reach{by, by, by};

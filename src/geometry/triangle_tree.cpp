@@ -69,8 +69,7 @@ TriangleTree::TriangleTree(Mesh mesh, bool is_closed) : mesh_(std::move(mesh)), 
   std::vector<Bounds> boxes;
   boxes.reserve(mesh_.triangles.size());
   for (const auto& [a, b, c] : mesh_.triangles)
-    boxes.push_back(joined(joined({mesh_.vertices[a], mesh_.vertices[a]}, {mesh_.vertices[b], mesh_.vertices[b]}),
-                           {mesh_.vertices[c], mesh_.vertices[c]}));
+    boxes.push_back(joined(around(mesh_.vertices[a], mesh_.vertices[b]), {mesh_.vertices[c], mesh_.vertices[c]}));
   tree_.build(boxes);
   if (boxes.empty()) return;
   box_ = boxes[0];

@@ -65,5 +65,27 @@ TEST(MeshEdges, hold_a_beam_of_any_shape_that_lies_across_them) {
   }
 }
 
+TEST(MeshEdges, of_two_meshes_touch_where_they_cross) {
+  const double turned = std::sqrt(0.5);
+  const Outline lower = placed(step_mesh(), {}), upper = placed(step_mesh(), {}, {0, 0, 0, 1}, 8);
+  for (const double gap : {1e-3, -1e-3}) {
+    // Upside down and turned, so that the upper edges of both cross at a right angle.
+    Outline crossed = upper;
+    crossed.solids[0].turn = Quaternion{turned, 0, turned, 0};
+    crossed.solids[0].position = {0.5, 4 + gap, 0.5};
+    for (const bool is_swapped : {false, true}) {
+      const auto found = is_swapped ? touches_of(crossed, lower, 0.01) : touches_of(lower, crossed, 0.01);
+      int edges = 0;
+      for (const Touch& touch : found) {
+        EXPECT_NEAR(touch.gap, gap, 1e-9);
+        if (touch.form != TouchForm::edges) continue;
+        ++edges;
+        EXPECT_NEAR(norm(touch.normal - Vec3{0, is_swapped ? 1.0 : -1.0, 0}), 0, 1e-9);
+      }
+      EXPECT_GT(edges, 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace iota::contact
