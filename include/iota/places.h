@@ -20,6 +20,12 @@ struct Hit {
   double distance = 0;
 };
 
+/// The distance of two bodies, m, 0 where they overlap, and the places of each that are nearest to the other.
+struct Gap {
+  double distance = 0;
+  Vec3 point, other_point;
+};
+
 /// Questions about the outlines of bodies, with which they touch and are drawn: the exact shapes of solids; lines and
 /// balls with Bodies::radius. Sparks are not found, inactive bodies only where they are named. Of equally near ones the
 /// first slot is found. The system has one tree of boxes for all of its outlines. It follows the motion: the first
@@ -40,6 +46,14 @@ class Places : public View {
   /// The bodies that a convex shape at a place would overlap, in order of slots. A body whose shape is not convex, as a
   /// torus, is tested by its triangles. Throws std::invalid_argument for a shape that is endless or not convex.
   std::vector<BodyId> overlap(const Shape&, const Vec3& position, const Quaternion& orientation, Only only = {});
+  /// The first body that a convex shape meets on a straight way of at most `farthest`, m, without turning: the place where they
+  /// touch, and how far it has gone, 0 if it overlaps the body already. Throws std::invalid_argument for such shapes as
+  /// `overlap`, and for a direction of zero.
+  std::optional<Hit> cast(const Shape&, const Vec3& position, const Quaternion& orientation, const Vec3& direction,
+                          double farthest = std::numeric_limits<double>::infinity(), Only only = {});
+  /// The gap between two bodies, inactive ones too. Throws std::invalid_argument for one body with itself and for sparks,
+  /// StaleIdError.
+  Gap gap(BodyId body, BodyId other);
 
  private:
   /// search(tree, visit) calls visit(slot, outline), which returns the new limit; visit(body, outline) is told the body. Of

@@ -39,8 +39,7 @@ std::optional<double> meet(const Line& line, const Vec3& from, const Vec3& unit,
 }
 
 Vec3 support_of_probe(const Solid& probe, const Vec3& direction) {
-  return probe.position +
-         rotate(probe.turn, shape::support(probe.form->shape, rotate(conjugate(probe.turn), direction)));
+  return probe.position + rotate(probe.turn, support(*probe.form, rotate(conjugate(probe.turn), direction)));
 }
 
 bool is_overlapped(const Line& line, const Solid& probe) {
@@ -82,6 +81,11 @@ Vec3 closest(const Form& form, const Vec3& place) {
 
 bool is_within(const Form& form, const Vec3& place) {
   return form.mesh ? form.mesh->is_within(place) : shape::is_within(form.shape, place);
+}
+
+Vec3 support(const Form& form, const Vec3& direction) {
+  if (!form.mesh) return shape::support(form.shape, direction);
+  return std::ranges::max(form.mesh->vertices(), {}, [&](const Vec3& corner) { return dot(corner, direction); });
 }
 
 Vec3 nearest_of_middle(const Line& line, const Vec3& place) {

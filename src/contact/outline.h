@@ -34,6 +34,8 @@ bool is_convex(const Shape&);
 /// The nearest point of its surface, and whether a place is inside; in its frame.
 Vec3 closest(const Form&, const Vec3& place);
 bool is_within(const Form&, const Vec3& place);
+/// A farthest point of it in a direction, which is not zero; in its frame. Of a mesh: of its hull.
+Vec3 support(const Form&, const Vec3& direction);
 
 struct Solid {
   std::shared_ptr<const Form> form;

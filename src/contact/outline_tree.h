@@ -39,11 +39,12 @@ class OutlineTree {
     for (const std::uint32_t number : endless_) visit(number);
     tree_.overlapping(box, visit);
   }
-  /// As `near`, along a ray.
+  /// As `near`, along a ray, or where a ball goes of this radius, m.
   template <class Visit>
-  void along(const Vec3& from, const Vec3& unit, double within, Visit visit) const {
+  void along(const Vec3& from, const Vec3& unit, double width, double within, Visit visit) const {
     within = visit_endless(within, visit);
-    tree_.along(from, unit, within, [&](std::uint32_t number) { return visit(number, entries_[number].outline); });
+    tree_.along(from, unit, width, within,
+                [&](std::uint32_t number) { return visit(number, entries_[number].outline); });
   }
   /// Calls visit(number, number) with each two shown outlines whose boxes overlap, once, and with each endless one and
   /// every other. Boxes are larger than the outlines, by a fifth of their longest edge on each side. The order depends on

@@ -4,6 +4,7 @@
 #include "contact/ring_pairs.h"
 
 #include "contact/minima.h"
+#include "contact/outline.h"
 #include "math/mat3.h"
 
 #include <algorithm>

@@ -161,7 +161,7 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
 
 double TouchFinder::reach(const Part& part, const Vec3& direction, const Vec3& anchor) {
   if (part.kind != Part::ring) return dot(direction, farthest(part.placed, direction)) + part.placed.radius;
-  const Vec3 far = shape::support(part.solid->form->shape, rotate(conjugate(part.solid->turn), direction));
+  const Vec3 far = support(*part.solid->form, rotate(conjugate(part.solid->turn), direction));
   return dot(direction, part.solid->position - anchor + rotate(part.solid->turn, far));
 }
 

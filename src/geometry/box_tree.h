@@ -57,11 +57,12 @@ class BoxTree {
   void near(const Vec3& place, double within, Visit visit) const {
     search([&](const Bounds& box) { return distance(box, place); }, within, visit);
   }
-  /// The same for a ray: by the distance at which it comes into a box. unit: its direction.
+  /// The same for a ray: by the distance at which it comes into a box. unit: its direction. width: boxes are so much larger on
+  /// all sides, m, for a ball that goes along the ray.
   template <class Visit>
-  void along(const Vec3& from, const Vec3& unit, double within, Visit visit) const {
+  void along(const Vec3& from, const Vec3& unit, double width, double within, Visit visit) const {
     const Vec3 inverse{1 / unit.x, 1 / unit.y, 1 / unit.z};
-    search([&](const Bounds& box) { return entry(box, from, inverse); }, within, visit);
+    search([&](const Bounds& box) { return entry(grown(box, width), from, inverse); }, within, visit);
   }
   /// Calls visit(item) with each item whose box overlaps this one.
   template <class Visit>

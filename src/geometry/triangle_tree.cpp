@@ -96,7 +96,7 @@ bool TriangleTree::is_within(const Vec3& place) const {
   constexpr double unsure = 1e-9, endless = std::numeric_limits<double>::infinity();
   int leaves = 0;
   bool is_sure = true;
-  tree_.along(place, unit, endless, [&](std::uint32_t triangle) {
+  tree_.along(place, unit, 0, endless, [&](std::uint32_t triangle) {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto met = crossing(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c], place, unit);
     if (!met || depth(*met) < -unsure || met->distance < 0) return endless;
@@ -114,7 +114,7 @@ bool TriangleTree::is_within(const Vec3& place) const {
 std::optional<double> TriangleTree::ray(const Vec3& from, const Vec3& unit, double farthest) const {
   if (is_within(from)) return 0.0;
   std::optional<double> first;
-  tree_.along(from, unit, farthest, [&](std::uint32_t triangle) {
+  tree_.along(from, unit, 0, farthest, [&](std::uint32_t triangle) {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto met = ray_to_triangle(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c], from, unit);
     if (met && *met <= farthest) first = met, farthest = *met;

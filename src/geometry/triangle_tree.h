@@ -31,6 +31,16 @@ class TriangleTree {
     });
   }
 
+  /// Calls visit(a, b, c) with the corners of each triangle whose box a ball meets that goes along a ray, and maybe others, by the
+  /// distance. visit returns the new limit, m.
+  template <class Visit>
+  void along(const Vec3& from, const Vec3& unit, double radius, double within, Visit visit) const {
+    tree_.along(from, unit, radius, within, [&](std::uint32_t triangle) {
+      const auto& [a, b, c] = mesh_.triangles[triangle];
+      return visit(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+    });
+  }
+
   bool is_closed() const { return is_closed_; }
   const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
   const Mesh& mesh() const { return mesh_; }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "contact/gap.h"
 #include "contact/outline.h"
+#include "contact/polytope.h"
 #include "shape/shape.h"
 #include "system/core.h"
 
@@ -16,6 +18,33 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void require_place(const Vec3& place) {
   if (!is_finite(place)) throw std::invalid_argument("the place must be finite");
+}
+
+Vec3 unit_of(const Vec3& direction) {
+  const double length = norm(direction);
+  if (!(length > 0 && is_finite(direction))) throw std::invalid_argument("the direction of a ray must not be zero");
+  return (1 / length) * direction;
+}
+
+/// A convex shape at a place, in a ball.
+struct Probe {
+  contact::Solid solid;
+  Vec3 middle;
+  double reach;
+};
+
+Probe make_probe(const Shape& shape, const Vec3& position, const Quaternion& orientation) {
+  require_place(position);
+  shape::check(shape);
+  const auto* const mesh = std::get_if<Mesh>(&shape);
+  if (mesh ? !contact::try_polytope(*mesh) : !contact::is_convex(shape) || !shape::is_solid(shape))
+    throw std::invalid_argument("only a convex shape can be asked about, as a box, a sphere or a capsule; not a " +
+                                std::string(mesh ? "mesh that is not convex" : shape::name(shape)));
+  contact::Solid solid{contact::make_form(shape), 0, position, orientation};
+  const geometry::Bounds& box = solid.form->box;
+  const Vec3 middle = position + rotate(orientation, 0.5 * (box.low + box.high));
+  const double reach = 0.5 * norm(box.high - box.low);
+  return {std::move(solid), middle, reach};
 }
 
 }  // namespace
@@ -36,12 +65,10 @@ void Places::for_each(const Only& only, Search search, Visit visit) {
 
 std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double farthest, Only only) {
   require_place(from);
-  const double length = norm(direction);
-  if (!(length > 0 && is_finite(direction))) throw std::invalid_argument("the direction of a ray must not be zero");
-  const Vec3 unit = (1 / length) * direction;
+  const Vec3 unit = unit_of(direction);
   std::optional<Hit> first;
   for_each(
-      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, farthest, visit); },
+      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, 0, farthest, visit); },
       [&](BodyId body, const contact::Outline& outline) {
         const std::optional<double> met = meet(outline, from, unit, farthest);
         if (met && (!first || *met < farthest || body.slot < first->body.slot)) {
@@ -86,15 +113,7 @@ std::vector<BodyId> Places::within(const Vec3& place, double radius, Only only) 
 
 std::vector<BodyId> Places::overlap(const Shape& shape, const Vec3& position, const Quaternion& orientation,
                                     Only only) {
-  require_place(position);
-  shape::check(shape);
-  if (!contact::is_convex(shape) || !shape::is_solid(shape))
-    throw std::invalid_argument("only a convex shape can be asked about, as a box, a sphere or a capsule; not a " +
-                                std::string(shape::name(shape)));
-  const contact::Solid probe{contact::make_form(shape), 0, position, orientation};
-  const geometry::Bounds box = contact::bounds({{probe}, {}});
-  const Vec3 middle = 0.5 * (box.low + box.high);
-  const double reach = 0.5 * norm(box.high - box.low);
+  const auto [probe, middle, reach] = make_probe(shape, position, orientation);
   std::vector<BodyId> found;
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.near(middle, reach, visit); },
@@ -104,6 +123,33 @@ std::vector<BodyId> Places::overlap(const Shape& shape, const Vec3& position, co
       });
   std::ranges::sort(found, {}, &BodyId::slot);
   return found;
+}
+
+std::optional<Hit> Places::cast(const Shape& shape, const Vec3& position, const Quaternion& orientation,
+                                const Vec3& direction, double farthest, Only only) {
+  const auto [probe, middle, reach] = make_probe(shape, position, orientation);
+  const Vec3 unit = unit_of(direction);
+  std::optional<Hit> first;
+  for_each(
+      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(middle, unit, reach, farthest, visit); },
+      [&](BodyId body, const contact::Outline& outline) {
+        const auto met = contact::cast(outline, probe, unit, farthest);
+        if (met && (!first || met->distance < farthest || body.slot < first->body.slot)) {
+          farthest = met->distance;
+          first = Hit{body, met->point, met->distance};
+        }
+        return farthest;
+      });
+  return first;
+}
+
+Gap Places::gap(BodyId body, BodyId other) {
+  const contact::OutlineTree& bodies = core_.outlines.refresh(core_.model.step);
+  const std::uint32_t one = core_.slot(body), two = core_.slot(other);
+  if (one == two) throw std::invalid_argument("a gap is between two bodies, not of one with itself");
+  if (!bodies.has(one) || !bodies.has(two)) throw std::invalid_argument("sparks have no outline, and no gaps");
+  const contact::Gap found = contact::gap(bodies[one], bodies[two]);
+  return {found.distance, found.on_first, found.on_second};
 }
 
 }  // namespace iota

@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
+from convex_reference import distance as distance_of
+from scipy.spatial.transform import Rotation
 from slow_queries import SlowQueries
+from test_touching import KINDS, shape_of
 
 import iota
 from iota._core import Places
@@ -334,3 +339,112 @@ def test_what_is_frozen_or_fixed_is_met_where_an_edit_has_put_it_whatever_happen
                 assert found_at(2 * x + 100 - to) is None, (steps, x)
                 if body in frozen:
                     body.stride = 0
+
+
+def random_pair(kinds: tuple[str, str], seed: int) -> tuple[iota.World, list[Any], list[iota.Body], float]:
+    random = np.random.default_rng(seed)
+    size = 10.0 ** random.uniform(-3, 2)
+    world = iota.World(iota.System(gravity=(0, 0, 0)), ground=None)
+    poses = []
+    for k, kind in enumerate(kinds):
+        turn = random.normal(size=4)
+        shape = shape_of(kind, size * random.uniform(0.3, 1), random)
+        poses.append((shape, 1.5 * k * size * random.normal(size=3), Rotation.from_quat(turn).as_matrix(), turn))
+    bodies = [
+        world.system.body(shape=shape, density=1000, position=place, orientation=turn)
+        for shape, place, _, turn in poses
+    ]
+    return world, poses, bodies, size
+
+
+@pytest.mark.parametrize("kinds", list(itertools.combinations_with_replacement(KINDS, 2)), ids="-".join)
+def test_the_gap_of_two_bodies_is_that_of_their_support_functions(kinds: tuple[str, str]) -> None:
+    for seed in range(4):
+        world, poses, bodies, size = random_pair(kinds, seed)
+        expected, _ = distance_of(*poses[0][:3], *poses[1][:3])
+        gap, other = world.queries.gap(*bodies), world.queries.gap(*reversed(bodies))
+        assert gap.distance == pytest.approx(max(0, expected), abs=1e-8 * size)
+        assert other.distance == pytest.approx(gap.distance, abs=1e-8 * size)
+        if gap.distance > 0:
+            apart = np.array(gap.point) - gap.other_point
+            assert np.linalg.norm(apart) == pytest.approx(gap.distance, abs=1e-9 * size)
+            for body, point in zip(bodies, (gap.point, gap.other_point), strict=True):
+                assert world.queries.nearest(point, [body]).distance == pytest.approx(0, abs=1e-6 * size)
+
+
+@pytest.mark.parametrize("kinds", list(itertools.product(KINDS, KINDS)), ids="-".join)
+def test_a_shape_that_goes_straight_stops_where_it_touches(kinds: tuple[str, str]) -> None:
+    for seed in range(3):
+        world, ((shape, place, turn, rotation), other), bodies, size = random_pair(kinds, seed)
+        way = other[1] - place + 0.2 * size * np.random.default_rng(seed).normal(size=3)
+        start, unit = place - 3 * way, way / np.linalg.norm(way)
+
+        def apart(gone: float) -> float:
+            return distance_of(shape, start + gone * unit, turn, *other[:3])[0]  # noqa: B023
+
+        hit = world.queries.cast(shape, start, way, rotation=tuple(rotation), bodies=[bodies[1]])
+        if hit is None:
+            assert min(apart(gone) for gone in np.linspace(0, 30 * size, 60)) > -1e-3 * size
+            continue
+        assert apart(hit.distance) == pytest.approx(0, abs=1e-5 * size)
+        assert min(apart(share * hit.distance) for share in (0.9, 0.99, 0.9999)) > 0
+        assert world.queries.nearest(hit.point, [bodies[1]]).distance == pytest.approx(0, abs=1e-5 * size)
+        short = world.queries.cast(shape, start, way, 0.999 * hit.distance, tuple(rotation), [bodies[1]])
+        assert short is None
+
+
+def test_gaps_and_casts_know_rooms_of_triangles_rings_ropes_and_planes() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    world = iota.World(system, ground=None)
+    floor = system.obstacle(iota.HalfSpace((0, 1, 0)))
+    corners = list(itertools.product((1, 2), (0, 3), (-2, 2)))
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [each for a, b, c, d in sides for each in ((a, b, c), (a, c, d))]
+    wall = system.obstacle(iota.Mesh(corners, triangles, closed=False))
+    ring = system.body(shape=iota.Torus(0.5, 0.1), mass=1, position=(-3, 2, 0))
+    rope = system.body()
+    rope.particle((-1, 4, -1))
+    rope.particle((-1, 4, 1))
+    rope.radius = 0.05
+    ball = system.body(shape=iota.Sphere(0.25), mass=1, position=(0, 1, 0.3))
+    assert world.queries.gap(ball, floor).distance == pytest.approx(0.75)
+    assert world.queries.gap(ball, wall) == iota.world.queries.Gap(
+        pytest.approx(0.75), pytest.approx((0.25, 1, 0.3)), pytest.approx((1, 1, 0.3))
+    )
+    assert world.queries.gap(ball, rope).distance == pytest.approx(math.hypot(1, 3) - 0.3)
+    assert world.queries.gap(ring, floor).distance == pytest.approx(1.4, abs=1e-3)
+    assert world.queries.gap(rope, wall).distance == pytest.approx(math.hypot(2, 1) - 0.05)
+    assert world.queries.gap(wall, floor).distance == 0
+    assert world.queries.gap(ring, wall).distance == pytest.approx(3.4, abs=1e-3)
+    hit = world.queries.cast(iota.Sphere(0.2), (0, 1, 0.3), (1, 0, 0), bodies=[wall])
+    assert hit.distance == pytest.approx(0.8) and hit.point == pytest.approx((1, 1, 0.3))
+    assert world.queries.cast(iota.Box((0.4, 1, 0.4)), (-5, 2.5, 0), (0, -1, 0)).distance == pytest.approx(2)
+    assert world.queries.cast(iota.Sphere(0.2), (-5, 4, 0), (1, 0, 0)).body == rope
+    through = world.queries.cast(iota.Sphere(0.2), (-3, 2, -4), (0, 0, 1), bodies=[ring])
+    assert through is None  # the hole has a radius of 0.4
+    assert world.queries.cast(iota.Sphere(0.5), (-3, 2, -4), (0, 0, 1), bodies=[ring]).distance < 4
+    assert world.queries.cast(iota.Sphere(2), (1, 2, 0), (0, 0, 1)).distance == 0
+    with pytest.raises(ValueError, match="of one with itself"):
+        world.queries.gap(ball, ball)
+    with pytest.raises(ValueError, match="only a convex shape"):
+        world.queries.cast(iota.Torus(1, 0.1), (0, 0, 0), (1, 0, 0))
+
+
+def test_many_questions_have_the_answers_of_each() -> None:
+    world, *_ = make_world()
+    random = np.random.default_rng(3)
+    origins, directions = 4 * random.normal(size=(200, 3)), random.normal(size=(200, 3))
+    rays, nearest = world.queries.rays(origins, directions), world.queries.nearest_each(origins)
+    for k, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
+        for hits, hit in (
+            (rays, world.queries.ray(origin, direction)),
+            (nearest, world.queries.nearest(origin)),
+        ):
+            assert hits.slots[k] == (-1 if hit is None else hit.body.slot)
+            assert hits.distances[k] == (math.inf if hit is None else hit.distance)
+            assert hit is None or tuple(hits.points[k]) == tuple(hit.point)
+    assert world.queries.rays((0, 5, 0), directions).distances.shape == (200,)
+    with pytest.raises(ValueError, match="three numbers"):
+        world.queries.rays(origins[:, :2], directions)
+    with pytest.raises(ValueError, match="zero"):
+        world.queries.rays(origins, 0 * directions)

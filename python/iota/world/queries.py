@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions about places: what a ray meets, what is nearest, what is within a distance, what a shape overlaps."""
+"""Questions about places: what a ray or a shape meets on its way, what is nearest, what a shape overlaps, how far two bodies are apart."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from iota._core import Body, Places, Shape, System, Vec3
 from iota.world.parts import Part
@@ -23,6 +26,26 @@ class Hit:
     body: Body
     point: Vec3
     distance: float
+
+
+@dataclass(frozen=True)
+class Hits:
+    """Answers to n questions. slots: (n,), `Body.slot`, -1 without an answer. points: (n, 3), places on the surfaces, world, m.
+    distances: (n,), m, as in `Hit`. Both are infinite without an answer."""
+
+    slots: NDArray[np.int64]
+    points: NDArray[np.float64]
+    distances: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Two bodies. distance: of their surfaces, m, 0 where they overlap. point, other_point: of each, the place that is nearest to
+    the other one, world, m; where they overlap, one place that is in both or near it."""
+
+    distance: float
+    point: Vec3
+    other_point: Vec3
 
 
 class Queries(Part):
@@ -64,13 +87,62 @@ class Queries(Part):
         rotation: Rotation = (0, 0, 0, 1),
         bodies: Iterable[Body] | None = None,
     ) -> list[Body]:
-        """The bodies that a shape at a place would touch. shape: a convex one, as Box, Sphere, Capsule, Cylinder, Cone or
-        Ellipsoid; ValueError for others. position: of its origin, m. rotation: see `Drawings.shape`. A torus among the bodies
+        """The bodies that a shape at a place would touch. shape: a convex one, as Box, Sphere, Capsule, Cylinder, Cone,
+        Ellipsoid or Mesh.convex_hull; ValueError for others. position: of its origin, m. rotation: see `Drawings.shape`. A torus among the bodies
         counts by triangles, within a hundredth of its wire.
 
         if not world.queries.overlap(iota.Box((0.6, 0.4, 0.4)), place): put_down(crate)
         """
         return self._index().overlap(shape, Vec3(*position), unit_quaternion(rotation), _listed(bodies))
+
+    def cast(
+        self,
+        shape: Shape,
+        position: Place,
+        direction: Place,
+        farthest: float = math.inf,
+        rotation: Rotation = (0, 0, 0, 1),
+        bodies: Iterable[Body] | None = None,
+    ) -> Hit | None:
+        """The first thing that a shape meets which goes straight, without turning, at most `farthest` m; None without one. The
+        hit has the place where they touch, and how far the shape goes: 0 if it overlaps the body where it begins. shape, position,
+        rotation: see `overlap`. Raises ValueError for a direction of zero.
+
+        hit = world.queries.cast(iota.Sphere(0.3), eye, looking, farthest=10)  # room for a head
+        """
+        return self._hit(
+            self._index().cast(
+                shape, Vec3(*position), Vec3(*direction), farthest, unit_quaternion(rotation), _listed(bodies)
+            )
+        )
+
+    def gap(self, body: Body, other: Body) -> Gap:
+        """How far two bodies are apart, and where they are nearest to each other. Shapes count as in `overlap`. Raises ValueError
+        for one body with itself. The force between two that touch is `Body.contact_force`.
+
+        if world.queries.gap(gripper, part).distance < 0.01: slow_down()
+        """
+        return Gap(*self._index().gap(body, other))
+
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        farthest: float = math.inf,
+        bodies: Iterable[Body] | None = None,
+    ) -> Hits:
+        """Many rays, several times as fast as `ray` for each. origins, directions: (n, 3), or (3,) for one that all have.
+
+        ways = np.c_[np.cos(angles), 0 * angles, np.sin(angles)]
+        depths = world.queries.rays(scanner.position, ways, farthest=20).distances
+        """
+        starts, ways = np.broadcast_arrays(_rows(origins), _rows(directions))
+        return Hits(*self._index().rays(starts, ways, len(starts), farthest, _listed(bodies)))
+
+    def nearest_each(self, places: ArrayLike, bodies: Iterable[Body] | None = None) -> Hits:
+        """The nearest thing of each of many places, several times as fast as `nearest` for each. places: (n, 3)."""
+        rows = _rows(places)
+        return Hits(*self._index().nearest_each(rows, len(rows), _listed(bodies)))
 
     def _hit(self, found: tuple[Body, Vec3, float] | None) -> Hit | None:
         return None if found is None else Hit(*found)
@@ -82,6 +154,14 @@ class Queries(Part):
             self._places = Places(self._system)
         self._scene.keep_ground()
         return self._places
+
+
+def _rows(vectors: ArrayLike) -> NDArray[np.float64]:
+    """(n, 3), also of one vector."""
+    rows = np.atleast_2d(np.asarray(vectors, float))
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise ValueError(f"places and directions are rows of three numbers, (n, 3), not {np.shape(vectors)}")
+    return rows
 
 
 def _listed(bodies: Iterable[Body] | None) -> list[Body] | None:

@@ -193,7 +193,7 @@ TEST(BoxTree, finds_all_along_a_ray_also_in_the_plane_of_a_face) {
     if (question % 3 == 0) unit.y = unit.z = 0;
     unit = (1 / norm(unit)) * unit;
     std::set<std::uint32_t> found, all;
-    tree.along(from, unit, infinity, [&](std::uint32_t item) { return found.insert(item), infinity; });
+    tree.along(from, unit, 0, infinity, [&](std::uint32_t item) { return found.insert(item), infinity; });
     const Vec3 inverse{1 / unit.x, 1 / unit.y, 1 / unit.z};
     for (std::uint32_t i = 0; i < scene.boxes.size(); ++i)
       if (entry(scene.boxes[i], from, inverse) < infinity) all.insert(i);
