@@ -16,7 +16,8 @@ constexpr const char* mesh_doc =
     "counter-clockwise. Raises ValueError if the surface is open, inside out, flat, inconsistently wound or has\n"
     "invalid indices; the text names the triangle or edge. closed=False takes any triangles, for obstacles.\n\n"
     "    iota.Mesh.load('part.stl')         # any format that trimesh reads, if it is installed\n"
-    "    iota.Mesh.convex_hull(points) # the convex hull";
+    "    iota.Mesh.convex_hull(points) # the convex hull\n"
+    "    iota.Mesh.height_field(heights, (20, 20)) # land of 20 m by 20 m";
 
 nb::object array_of(nb::handle values, const char* dtype, const char* name) {
   nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, dtype);
@@ -209,6 +210,26 @@ void def_mesh(nb::class_<Mesh>& type) {
           "points"_a, nb::sig("def convex_hull(points: numpy.typing.ArrayLike) -> Mesh"),
           "The convex hull of points, (n, 3), m; inner, coplanar and duplicate points are allowed. Raises\n"
           "ValueError for fewer than four, for non-finite ones, and if all are in one plane or on one line.")
+      .def_static(
+          "height_field",
+          [](nb::handle heights, nb::handle size) {
+            const nb::object rows = nb::module_::import_("numpy").attr("ascontiguousarray")(heights, "float64");
+            const auto x = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(rows);
+            if (x.ndim() != 2)
+              throw nb::value_error((std::string("heights must be rows along x of columns along z, (n, m), not ") +
+                                     nb::repr(rows.attr("shape")).c_str())
+                                        .c_str());
+            const auto [size_x, size_z] = nb::cast<std::pair<double, double>>(size);
+            return height_field({x.data(), x.size()}, x.shape(0), x.shape(1), size_x, size_z);
+          },
+          "heights"_a, "size"_a,
+          nb::sig("def height_field(heights: numpy.typing.ArrayLike, size: tuple[float, float]) -> Mesh"),
+          "Land, an open mesh for obstacles. heights: (n, m), m, above y = 0, at the corners of a grid whose rows go along x and\n"
+          "whose columns go along z. size: of all of it in x and z, m; its middle is the origin. Raises ValueError for fewer than two rows\n"
+          "or columns, heights that are not finite and sizes that are not positive.\n\n"
+          "    x = numpy.linspace(-10, 10, 80)\n"
+          "    hills = iota.Mesh.height_field(numpy.sin(x)[:, None] * numpy.cos(x), (20, 20))\n"
+          "    system.obstacle(hills)")
       .def_prop_ro(
           "vertices",
           [](const Mesh& m) {

@@ -87,4 +87,9 @@ MassProperties mass_properties(const Shape& shape);
 /// one line or in one plane. Quickhull: Barber, Dobkin, Huhdanpaa 1996.
 Mesh convex_hull(std::span<const Vec3> points);
 
+/// Land as an open mesh: heights above y = 0 (m) at the corners of a grid of `along` rows, which go along x, by `across` columns along z,
+/// one row after the other. It is as large as these two lengths (m), about the origin. Throws std::invalid_argument for
+/// fewer than two rows or columns, another number of heights, heights that are not finite and sizes that are not positive.
+Mesh height_field(std::span<const double> heights, std::size_t along, std::size_t across, double size_x, double size_z);
+
 }  // namespace iota

@@ -103,12 +103,7 @@ def landscape(count: int, height: float) -> tuple[iota.Mesh, Array]:
     x = np.linspace(-5, 5, count)
     along, across = np.meshgrid(x, x, indexing="ij")
     heights = height * np.sin(4 * along) * np.cos(4 * across)
-    corners = np.stack([along, heights, across], -1).reshape(-1, 3)
-    triangles = []
-    for i, k in itertools.product(range(count - 1), repeat=2):
-        a = i * count + k
-        triangles += [(a, a + 1, a + count), (a + 1, a + count + 1, a + count)]
-    return iota.Mesh(corners, triangles, closed=False), heights
+    return iota.Mesh.height_field(heights, (10, 10)), heights
 
 
 def height_at(heights: Array, x: Array, z: Array) -> Array:
@@ -199,3 +194,16 @@ def test_toys_stay_in_a_crate_that_is_one_mesh_and_turns(kind: str) -> None:
         seen = Rotation.from_quat(box.orientation).inv().apply(thrown.surface() - np.array(box.center_of_mass)) + center
         deep = max(float((half - np.abs(seen - middle)).min(axis=1).max()) for middle, half in walls)
         assert deep < 5e-3, seed
+
+
+def test_land_of_heights_refuses_what_is_no_grid() -> None:
+    for heights, size, words in (
+        ([1, 2, 3], (1, 1), "rows along x of columns along z"),
+        ([[1, 2]], (1, 1), "not 1 rows of 2 columns"),
+        ([[1, np.nan], [1, 2]], (1, 1), "row 0, column 1"),
+        ([[1, 2], [1, 2]], (1, 0), "two positive lengths"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            iota.Mesh.height_field(heights, size)
+    with pytest.raises(ValueError, match="closed mesh"):
+        iota.System().body(shape=iota.Mesh.height_field([[0, 1], [1, 0]], (1, 1)))
