@@ -41,6 +41,7 @@ MeshEdges::MeshEdges(const Mesh& mesh, bool is_closed) {
     Vec3 normal, into;
   };
   std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
   const std::vector<std::uint32_t> corner_of = number_places(mesh.vertices);
   for (const auto& triangle : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -50,16 +51,19 @@ MeshEdges::MeshEdges(const Mesh& mesh, bool is_closed) {
       const auto [low, high] = std::minmax(corner_of[from], corner_of[to]);
       if (low != high && normal != Vec3{}) sides.push_back({low, high, normal, unit_or(cross(normal, b - a), {})});
     }
-  const auto ends = [](const Side& side) { return std::pair(side.low, side.high); };
-  std::stable_sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return ends(a) < ends(b); });
-  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // of sides with the same ends, by these
+  order.reserve(sides.size());
+  for (const Side& side : sides)
+    order.emplace_back(std::uint64_t{side.low} << 32 | side.high, static_cast<std::uint32_t>(order.size()));
+  std::sort(order.begin(), order.end());
+  for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
     end = begin + 1;
-    while (end < sides.size() && ends(sides[end]) == ends(sides[begin])) ++end;
-    const Side& one = sides[begin];
+    while (end < order.size() && order[end].first == order[begin].first) ++end;
+    const Side& one = sides[order[begin].second];
     Edge edge{.a = mesh.vertices[one.low], .b = mesh.vertices[one.high], .into = {one.into}, .normal = one.normal};
     if (end - begin > 2) continue;
     if (end - begin == 2) {
-      const Vec3& next = sides[begin + 1].into;
+      const Vec3& next = sides[order[begin + 1].second].into;
       if (norm(cross(one.into, next)) < flat && dot(one.into, next) < 0) continue;
       if (is_closed && dot(one.normal, next) > 0) continue;  // a hollow
       edge.into[1] = next;
@@ -67,6 +71,7 @@ MeshEdges::MeshEdges(const Mesh& mesh, bool is_closed) {
     edges_.push_back(edge);
   }
   std::vector<geometry::Bounds> boxes;
+  boxes.reserve(edges_.size());
   for (const Edge& edge : edges_) boxes.push_back(geometry::around(edge.a, edge.b));
   tree_.build(boxes);
 }

@@ -212,6 +212,11 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
   }
 }
 
+void TouchFinder::prepare(const Outline& outline) {
+  for (const Solid& solid : outline.solids)
+    if (solid.form->mesh && !hull_of(solid.form)) (void)edges_of(solid);
+}
+
 const MeshEdges& TouchFinder::edges_of(const Solid& solid) {
   return edges_.of(solid.form, [&] { return MeshEdges(solid.form->mesh->mesh(), solid.form->mesh->is_closed()); });
 }

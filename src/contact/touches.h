@@ -28,6 +28,8 @@ class TouchFinder {
   TouchFinder(const TouchFinder&) = delete;
   TouchFinder& operator=(const TouchFinder&) = delete;
 
+  /// Derives what touches with the meshes of an outline need, so that the first of them does not take as long.
+  void prepare(const Outline&);
   /// Appends those with gaps of at most `within`, m, in a fixed order. spin: of each body in half a step, rad. way: of the first
   /// relative to the second in the coming step, m, where known: see find_axis.
   void find(const Outline& first, const Vec3& spin_of_first, const Outline& second, const Vec3& spin_of_second,

@@ -139,6 +139,7 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
 // Pairs that may touch change with outlines and materials. A body with a new one is described anew.
 void ContactFinder::note_changes(model::Model& model, contact::Outlines& outlines) {
   const auto look_at = [&](std::uint32_t slot, const model::Body& body) {
+    if (model.material(slot) && outlines.has(slot)) touches_.prepare(outlines.described(slot));
     if (body.kind == BodyKind::static_) return;
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
     is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot) || model.materials.has(slot);

@@ -3,8 +3,11 @@
 #include "contact/mesh_edges.h"
 
 #include "placed.h"
+#include "tests/cpp/allocations.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace iota::contact {
 namespace {
@@ -85,6 +88,26 @@ TEST(MeshEdges, of_two_meshes_touch_where_they_cross) {
       EXPECT_GT(edges, 0);
     }
   }
+}
+
+TEST(MeshEdges, are_made_when_a_mesh_comes_and_not_when_something_touches_it) {
+  constexpr std::size_t count = 60;
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < count * count; ++k)
+    heights.push_back(0.1 * std::sin(0.3 * static_cast<double>(k % count)) *
+                      std::cos(0.2 * static_cast<double>(k / count)));
+  Outline land = placed(Box{{1, 1, 1}}, {});
+  land.solids[0].form = make_open_form(height_field(heights, count, count, 10, 10));
+  const auto bytes_of_a_touch = [&](bool is_prepared) {
+    TouchFinder finder;
+    if (is_prepared) finder.prepare(land);
+    const long before = allocated_bytes;
+    std::vector<Touch> found;
+    finder.find(placed(Sphere{0.3}, {0, 0.3, 0}), {}, land, {}, 0.1, found);
+    EXPECT_FALSE(found.empty());
+    return allocated_bytes - before;
+  };
+  EXPECT_LT(bytes_of_a_touch(true), 0.01 * static_cast<double>(bytes_of_a_touch(false)));
 }
 
 }  // namespace
