@@ -52,8 +52,8 @@ bool is_between(const geometry::TriangleTree& mesh, const Vec3& from, const Vec3
   return far > 0 && mesh.ray(from, (1 / far) * (place - from), far).has_value();
 }
 
-/// One of six sides of a mesh, two opposite ones after each other, by which touches with its faces are named: what slides or rolls on many triangles keeps its touch, and
-/// has another one with a wall. The axes are in no symmetry of a usual mesh.
+/// One of six sides of a mesh, two opposite ones after each other, by which touches with its faces are named: what slides or rolls on
+/// many triangles keeps its touch, and has another one with a wall. The axes are in no symmetry of a usual mesh.
 std::uint32_t side_of(const Vec3& local_normal) {
   const Quaternion askew = normalized(Quaternion{0.07, 0.11, 0.05, 1});
   const Vec3 n = rotate(askew, local_normal), size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
@@ -80,6 +80,14 @@ void visit_faces(const PartList& other, const Vec3& place, double within, const 
                  {to_world(a), to_world(b), to_world(c)}});
     });
   }
+}
+
+/// visit(plane): of half-spaces.
+template <class Visit>
+void visit_half_spaces(const PartList& other, Visit visit) {
+  for (const Solid* const solid : other.solids)
+    if (const auto* const half = std::get_if<HalfSpace>(&solid->form->shape))
+      visit(Plane{solid->position, rotate(solid->turn, unit(half->normal))});
 }
 
 /// Whether a place is over a face, or so little beside it.
@@ -248,6 +256,147 @@ void visit_features(const Shape& shape, const Vec3& down, const Vec3& turn, Visi
   }
 }
 
+/// A ball of a body: a corner, an end, or what a feature of it touches with.
+struct Ball {
+  std::uint32_t part, feature;
+  Vec3 center;
+  double radius;
+};
+
+/// The touches of a body with other parts, found part by part.
+class CornerSearch {
+ public:
+  CornerSearch(const PartList& other, double within, const CornerFinder::Names& names, std::vector<Touch>& found)
+      : other_(other), within_(within), names_(names), found_(found), before_(found.size()) {}
+
+  void find_of_mesh(const Solid&, const std::vector<Vec3>& corners);
+  void find_of_shape(const Solid&, const Vec3& spin);
+  void find_of_lines(const std::vector<const Line*>&);
+  /// The new ones, in a fixed order.
+  std::span<Touch> found() { return std::span(found_).subspan(before_); }
+
+ private:
+  void start(const Solid& solid) {
+    const geometry::Bounds& box = solid.form->box;
+    middle_ = solid.position + rotate(solid.turn, 0.5 * (box.low + box.high)), size_ = size_of(*solid.form);
+  }
+  /// If its gap is small enough, and it is not known.
+  void add(const Ball&, const Plane&);
+  /// In a corner of a room a feature touches three faces: all count, not only the nearest one.
+  void add_on_face(const Ball&, const Face&);
+  /// A ring has its wire on both sides of an open mesh.
+  void add_of_ring(const Ball&, double tube, const RingSides&, const Face&);
+  /// With the nearest place, all half-spaces and all near faces.
+  void look(const Ball&);
+
+  const PartList& other_;
+  double within_;
+  const CornerFinder::Names& names_;
+  std::vector<Touch>& found_;
+  std::size_t before_;
+  Vec3 middle_;  ///< of the part
+  double size_ = 0;
+};
+
+void CornerSearch::add(const Ball& ball, const Plane& plane) {
+  const double gap = dot(plane.normal, ball.center - plane.origin) - ball.radius;
+  if (!(gap <= within_)) return;
+  Touch touch;
+  touch.part = ball.part, touch.feature = ball.feature, touch.other_feature = names_.planes + plane.side;
+  if (names_.is_turned) std::swap(touch.part, touch.other_part), std::swap(touch.feature, touch.other_feature);
+  touch.is_turned = names_.is_turned;
+  touch.center = ball.center, touch.place = ball.center - ball.radius * plane.normal;
+  touch.origin = plane.origin, touch.normal = plane.normal, touch.radius = ball.radius, touch.gap = gap;
+  const bool is_known = std::ranges::any_of(found(), [&](const Touch& one) {
+    return one.part == touch.part && one.other_part == touch.other_part &&
+           norm(one.normal - touch.normal) <= same_normal &&
+           (names_.is_turned ? one.other_feature == touch.other_feature : one.feature == touch.feature);
+  });
+  if (!is_known) found_.push_back(touch);
+}
+
+void CornerSearch::add_on_face(const Ball& ball, const Face& face) {
+  const Vec3& normal = face.plane.normal;
+  const double gap = dot(normal, ball.center - face.plane.origin) - ball.radius, tolerance = vanishing * size_;
+  const Vec3 place = ball.center - ball.radius * normal;
+  if (!(gap <= within_) || !is_over(face, place, beside * size_)) return;
+  if (gap < -tolerance && !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle_))) return;
+  add(ball, face.plane);
+}
+
+void CornerSearch::add_of_ring(const Ball& ball, double tube, const RingSides& sides, const Face& face) {
+  const Vec3 &normal = face.plane.normal, place = ball.center - ball.radius * normal;
+  const double gap = dot(normal, place - face.plane.origin), tolerance = vanishing * size_;
+  if (!(gap <= within_) || !is_over(face, place, beside * size_)) return;
+  if (gap < -tolerance && !is_nearest(face, place, -gap, tolerance)) return;
+  if (sides.is_through(place + tube * normal) == gap < -tube) add(ball, face.plane);
+}
+
+void CornerSearch::look(const Ball& ball) {
+  if (const std::optional<Plane> plane = plane_of(other_, ball.center, middle_)) add(ball, *plane);
+  visit_half_spaces(other_, [&](const Plane& plane) { add(ball, plane); });
+  visit_faces(other_, ball.center, ball.radius + within_, middle_, [&](const Face& face) { add_on_face(ball, face); });
+}
+
+void CornerSearch::find_of_mesh(const Solid& solid, const std::vector<Vec3>& corners) {
+  start(solid);
+  const geometry::Bounds around = geometry::grown(bounds_of(other_), within_);
+  for (std::uint32_t k = 0; k < corners.size(); ++k)
+    if (const Vec3 corner = solid.position + rotate(solid.turn, corners[k]); geometry::distance(around, corner) <= 0)
+      look({solid.number, k, corner, 0});
+}
+
+void CornerSearch::find_of_shape(const Solid& solid, const Vec3& spin) {
+  start(solid);
+  const Shape& shape = solid.form->shape;
+  const Quaternion back = conjugate(solid.turn);
+  const Vec3 turn = rotate(back, spin);
+  const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
+    visit_features(shape, rotate(back, -1.0 * beneath.normal), turn, [&](const Feature& feature) {
+      const Vec3 center = solid.position + rotate(solid.turn, feature.center);
+      visit(Ball{solid.number, feature.number, center, feature.radius}, feature.is_lowest);
+    });
+  };
+  visit_half_spaces(other_, [&](const Plane& plane) {
+    visit_lowest_above(plane, [&](const Ball& ball, bool) { add(ball, plane); });
+  });
+  std::uint32_t looked = 0;  // bits of features
+  std::optional<RingSides> sides;
+  const Solid* sides_of = nullptr;
+  const auto* const torus = std::get_if<Torus>(&shape);
+  visit_faces(other_, middle_, 0.5 * size_ + within_, middle_, [&](const Face& face) {
+    if (torus && !face.solid.form->mesh->is_closed()) {
+      if (sides_of != &face.solid) sides.emplace(solid, face.solid), sides_of = &face.solid;
+      for (const Face& one : {face, face.turned_over()})
+        visit_lowest_above(one.plane, [&](const Ball& ball, bool) { add_of_ring(ball, torus->tube, *sides, one); });
+      return;
+    }
+    visit_lowest_above(face.plane, [&](const Ball& ball, bool is_lowest) {
+      add_on_face(ball, face);
+      // Beneath the bottom of a valley a corner is over none of its faces.
+      const bool may_be_in = !is_lowest && dot(face.plane.normal, ball.center - face.plane.origin) < 0;
+      if (!may_be_in || (looked >> ball.feature & 1)) return;
+      looked |= 1u << ball.feature;
+      const std::optional<Plane> plane = plane_of(other_, ball.center, middle_);
+      if (plane && dot(plane->normal, ball.center - plane->origin) < 0) add(ball, *plane);
+    });
+  });
+}
+
+void CornerSearch::find_of_lines(const std::vector<const Line*>& lines) {
+  middle_ = {};
+  for (const Line* const line : lines) middle_ += (0.5 / static_cast<double>(lines.size())) * (line->a + line->b);
+  const auto look_once = [&](std::uint32_t particle, const Vec3& place, double radius) {  // lines share points
+    const bool is_known = std::ranges::any_of(
+        found(), [&](const Touch& touch) { return (names_.is_turned ? touch.other_part : touch.part) == particle; });
+    if (!is_known) look({particle, 0, place, radius});
+  };
+  for (const Line* const line : lines) {
+    size_ = line->radius;
+    look_once(line->p, line->a, line->radius), look_once(line->q, line->b, line->radius);
+  }
+}
+
 }  // namespace
 
 const std::vector<Vec3>& CornerFinder::corners_of(const std::shared_ptr<const Form>& form) {
@@ -257,114 +406,14 @@ const std::vector<Vec3>& CornerFinder::corners_of(const std::shared_ptr<const Fo
 void CornerFinder::find(const PartList& body, const Vec3& spin, const PartList& other, double within,
                         const Names& names, std::vector<Touch>& found) {
   if (body.is_empty() || other.is_empty()) return;
-  struct Ball {
-    std::uint32_t part, feature;
-    Vec3 center;
-    double radius;
-  };
-  Vec3 middle;  // of the part, and its size
-  double size = 0;
-  for (const Line* const line : body.lines)
-    middle += (0.5 / static_cast<double>(body.lines.size())) * (line->a + line->b);
-  const std::size_t before = found.size();
-  const auto any_found = [&](auto test) {
-    return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), test);
-  };
-  const auto add = [&](const Ball& ball, const Plane& plane) {
-    const double gap = dot(plane.normal, ball.center - plane.origin) - ball.radius;
-    if (!(gap <= within)) return;
-    Touch touch;
-    touch.part = ball.part, touch.feature = ball.feature, touch.other_feature = names.planes + plane.side;
-    if (names.is_turned) std::swap(touch.part, touch.other_part), std::swap(touch.feature, touch.other_feature);
-    touch.is_turned = names.is_turned;
-    touch.center = ball.center, touch.place = ball.center - ball.radius * plane.normal;
-    touch.origin = plane.origin, touch.normal = plane.normal, touch.radius = ball.radius, touch.gap = gap;
-    const bool is_known = any_found([&](const Touch& one) {
-      return one.part == touch.part && one.other_part == touch.other_part &&
-             norm(one.normal - touch.normal) <= same_normal &&
-             (names.is_turned ? one.other_feature == touch.other_feature : one.feature == touch.feature);
-    });
-    if (!is_known) found.push_back(touch);
-  };
-  // In a corner of a room a feature touches three faces: all count, not only the nearest one.
-  const auto add_on_face = [&](const Ball& ball, const Face& face) {
-    const Vec3& normal = face.plane.normal;
-    const double gap = dot(normal, ball.center - face.plane.origin) - ball.radius, tolerance = vanishing * size;
-    const Vec3 place = ball.center - ball.radius * normal;
-    if (!(gap <= within) || !is_over(face, place, beside * size)) return;
-    if (gap < -tolerance && !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle)))
-      return;
-    add(ball, face.plane);
-  };
-  // A ring has its wire on both sides of an open mesh.
-  const auto add_of_ring = [&](const Ball& ball, double tube, const RingSides& sides, const Face& face) {
-    const Vec3 &normal = face.plane.normal, place = ball.center - ball.radius * normal;
-    const double gap = dot(normal, place - face.plane.origin), tolerance = vanishing * size;
-    if (!(gap <= within) || !is_over(face, place, beside * size)) return;
-    if (gap < -tolerance && !is_nearest(face, place, -gap, tolerance)) return;
-    if (sides.is_through(place + tube * normal) == gap < -tube) add(ball, face.plane);
-  };
-  const auto look = [&](const Ball& ball) {
-    if (const std::optional<Plane> plane = plane_of(other, ball.center, middle)) add(ball, *plane);
-    visit_faces(other, ball.center, ball.radius + within, middle, [&](const Face& face) { add_on_face(ball, face); });
-  };
-  for (const Solid* const solid : body.solids) {
-    const Form& form = *solid->form;
-    if (form.is_endless) continue;
-    const auto to_world = [&](const Vec3& local) { return solid->position + rotate(solid->turn, local); };
-    middle = to_world(0.5 * (form.box.low + form.box.high)), size = size_of(form);
-    if (form.mesh) {
-      const std::vector<Vec3>& corners = corners_of(solid->form);
-      const geometry::Bounds around = geometry::grown(bounds_of(other), within);
-      for (std::uint32_t k = 0; k < corners.size(); ++k)
-        if (const Vec3 corner = to_world(corners[k]); geometry::distance(around, corner) <= 0)
-          look({solid->number, k, corner, 0});
-      continue;
-    }
-    const Quaternion back = conjugate(solid->turn);
-    const Vec3 turn = rotate(back, spin);
-    const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
-      visit_features(form.shape, rotate(back, -1.0 * beneath.normal), turn, [&](const Feature& feature) {
-        visit(Ball{solid->number, feature.number, to_world(feature.center), feature.radius}, feature.is_lowest);
-      });
-    };
-    for (const Solid* const half_space : other.solids) {
-      if (!half_space->form->is_endless) continue;
-      const Plane plane = *plane_of(*half_space, middle, middle);
-      visit_lowest_above(plane, [&](const Ball& ball, bool) { add(ball, plane); });
-    }
-    std::uint32_t looked = 0;  // bits of features
-    std::optional<RingSides> sides;
-    const Solid* sides_of = nullptr;
-    const auto* const torus = std::get_if<Torus>(&form.shape);
-    visit_faces(other, middle, 0.5 * size + within, middle, [&](const Face& face) {
-      if (torus && !face.solid.form->mesh->is_closed()) {
-        if (sides_of != &face.solid) sides.emplace(*solid, face.solid), sides_of = &face.solid;
-        for (const Face& one : {face, face.turned_over()})
-          visit_lowest_above(one.plane, [&](const Ball& ball, bool) { add_of_ring(ball, torus->tube, *sides, one); });
-        return;
-      }
-      visit_lowest_above(face.plane, [&](const Ball& ball, bool is_lowest) {
-        add_on_face(ball, face);
-        // Beneath the bottom of a valley a corner is over none of its faces.
-        const bool may_be_in = !is_lowest && dot(face.plane.normal, ball.center - face.plane.origin) < 0;
-        if (!may_be_in || (looked >> ball.feature & 1)) return;
-        looked |= 1u << ball.feature;
-        const std::optional<Plane> plane = plane_of(other, ball.center, middle);
-        if (plane && dot(plane->normal, ball.center - plane->origin) < 0) add(ball, *plane);
-      });
-    });
-  }
-  for (const Line* const line : body.lines) {  // lines share points
-    const auto is_known = [&](std::uint32_t particle) {
-      return any_found(
-          [&](const Touch& touch) { return (names.is_turned ? touch.other_part : touch.part) == particle; });
-    };
-    size = line->radius;
-    if (!is_known(line->p)) look({line->p, 0, line->a, line->radius});
-    if (!is_known(line->q)) look({line->q, 0, line->b, line->radius});
-  }
-  number_touches(std::span(found).subspan(before));
+  CornerSearch search(other, within, names, found);
+  for (const Solid* const solid : body.solids)
+    if (solid->form->mesh)
+      search.find_of_mesh(*solid, corners_of(solid->form));
+    else if (!solid->form->is_endless)
+      search.find_of_shape(*solid, spin);
+  search.find_of_lines(body.lines);
+  number_touches(search.found());
 }
 
 }  // namespace iota::contact
