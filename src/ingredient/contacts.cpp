@@ -235,9 +235,11 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   Vec3 run = closing - dot(closing, t.normal) * t.normal;
   if (is_round && t.radius > 0)
     run = ((t.radius - c.ball) / t.radius) * run - (t.radius - c.ball) * cross(spin_q, t.normal);
-  // A scripted body goes straight and turns between its steps: its points have no rate to count with.
-  const bool is_driven = p.kind == BodyKind::scripted || q.kind == BodyKind::scripted;
-  c.pivot = (is_driven ? 0 : -0.5 * h * dot(spin_p - spin_q, t.normal)) * cross(t.normal, run);
+  // A scripted body goes straight and turns between its steps.
+  const auto turn = [](const model::Body& body, const Vec3& spin) {
+    return body.kind == BodyKind::scripted ? Vec3{} : spin;
+  };
+  c.pivot = -0.5 * h * dot(turn(p, spin_p) - turn(q, spin_q), t.normal) * cross(t.normal, run);
   places.set_others(c, p, q, sides);
 }
 
