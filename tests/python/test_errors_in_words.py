@@ -319,7 +319,7 @@ PYTHON_MISTAKES: dict[str, tuple[Callable[[iota.World], Any], str]] = {
     "what is assigned to a part": (lambda w: setattr(w, "paused", True), "no attribute 'paused': it is world.clock.paused$"),
     "what is near a name of a part": (lambda w: w.sliider, "did you mean 'world.controls.slider'"),  # type: ignore[attr-defined]
     "a misspelled attribute of a part": (lambda w: setattr(w.clock, "pausd", True), "a Clock has no attribute 'pausd'; did you mean 'paused'"),
-    "a misspelled function of a part": (lambda w: w.queries.rays(V, V), "a Queries has no attribute 'rays'; did you mean 'ray'"),  # type: ignore[attr-defined]
+    "a misspelled function of a part": (lambda w: w.queries.overlaps(V, V), "a Queries has no attribute 'overlaps'; did you mean 'overlap'"),  # type: ignore[attr-defined]
 }  # fmt: skip
 
 

@@ -309,9 +309,9 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
 
     with PageClient(run_world(world)) as page:
         page.send("action", name="ponder", body=NOTHING)
-        (notice,) = page.wait_for(lambda: page.notices)
+        # A busy machine may have another note.
+        page.wait_for(lambda: any("'ponder' is slow" in notice["title"] for notice in page.notices))
         assert not go_on.is_set(), "told before it is over"
-        assert "'ponder' is slow" in notice["title"]
         go_on.set()
         step = page.last["poses"]["step"]
         page.wait_for(lambda: page.last["poses"]["step"] > step + 10)

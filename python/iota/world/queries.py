@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iota._core import Body, Places, Shape, System, Vec3
+from iota.arguments import SHORT
 from iota.world.parts import Part
 from iota.world.scene import Scene
 from iota.world.things import Rotation, unit_quaternion
@@ -158,9 +159,14 @@ class Queries(Part):
 
 def _rows(vectors: ArrayLike) -> NDArray[np.float64]:
     """(n, 3), also of one vector."""
-    rows = np.atleast_2d(np.asarray(vectors, float))
+    try:
+        rows = np.atleast_2d(np.asarray(vectors, float))
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"places and directions must be rows of three numbers, (n, 3), not {SHORT.repr(vectors)}"
+        ) from None
     if rows.ndim != 2 or rows.shape[1] != 3:
-        raise ValueError(f"places and directions are rows of three numbers, (n, 3), not {np.shape(vectors)}")
+        raise ValueError(f"places and directions must be rows of three numbers, (n, 3), not of the shape {rows.shape}")
     return rows
 
 
