@@ -20,8 +20,8 @@ struct PartList {
   bool is_empty() const { return solids.empty() && lines.empty(); }
 };
 
-/// Finds the touches of corners, ends and rims with the nearest surface: for what has neither faces nor a plane that parts it
-/// from others, such as meshes that are not convex. The edge of a table against the face of a box is not found.
+/// Finds the touches of corners, ends, rims and lowest points with half-spaces and with all near faces of meshes that are not
+/// convex, and those of corners of such meshes with the nearest place of other parts. Edges are met by MeshEdges.
 class CornerFinder {
  public:
   /// How the touches are named: whether the corners are those of the second outline, and a number of the planes.
