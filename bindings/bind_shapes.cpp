@@ -19,8 +19,16 @@ constexpr const char* mesh_doc =
     "    iota.Mesh.convex_hull(points) # the convex hull\n"
     "    iota.Mesh.height_field(heights, (20, 20)) # land of 20 m by 20 m";
 
+nb::object numbers_of(nb::handle values, const char* dtype, const char* name) {
+  try {
+    return nb::module_::import_("numpy").attr("ascontiguousarray")(values, dtype);
+  } catch (const nb::python_error&) {
+    throw nb::value_error((std::string(name) + " must be an array of numbers, not " + describe(values)).c_str());
+  }
+}
+
 nb::object array_of(nb::handle values, const char* dtype, const char* name) {
-  nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, dtype);
+  nb::object array = numbers_of(values, dtype, name);
   if (nb::cast<int>(array.attr("ndim")) != 2 || nb::cast<int>(array.attr("shape")[nb::int_(1)]) != 3) {
     const std::string text =
         std::string(name) + " must have the shape (n, 3), not " + nb::repr(array.attr("shape")).c_str();
@@ -212,15 +220,14 @@ void def_mesh(nb::class_<Mesh>& type) {
           "ValueError for fewer than four, for non-finite ones, and if all are in one plane or on one line.")
       .def_static(
           "height_field",
-          [](nb::handle heights, nb::handle size) {
-            const nb::object rows = nb::module_::import_("numpy").attr("ascontiguousarray")(heights, "float64");
+          [](nb::handle heights, std::pair<double, double> size) {
+            const nb::object rows = numbers_of(heights, "float64", "heights");
             const auto x = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(rows);
             if (x.ndim() != 2)
               throw nb::value_error((std::string("heights must be rows along x of columns along z, (n, m), not ") +
                                      nb::repr(rows.attr("shape")).c_str())
                                         .c_str());
-            const auto [size_x, size_z] = nb::cast<std::pair<double, double>>(size);
-            return height_field({x.data(), x.size()}, x.shape(0), x.shape(1), size_x, size_z);
+            return height_field({x.data(), x.size()}, x.shape(0), x.shape(1), size.first, size.second);
           },
           "heights"_a, "size"_a,
           nb::sig("def height_field(heights: numpy.typing.ArrayLike, size: tuple[float, float]) -> Mesh"),

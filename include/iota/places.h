@@ -60,6 +60,10 @@ class Places : public View {
   /// all outlines, or of those of some bodies. Throws StaleIdError.
   template <class Search, class Visit>
   void for_each(const Only& only, Search search, Visit visit);
+  /// The first body that a ball of a radius, `width`, or what is in it, meets: meet(outline, limit) tells where.
+  template <class Meet>
+  std::optional<Hit> find_first(const Only& only, const Vec3& from, const Vec3& unit, double width, double farthest,
+                                Meet meet);
 };
 
 }  // namespace iota

@@ -86,8 +86,7 @@ void visit_faces(const PartList& other, const Vec3& place, double within, const 
 template <class Visit>
 void visit_half_spaces(const PartList& other, Visit visit) {
   for (const Solid* const solid : other.solids)
-    if (const auto* const half = std::get_if<HalfSpace>(&solid->form->shape))
-      visit(Plane{solid->position, rotate(solid->turn, unit(half->normal))});
+    if (solid->form->is_endless) visit(Plane{solid->position, outwards(*solid)});
 }
 
 /// Whether a place is over a face, or so little beside it.
@@ -107,10 +106,7 @@ std::optional<Plane> plane_of(const Solid& solid, const Vec3& place, const Vec3&
   const Form& form = *solid.form;
   const Quaternion back = conjugate(solid.turn);
   const Vec3 local = rotate(back, place - solid.position);
-  if (const auto* const half = std::get_if<HalfSpace>(&form.shape)) {
-    const Vec3 normal = rotate(solid.turn, unit(half->normal));
-    return Plane{solid.position, normal};
-  }
+  if (form.is_endless) return Plane{solid.position, outwards(solid)};
   const double size = size_of(form);
   const Vec3 point = closest(form, local), outwards = rotate(back, middle - solid.position) - point;
   Vec3 away = local - point;
@@ -174,7 +170,8 @@ void number_touches(std::span<Touch> touches) {
     return a.part == b.part && a.feature == b.feature && a.other_part == b.other_part &&
            a.other_feature == b.other_feature;
   };
-  std::vector<std::uint32_t> ranks;
+  thread_local std::vector<std::uint32_t> ranks;
+  ranks.clear();
   for (const Touch& touch : touches)
     ranks.push_back(static_cast<std::uint32_t>(std::ranges::count_if(touches, [&](const Touch& other) {
       return is_same(touch, other) && dot(other.normal, order) < dot(touch.normal, order);

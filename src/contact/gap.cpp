@@ -76,7 +76,7 @@ Between between(const Piece& first, const Vec3& move, const Piece& second) {
 
 /// The distance of a piece from a half-space, moved.
 Between between(const Piece& first, const Vec3& move, const Solid& half_space) {
-  const Vec3 normal = rotate(half_space.turn, unit_or(std::get<HalfSpace>(half_space.form->shape).normal, {}));
+  const Vec3 normal = outwards(half_space);
   const Vec3 lowest = first.support(-normal) + move - first.radius * normal;
   const double apart = dot(normal, lowest - half_space.position);
   return {std::max(0.0, apart), normal, lowest, lowest - std::max(0.0, apart) * normal};
@@ -145,13 +145,10 @@ class GapFinder {
               });
   }
   void add_half_spaces(const Solid& first, const Solid& second) {
-    const auto normal = [](const Solid& solid) {
-      return rotate(solid.turn, unit_or(std::get<HalfSpace>(solid.form->shape).normal, {}));
-    };
     constexpr double opposite = 1e-12;
-    const Vec3 n = normal(second);
+    const Vec3 n = outwards(second);
     const double apart = dot(n, first.position - second.position);
-    if (!(norm(n + normal(first)) < opposite && apart > 0)) return take_place(first.position);
+    if (!(norm(n + outwards(first)) < opposite && apart > 0)) return take_place(first.position);
     take({apart, n, first.position, first.position - apart * n}, false);
   }
   void take(const Between& found, bool is_swapped) {

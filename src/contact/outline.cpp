@@ -88,6 +88,10 @@ Vec3 support(const Form& form, const Vec3& direction) {
   return std::ranges::max(form.mesh->vertices(), {}, [&](const Vec3& corner) { return dot(corner, direction); });
 }
 
+Vec3 outwards(const Solid& half_space) {
+  return rotate(half_space.turn, unit_or(std::get<HalfSpace>(half_space.form->shape).normal, {}));
+}
+
 Vec3 nearest_of_middle(const Line& line, const Vec3& place) {
   const Vec3 along = line.b - line.a;
   const double squared = dot(along, along);

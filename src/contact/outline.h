@@ -44,6 +44,9 @@ struct Solid {
   Quaternion turn;           ///< of its frame
 };
 
+/// The unit vector out of a half-space, in the world.
+Vec3 outwards(const Solid& half_space);
+
 /// All points within the radius of a line; a ball if its ends are one.
 struct Line {
   std::uint32_t p = 0, q = 0;  ///< of the owner

@@ -63,21 +63,30 @@ void Places::for_each(const Only& only, Search search, Visit visit) {
   search(bodies, visit_body);
 }
 
-std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double farthest, Only only) {
-  require_place(from);
-  const Vec3 unit = unit_of(direction);
+template <class Meet>
+std::optional<Hit> Places::find_first(const Only& only, const Vec3& from, const Vec3& unit, double width,
+                                      double farthest, Meet meet) {
   std::optional<Hit> first;
   for_each(
-      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, 0, farthest, visit); },
+      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, width, farthest, visit); },
       [&](BodyId body, const contact::Outline& outline) {
-        const std::optional<double> met = meet(outline, from, unit, farthest);
-        if (met && (!first || *met < farthest || body.slot < first->body.slot)) {
-          farthest = *met;
-          first = Hit{body, from + *met * unit, *met};
+        const std::optional<contact::Cast> met = meet(outline, farthest);
+        if (met && (!first || met->distance < farthest || body.slot < first->body.slot)) {
+          farthest = met->distance;
+          first = Hit{body, met->point, met->distance};
         }
         return farthest;
       });
   return first;
+}
+
+std::optional<Hit> Places::ray(const Vec3& from, const Vec3& direction, double farthest, Only only) {
+  require_place(from);
+  const Vec3 unit = unit_of(direction);
+  return find_first(only, from, unit, 0, farthest, [&](const contact::Outline& outline, double limit) {
+    const std::optional<double> met = meet(outline, from, unit, limit);
+    return met ? std::optional(contact::Cast{*met, from + *met * unit}) : std::nullopt;
+  });
 }
 
 std::optional<Hit> Places::nearest(const Vec3& place, Only only) {
@@ -129,18 +138,10 @@ std::optional<Hit> Places::cast(const Shape& shape, const Vec3& position, const 
                                 const Vec3& direction, double farthest, Only only) {
   const auto [probe, middle, reach] = make_probe(shape, position, orientation);
   const Vec3 unit = unit_of(direction);
-  std::optional<Hit> first;
-  for_each(
-      only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(middle, unit, reach, farthest, visit); },
-      [&](BodyId body, const contact::Outline& outline) {
-        const auto met = contact::cast(outline, probe, unit, farthest);
-        if (met && (!first || met->distance < farthest || body.slot < first->body.slot)) {
-          farthest = met->distance;
-          first = Hit{body, met->point, met->distance};
-        }
-        return farthest;
-      });
-  return first;
+  const contact::Solid& solid = probe;  // C++20 lambdas of older compilers capture no structured bindings
+  return find_first(only, middle, unit, reach, farthest, [&](const contact::Outline& outline, double limit) {
+    return contact::cast(outline, solid, unit, limit);
+  });
 }
 
 Gap Places::gap(BodyId body, BodyId other) {

@@ -203,5 +203,9 @@ def test_land_of_heights_refuses_what_is_no_grid() -> None:
     ):
         with pytest.raises(ValueError, match=words):
             iota.Mesh.height_field(heights, size)
+    with pytest.raises(ValueError, match="heights must be an array of numbers, not 'hills'"):
+        iota.Mesh.height_field("hills", (1, 1))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="size must be 2 numbers, not 5"):
+        iota.Mesh.height_field([[1, 2], [1, 2]], 5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="closed mesh"):
         iota.System().body(shape=iota.Mesh.height_field([[0, 1], [1, 0]], (1, 1)))

@@ -448,3 +448,7 @@ def test_many_questions_have_the_answers_of_each() -> None:
         world.queries.rays(origins[:, :2], directions)
     with pytest.raises(ValueError, match="zero"):
         world.queries.rays(origins, 0 * directions)
+    with pytest.raises(ValueError, match="a direction for each origin, or one for all: 200 and 3"):
+        world.queries.rays(origins, directions[:3])
+    with pytest.raises(ValueError, match="finite"):
+        world.queries.rays((0, 0, math.nan), (1, 0, 0))

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from iota._core import Body, Places, Shape, System, Vec3
 from iota.arguments import SHORT
@@ -17,6 +17,7 @@ from iota.world.scene import Scene
 from iota.world.things import Rotation, unit_quaternion
 
 Place = Sequence[float] | Vec3
+Rows = Sequence[Place] | Place | NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -127,8 +128,8 @@ class Queries(Part):
 
     def rays(
         self,
-        origins: ArrayLike,
-        directions: ArrayLike,
+        origins: Rows,
+        directions: Rows,
         farthest: float = math.inf,
         bodies: Iterable[Body] | None = None,
     ) -> Hits:
@@ -137,10 +138,13 @@ class Queries(Part):
         ways = np.c_[np.cos(angles), 0 * angles, np.sin(angles)]
         depths = world.queries.rays(scanner.position, ways, farthest=20).distances
         """
-        starts, ways = np.broadcast_arrays(_rows(origins), _rows(directions))
+        starts, ways = _rows(origins), _rows(directions)
+        if len(starts) != len(ways) and 1 not in (len(starts), len(ways)):
+            raise ValueError(f"rays need a direction for each origin, or one for all: {len(starts)} and {len(ways)}")
+        starts, ways = np.broadcast_arrays(starts, ways)
         return Hits(*self._index().rays(starts, ways, len(starts), farthest, _listed(bodies)))
 
-    def nearest_each(self, places: ArrayLike, bodies: Iterable[Body] | None = None) -> Hits:
+    def nearest_each(self, places: Rows, bodies: Iterable[Body] | None = None) -> Hits:
         """The nearest thing of each of many places, several times as fast as `nearest` for each. places: (n, 3)."""
         rows = _rows(places)
         return Hits(*self._index().nearest_each(rows, len(rows), _listed(bodies)))
@@ -157,7 +161,7 @@ class Queries(Part):
         return self._places
 
 
-def _rows(vectors: ArrayLike) -> NDArray[np.float64]:
+def _rows(vectors: Rows) -> NDArray[np.float64]:
     """(n, 3), also of one vector."""
     try:
         rows = np.atleast_2d(np.asarray(vectors, float))
@@ -167,6 +171,8 @@ def _rows(vectors: ArrayLike) -> NDArray[np.float64]:
         ) from None
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise ValueError(f"places and directions must be rows of three numbers, (n, 3), not of the shape {rows.shape}")
+    if not np.isfinite(rows).all():
+        raise ValueError("places and directions must be finite")
     return rows
 
 
