@@ -27,8 +27,9 @@ for group in $groups; do
       ;;
     # Reads the public headers for the site of the documents.
     docs) wanted="$wanted doxygen" ;;
-    # A real browser for the browser tests, and Mesa so that it can draw without a graphics card.
-    test) wanted="$wanted chromium libgl1-mesa-dri libegl1 libgles2 libgl1 fonts-dejavu-core" ;;
+    # A real browser for the browser tests, without the windows of which each page takes most of a second, and Mesa so that it can draw
+    # without a graphics card.
+    test) wanted="$wanted chromium-headless-shell libgl1-mesa-dri libegl1 libgles2 libgl1 fonts-dejavu-core" ;;
   esac
 done
 

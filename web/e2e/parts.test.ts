@@ -312,7 +312,8 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
 
   itIf(name !== "keyboard")("a body is dragged by a force, which is written at the hand, and thrown", async () => {
     // A busy machine may hold up the release until the ball rests at the hand: then it does not fly, and is thrown again.
-    await expect.poll(async () => {
+    let flown = 0;
+    for (let throws = 0; throws < 6 && flown < 0.2; throws++) {
       const [x, y, z] = await hold(ball);
       await user.moveTo([x + 0.2, y + 0.4, z]);
       await expect.poll(() => user.force(), { message: "the force is written" }).toMatch(/^\d+(\.\d)? N$/);
@@ -325,8 +326,9 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
       await letGo();
       const at = await tab.position(ball);
       await tab.goOn(1);
-      return distance(await tab.position(ball), at);
-    }, { message: "it flies on" }).toBeGreaterThan(0.2);
+      flown = distance(await tab.position(ball), at);
+    }
+    expect(flown, "it flies on").toBeGreaterThan(0.2);
   });
 
   itIf(name !== "keyboard")("a piece is carried exactly", async () => {
