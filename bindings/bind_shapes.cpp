@@ -236,7 +236,6 @@ void def_mesh(nb::class_<Mesh>& type) {
           "or columns, heights that are not finite and sizes that are not positive.\n\n"
           "    x = numpy.linspace(-10, 10, 80)\n"
           "    hills = iota.Mesh.height_field(numpy.sin(x)[:, None] * numpy.cos(x), (20, 20))\n"
-          "    system.usual_material = iota.Material(friction=0.6)  # without it nothing touches in a world without a ground\n"
           "    system.obstacle(hills)")
       .def_prop_ro(
           "vertices",

@@ -279,7 +279,7 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
 
 namespace {
 
-/// Whether a hinge or a joint holds one at the other.
+/// Whether a hinge or a joint holds one at the other, or will do so when their particles have met.
 bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   const auto [fewer, other] = model.bodies[a].count <= model.bodies[b].count ? std::pair(a, b) : std::pair(b, a);
   const bool has_joints = ingredient::Joints::ties_any(model);
@@ -289,6 +289,7 @@ bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
     if (any) return;
     if (model.rings[particle.ring].count > 1)
       model.for_each_in_ring(particle.ring, [&](std::uint32_t q) { any = any || model.particles[q].body == other; });
+    ingredient::Closings::visit_joined(model, p, [&](std::uint32_t body) { any = any || body == other; });
     // Also of a point that is no unknown, as it follows from those of its body.
     if (has_joints) any = any || ingredient::Joints::join(model, p, other);
   });

@@ -244,6 +244,24 @@ def test_without_a_ground_things_fall_on() -> None:
     assert point.position.y == pytest.approx(1 - 9.81 * 2, rel=0.02)
 
 
+def test_without_a_ground_solids_touch_each_other_too_and_one_word_turns_it_off() -> None:
+    def box_on_a_table(touches: str | None) -> float:
+        system = iota.System()
+        if touches:
+            system.usual_material = iota.Material(touches=touches)
+        system.obstacle(iota.Box((2, 0.2, 2)), position=(0, -0.1, 0))
+        box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.3, 0))
+        former = system.snapshot()
+        world = iota.World(system, ground=None)
+        run(world, 0.1)
+        system.restore(former)  # as a script that begins anew by itself
+        run(world, 1)
+        return box.center_of_mass.y
+
+    assert box_on_a_table(None) == pytest.approx(0.1, abs=1e-6)
+    assert box_on_a_table("nothing") < -2
+
+
 def test_a_body_that_is_let_go_later_is_held_too() -> None:
     system = iota.System()
     box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0.5, 0), kind="static")

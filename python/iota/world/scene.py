@@ -110,7 +110,8 @@ class Scene(Part):
         return self._ground
 
     def keep_ground(self, height: float | None = None) -> None:
-        """Makes the ground, if there is none: the script may have restored a state of before it. height: m; None: the former."""
+        """Makes the ground, and gives what has no material the usual one, if there is none: the script may have restored a state of
+        before it. height: m; None: the former."""
         system: object = self._system
         if not isinstance(system, System):
             self._height = self._height if height is None else height
@@ -125,7 +126,7 @@ class Scene(Part):
             self._ground.name = GROUND
         if self._ground is not None:
             self._ground.material = self._ground.material or MATERIAL
-            system.usual_material = system.usual_material or MATERIAL
+        system.usual_material = system.usual_material or MATERIAL
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between

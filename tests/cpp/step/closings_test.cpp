@@ -39,5 +39,29 @@ TEST(FinishedClosing, that_has_become_impossible_is_given_up_with_a_warning) {
   EXPECT_EQ(s.system.particles().ring(s.p).size(), 1u);
 }
 
+TEST(ClosingRods, act_on_each_other_only_by_their_ends_that_come_together) {
+  System system{SystemOptions{.gravity = {}}};
+  system.set_usual_material(Material{});
+  std::vector<ParticleId> inner;
+  for (const double side : {-1.0, 1.0}) {
+    const BodyId rod = system.bodies().create();
+    system.bodies().set_radius(rod, 0.05);
+    inner.push_back(system.particles().create(rod, {0.5 * side, 0.03 * side, 0}));
+    (void)system.particles().create(rod, {1.5 * side, 0.03 * side, 0});
+  }
+  const auto gap = [&] { return norm(system.particles().position(inner[1]) - system.particles().position(inner[0])); };
+  const double first = gap();
+  (void)system.edits().combine(inner[0], inner[1], 0.5);
+  for (int i = 1; i < 50; ++i) {
+    (void)system.step(0.01);
+    const double s = i / 50.0;
+    // The rods' surfaces meet at a tenth of it.
+    ASSERT_NEAR(gap(), (1 - 0.99 * s * s * (3 - 2 * s)) * first, 1e-9 * first) << i;
+    ASSERT_EQ(system.contacts().points().size(), 0u) << i;
+  }
+  (void)system.step(0.01);
+  EXPECT_EQ(system.particles().ring(inner[0]).size(), 2u);
+}
+
 }  // namespace
 }  // namespace iota
