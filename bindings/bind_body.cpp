@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "array_argument.h"
 #include "binders.h"
 #include "names.h"
 #include "shape_argument.h"
@@ -335,6 +336,25 @@ void bind_body(nb::module_& module) {
           "Gives a body of exactly two particles the mass (kg) and inertia of a solid cylinder (radius in m) between\n"
           "them. It keeps the spin about its axis set by `angular_velocity`, since no torque acts about the axis.\n"
           "Raises ValueError for any other number of particles.")
+      .def(
+          "set_mass_properties",
+          [](const BodyHandle& self, double mass, VectorArgument center, nb::handle inertia) {
+            finite_positive(mass, "mass", "kg");
+            nb::object array;
+            const std::span<const double> v = view_rows(inertia, 3, "inertia", "row of the tensor", array);
+            const Matrix3 given{Vec3{v[0], v[1], v[2]}, Vec3{v[3], v[4], v[5]}, Vec3{v[6], v[7], v[8]}};
+            between_steps(self, "set_mass_properties")
+                .bodies()
+                .set_mass_properties(self.id, mass, to_vec3(center, "center"), given);
+          },
+          "mass"_a, "center"_a, "inertia"_a,
+          nb::sig("def set_mass_properties(self, mass: float, center: Vec3 | collections.abc.Sequence[float], "
+                  "inertia: numpy.typing.ArrayLike) -> None"),
+          "Gives a body of shapes, without attachments yet, another mass (kg), center of mass (world, m) and inertia, (3, 3), about\n"
+          "it, world axes, kg m^2, than a homogeneous one has: of a hollow shell, a loaded die, a robot's link with its\n"
+          "motors. Its shapes stay where they are, and touch. Raises ValueError for an inertia that no body has.\n\n"
+          "    die = system.body(shape=iota.Box((0.02, 0.02, 0.02), rounding=0.002), mass=0.01, position=(0, 1, 0))\n"
+          "    die.set_mass_properties(0.01, (0, 0.996, 0), die.inertia)  # it falls on its heavy side")
       .def(
           "destroy", [](const BodyHandle& self) { self.use().bodies().destroy(self.id); },
           "Removes it with its particles and their bonds.")

@@ -74,6 +74,10 @@ class Bodies : public View {
   /// This does not set its `radius`.
   /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId, double mass, double radius);
+  /// Gives a body of shapes alone, without attachments yet, another mass (kg), center of mass (world, m) and inertia (about it, world
+  /// axes, kg m^2) than a homogeneous one has: of a hollow shell, a loaded die, a robot's link with its motors. Its shapes stay
+  /// where they are. Throws std::invalid_argument for an inertia that no body with a size along each axis has.
+  void set_mass_properties(BodyId, double mass, const Vec3& center, const Matrix3& inertia);
   void destroy(BodyId);  ///< with its particles and their bonds
   bool contains(BodyId) const;
   /// The id that a retired one became (itself if alive), if it was absorbed within the last 65 536 retirements.

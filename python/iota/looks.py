@@ -284,7 +284,8 @@ def spring(radius: float, wire: float, material: str = "steel", color: str | Non
 
 def solid(material: str, color: str | None = None, **more: Any) -> Look:
     """For bodies given by shape: that shape, of a material. In a list, one for each solid of a combined body; the last one is that of all
-    further solids, and other looks of the list are drawn beside them. more: texture and repeat, see `Look`."""
+    further solids, and other looks of the list are drawn beside them, or instead of those of color "#00000000". more: texture and repeat,
+    see `Look`."""
     return Look(None, material, color, **more)
 
 

@@ -173,6 +173,44 @@ void apply(Editor& e, const SetRod& c) {
   model.mark_body(body);
 }
 
+void apply(Editor& e, const SetMassProperties& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  refuse_obstacle(model, body, "have a mass");
+  require_mass("mass", c.mass);
+  require_finite("center", c.center);
+  for (const Vec3& row : c.inertia) require_finite("inertia", row);
+  std::size_t own = 0;
+  bool may_move = true;
+  model.for_each_solid_of(body, [&](std::uint32_t solid) {
+    own += model.solids[solid].points.size();
+    may_move = may_move && model::may_move_points(model, solid);
+  });
+  if (own == 0) throw std::invalid_argument(text("set_mass_properties is for bodies given by shape, not body ", body));
+  if (own != model.bodies[body].count || !may_move)
+    throw std::invalid_argument(text("set_mass_properties: body ", body,
+                                     " has particles beside those of its shapes, or ",
+                                     "something holds them: give it attachments, hinges and nails afterwards"));
+  const Mat3 inertia = to_mat3(c.inertia);
+  const double trace = inertia.m[0][0] + inertia.m[1][1] + inertia.m[2][2];
+  Mat3 squares;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      if (std::abs(inertia.m[i][j] - inertia.m[j][i]) > 1e-9 * std::abs(trace))
+        throw std::invalid_argument("inertia must be symmetric");
+      squares.m[i][j] = ((i == j ? trace / 2 : 0) - (inertia.m[i][j] + inertia.m[j][i]) / 2) / c.mass;
+    }
+  const SymmetricEigen spread = symmetric_eigen(squares);
+  const double least = *std::min_element(std::begin(spread.values), std::end(spread.values));
+  const double most = *std::max_element(std::begin(spread.values), std::end(spread.values));
+  if (!(least > 1e-9 * most))
+    throw std::invalid_argument(
+        "inertia must be of a body that has a size along each axis: each principal moment is "
+        "above 0 and less than the sum of the other two");
+  model::set_mass_properties(model, body, c.mass, c.center, squares);
+  e.structure_changed();
+}
+
 // --- kind -------------------------------------------------------------------------------------------------------------
 
 namespace {

@@ -28,6 +28,13 @@ struct SetRod {
   BodyId body;
   double mass, radius;
 };
+/// inertia: about the center, world axes.
+struct SetMassProperties {
+  BodyId body;
+  double mass;
+  Vec3 center;
+  Matrix3 inertia;
+};
 struct SetKind {
   static constexpr std::string_view queued_as = "set_kind";
   BodyId body;
@@ -81,6 +88,7 @@ BodyId apply(Editor&, const CreateSolid&);
 BodyId apply(Editor&, const CreateObstacle&);
 ParticleId apply(Editor&, const CreateAttachment&);
 void apply(Editor&, const SetRod&);
+void apply(Editor&, const SetMassProperties&);
 void apply(Editor&, const SetKind&);
 void apply(Editor&, const SetBodyDamping&);
 void apply(Editor&, const SetRadius&);

@@ -142,7 +142,8 @@ using OfNouns = std::variant<
     SetUsualMaterial,
     CreateObstacle,
     TakeSnapshot,
-    SetColor>;
+    SetColor,
+    SetMassProperties>;
 // clang-format on
 
 namespace detail {

@@ -122,6 +122,27 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
   return particle;
 }
 
+// The four points of each solid have all of the center and spread, and an equal share of the mass.
+void set_mass_properties(Structure& model, std::uint32_t body, double mass, const Vec3& center,
+                         const Mat3& mean_squares) {
+  const Vec3 spin = body_angular_velocity(model, body), velocity = body_velocity(model, body);
+  const Vec3 former = model.center_of_mass(body);
+  const SymmetricEigen principal = symmetric_eigen(mean_squares);
+  int count = 0;
+  model.for_each_solid_of(body, [&](std::uint32_t) { ++count; });
+  model.for_each_solid_of(body, [&](std::uint32_t slot) {
+    Solid& solid = model.solids[slot];
+    place_points(model, solid, center, principal, solid_pose(model, slot));
+    for (const std::uint32_t p : solid.points) {
+      Ring& ring = model.rings[model.particles[p].ring];
+      model.particles[p].mass = mass / (4 * count);
+      ring.velocity = velocity + cross(spin, ring.position - former);
+    }
+  });
+  model.rebuild_basis(body);
+  model.mark_body(body);
+}
+
 Mat3 body_inertia(const Structure& model, std::uint32_t body) {
   const Vec3 center = model.center_of_mass(body);
   Mat3 inertia;

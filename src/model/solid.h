@@ -34,6 +34,10 @@ bool may_move_points(const Structure&, std::uint32_t solid);
 /// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.
 std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);
 
+/// Gives a body made of solids alone this mass, center of mass (world) and mean squares about it (world axes), whatever its
+/// shapes are, which stay where they are. Its motion stays that of the same rigid body.
+void set_mass_properties(Structure&, std::uint32_t body, double mass, const Vec3& center, const Mat3& mean_squares);
+
 /// Inertia about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28; inertia pairs included).
 Mat3 body_inertia(const Structure&, std::uint32_t body);
 Vec3 body_velocity(const Structure&, std::uint32_t body);          ///< of the center of mass, m/s

@@ -158,6 +158,8 @@ std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std
   return first;
 }
 
+bool is_wholly_transparent(std::uint32_t color) { return color != protocol::no_color && color >> 24 == 255; }
+
 bool stands_for_solid(const protocol::Part& part) { return part.shape.kind == "solid"; }
 
 /// How the solids of a body are drawn in one style. materials: those of the solids in their order; the last one is that of all
@@ -347,6 +349,7 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
     for (const DrawnSolid& solid : body.solids) {
       const Mesh* const mesh = std::get_if<Mesh>(&solid.shape);
       const protocol::Part& own = *dress.materials[std::min(number++, dress.materials.size() - 1)];
+      if (!dress.beside.empty() && is_wholly_transparent(own.color)) continue;
       protocol::Part& part = parts.emplace_back(make_part(style, {}, own.material));
       part.color = own.color;
       part.offset = rounded(solid.position);

@@ -151,6 +151,10 @@ std::vector<ParticleId> Bodies::attachments(BodyId id) const {
 
 BodyId Bodies::create(const BodyOptions& options) { return core_.execute(edit::CreateBody{options}); }
 
+void Bodies::set_mass_properties(BodyId body, double mass, const Vec3& center, const Matrix3& inertia) {
+  core_.execute(edit::SetMassProperties{body, mass, center, inertia});
+}
+
 void Bodies::set_rod(BodyId body, double mass, double radius) { core_.execute(edit::SetRod{body, mass, radius}); }
 
 void Bodies::destroy(BodyId id) { core_.execute(edit::Destroy<BodyId>{id}); }

@@ -243,3 +243,40 @@ def test_refusals_of_the_system_are_named_and_undone(system: iota.System) -> Non
         with pytest.raises((ValueError, TypeError), match=text):
             structure.realize(system)
         assert system.bodies == [] and system.validate() == []
+
+
+def test_a_body_of_several_shapes_has_them_and_the_given_inertia() -> None:
+    one = iota.builder.Structure()
+    shape, ball = iota.Box((0.2, 0.2, 0.2)), iota.Sphere(0.1)
+    others = [(ball, (0.3, 0, 0), (0, 0, 0, 1))]
+    inertia = ((0.02, 0, 0), (0, 0.03, 0), (0, 0, 0.04))
+    one.body(shape=shape, mass=2, others=others, center=(0.1, 0.02, 0), inertia=inertia, spin=(0, 1, 0), name="a")
+    one.body(shape=shape, mass=2, position=(2, 0, 0), others=[(ball, (2.3, 0, 0), (0, 0, 0, 1))], name="b")
+    one.passing.append((0, 1))
+    again = iota.builder.Structure.from_json(json.loads(json.dumps(one.to_json())))
+    both = iota.builder.Structure()
+    both.body(shape=ball, name="before")
+    both.merge(again + (0, 5, 0))
+    system = iota.System()
+    made = both.realize(system)
+    a, b = made["a"], made["b"]
+    assert (a.mass, len(a.solids)) == (pytest.approx(2), 2)
+    assert tuple(a.center_of_mass) == pytest.approx((0.1, 5.02, 0), abs=1e-12)
+    assert np.array(a.inertia) == pytest.approx(np.array(inertia), abs=1e-12)
+    assert tuple(a.solids[1].position) == pytest.approx((0.3, 5, 0), abs=1e-12)
+    assert tuple(a.angular_velocity) == pytest.approx((0, 1, 0), abs=1e-12)
+    volumes = [s.mass_properties.volume for s in (shape, ball)]
+    assert b.mass == pytest.approx(2)
+    assert b.center_of_mass.x == pytest.approx(2 + 0.3 * volumes[1] / sum(volumes)), "of one density"
+    assert system.ignored_contacts == [(a, b)]
+    assert "passing" not in both.to_json() or both.passing == [(1, 2)]
+
+
+def test_a_body_without_a_shape_has_no_inertia_of_its_own() -> None:
+    wrong = iota.builder.Structure()
+    wrong.body(wrong.point((0, 0, 0)), inertia=((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    wrong.body(shape=iota.Sphere(0.1), inertia=((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    told = "\n".join(wrong.problems())
+    assert "no shape" in told and "needs a mass and a center" in told
+    wrong.passing.append((0, 7))
+    assert "passing 0: there is no body 7, only 2 bodies" in "\n".join(wrong.problems())

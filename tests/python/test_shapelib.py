@@ -1006,6 +1006,114 @@ def test_mjcf_loops_and_ropes_become_ours(write: Write) -> None:
     assert tied.problems() == []
 
 
+LINKS = """<mujoco>
+  <worldbody>
+    <geom type="box" size="0.5 0.5 0.1" pos="3 0 0.1"/>
+    <body name="box" pos="0 0 0.5"><freejoint/><geom type="box" size="0.1 0.2 0.05" density="500"/></body>
+    <body name="dumbbell" pos="1 0 0.5"><freejoint/>
+      <geom type="sphere" size="0.1" pos="-0.2 0 0"/><geom type="sphere" size="0.1" pos="0.2 0 0"/>
+      <geom type="capsule" size="0.03" fromto="-0.2 0 0 0.2 0 0"/>
+      <geom type="box" size="0.3 0.3 0.3" contype="0" conaffinity="0" mass="0"/>
+    </body>
+    <body name="on the table" pos="3 0 0.6"><freejoint/>
+      <inertial pos="0 0 -0.02" mass="2" diaginertia="0.02 0.03 0.04"/><geom type="cylinder" size="0.1 0.05"/>
+    </body>
+  </worldbody>
+</mujoco>"""
+
+
+def test_links_touch_by_the_shapes_of_their_file_and_have_its_inertia(write: Write) -> None:
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_string(LINKS)
+    system = iota.System()
+    made = shapelib.mechanism(write("links.xml", LINKS)).realize(system)
+    for number in range(1, model.nbody):
+        body = made[model.body(number).name]
+        assert body.mass == pytest.approx(model.body_mass[number], rel=1e-9)
+        principal = np.sort(np.linalg.eigvalsh(np.array(body.inertia)))
+        assert principal == pytest.approx(np.sort(model.body_inertia[number]), rel=1e-6)
+    assert len(made["dumbbell"].solids) == 3, "what is only seen does not touch"
+    world = iota.World(system, ground=0.0)
+    world.advance(360)
+    heights = {name: made[name].center_of_mass.y for name in ("box", "dumbbell", "on the table")}
+    assert heights == pytest.approx({"box": 0.05, "dumbbell": 0.1, "on the table": 0.23}, abs=1e-4)
+
+
+def test_links_of_a_urdf_file_touch_by_their_collisions_and_else_by_what_is_seen(write: Write) -> None:
+    text = """<robot name="two">
+  <link name="a">
+    <inertial><origin xyz="0.05 0 0"/><mass value="2"/><inertia ixx="0.02" iyy="0.03" izz="0.04" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><box size="1 1 1"/></geometry></visual>
+    <collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision>
+    <collision><origin xyz="0.3 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>
+  </link>
+</robot>"""
+    seen = text.replace("collision", "hidden").replace("1 1 1", "0.6 0.4 0.3")
+    for content, shapes, height in ((text, 2, 0.1), (seen, 1, 0.15)):
+        system = iota.System()
+        body = shapelib.mechanism(write("two.urdf", content), base="free", at=(0, 1, 0)).realize(system)["a"]
+        assert len(body.solids) == shapes
+        assert tuple(body.center_of_mass) == pytest.approx((0.05, 1, 0), abs=1e-12)
+        assert np.array(body.inertia) == pytest.approx(np.diag([0.02, 0.04, 0.03]), abs=1e-9)  # y up
+        iota.World(system, ground=0.0).advance(360)
+        assert body.center_of_mass.y == pytest.approx(height, abs=1e-4)
+
+
+def test_links_that_mujoco_lets_pass_each_other_do_so(write: Write) -> None:
+    hand = """<mujoco>
+  <worldbody>
+    <body name="palm"><freejoint/><geom size="0.1"/>
+      <body name="plate"><geom size="0.1"/></body>
+      <body name="finger" pos="0.15 0 0"><joint axis="0 1 0"/><joint axis="0 0 1"/><geom size="0.1"/>
+        <body name="tip" pos="0.15 0 0"><joint axis="0 1 0"/><geom size="0.1"/></body>
+      </body>
+    </body>
+    <body name="ball" pos="0 0 1"><freejoint/><geom size="0.1"/></body>
+    <body name="ghost" pos="0 0 2"><freejoint/><geom size="0.1" contype="2" conaffinity="4"/></body>
+  </worldbody>
+  <contact><exclude body1="palm" body2="tip"/></contact>
+</mujoco>"""
+    found = shapelib.mechanism(write("hand.xml", hand))
+    pairs = {frozenset((found.bodies[a].name, found.bodies[b].name)) for a, b in found.passing}
+    for two in (("palm", "finger"), ("plate", "finger"), ("palm", "tip"), ("ghost", "ball"), ("finger ring 1", "palm")):
+        assert frozenset(two) in pairs, two
+    for two in (("plate", "tip"), ("ball", "palm"), ("ball", "tip")):
+        assert frozenset(two) not in pairs, two
+    system = iota.System()
+    found.realize(system)
+    assert len(system.ignored_contacts) == len(found.passing)
+
+
+def test_an_mjcf_height_field_is_land_as_mujoco_has_it(write: Write) -> None:
+    import mujoco
+
+    land = """<mujoco>
+  <asset><hfield name="hills" nrow="3" ncol="4" size="2 1 0.5 0.1" elevation="0 1 2 3  4 0 1 5  2 2 0 9"/></asset>
+  <worldbody><geom type="hfield" hfield="hills" pos="0.3 -0.2 0.1" euler="0 0 30"/></worldbody>
+</mujoco>"""
+    found = shapelib.mechanism(write("land.xml", land))
+    assert not any("height" in note for note in found.notes)
+    system = iota.System()
+    found.realize(system)
+    world = iota.World(system, ground=None)
+    model = mujoco.MjModel.from_xml_string(land)
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    rng = np.random.default_rng(1)
+    hits = 0
+    for x, y in rng.uniform((-1.6, -0.9), (1.6, 0.9), (200, 2)):
+        far = mujoco.mj_ray(
+            model, state, np.array([x, y, 3.0]), np.array([0.0, 0, -1]), None, 1, -1, np.zeros(1, np.int32)
+        )
+        hit = world.queries.ray((x, 3.0, -y), (0, -1, 0))
+        if hit is None:
+            continue  # beside it, or beside the block that MuJoCo has under it
+        hits += 1
+        assert hit.point.y == pytest.approx(3.0 - far, abs=1e-6), (x, y)
+    assert hits > 150
+
+
 HANDS = """\
 <mujoco>
   <compiler angle="radian"/><option gravity="0 0 0"/>

@@ -95,6 +95,11 @@ def _missing_bodies(structure: Contents) -> Iterator[str]:
             if body is not None and not 0 <= body < count:
                 yield f"{label(joint.kind, number, joint.name)}: there is no body {body!r}, only {count} bodies"
 
+    for number, pair in enumerate(structure.passing):
+        for body in pair:
+            if not 0 <= body < count:
+                yield f"passing {number}: there is no body {body!r}, only {count} bodies"
+
 
 def _missing_joints(structure: Contents) -> Iterator[str]:
     count = len(structure.joints)
@@ -132,6 +137,10 @@ def _bodies(structure: Contents) -> Iterator[str]:
             for point in body.points:
                 if structure.points.mass[point] != 0:
                     yield f"{name} has its mass from its shape, so the mass of point {point} must be 0 kg"
+        elif body.others or body.inertia is not None:
+            yield f"{name} has other shapes or an inertia, but no shape"
+        if body.inertia is not None and (body.mass is None or body.center is None):
+            yield f"{name} has an inertia, so it needs a mass and a center"
         if body.rod is not None and len(body.points) != 2:
             yield f"{name}: a rod has two points, not {len(body.points)}"
         if body.look and body.look not in structure.looks:

@@ -22,6 +22,7 @@ class Contents:
     ties: list[Tie] = field(default_factory=list)
     couplings: list[Coupling] = field(default_factory=list)
     lines: list[tuple[int, int]] = field(default_factory=list)  # cosmetic bonds
+    passing: list[tuple[int, int]] = field(default_factory=list)  # bodies that do not touch each other
     nails: list[int] = field(default_factory=list)  # points
     groups: dict[str, list[int]] = field(default_factory=dict)  # points, for fields and pair forces
     point_names: dict[str, int] = field(default_factory=dict)

@@ -21,13 +21,13 @@ from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
 PARTS: dict[str, type[Any]] = {
     "bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie, "couplings": Coupling,
 }  # fmt: skip
-PAIRS = ("hinges", "lines")
+PAIRS = ("hinges", "lines", "passing")
 PLAIN = ("nails", "groups", "point_names")
 COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
 # The fields of parts that are not numbers; the engine checks numbers.
 FIELDS: dict[str, type] = {
     "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "law": str, "parameters": dict,
-    "options": dict, "terms": list, "shape": dict,
+    "options": dict, "terms": list, "shape": dict, "others": list,
 }  # fmt: skip
 
 VERSION = 1  # rises when files of before can no longer be read, or would be read wrongly
@@ -43,6 +43,8 @@ def to_json(structure: Contents) -> dict[str, Any]:
         ]
     for name in (*PAIRS, *PLAIN):
         data[name] = _plain(getattr(structure, name), name)
+    if not structure.passing:  # as of files of before
+        del data["passing"]
     data["looks"] = {name: looks.to_json(styles) for name, styles in structure.looks.items()}
     return data
 
@@ -64,8 +66,10 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
             for key in entry.keys() & FIELDS.keys():
                 of_type(entry[key], FIELDS[key], f"{owner}: {key}")
             try:
-                shape = {"shape": shapes.from_json(entry["shape"])} if "shape" in entry else {}
-                getattr(structure, name).append(kind(**entry | shape))
+                read: dict[str, Any] = {"shape": shapes.from_json(entry["shape"])} if "shape" in entry else {}
+                if "others" in entry:
+                    read["others"] = [(shapes.from_json(shape), at, turn) for shape, at, turn in entry["others"]]
+                getattr(structure, name).append(kind(**entry | read))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{owner}: {error}") from None
     for name in PAIRS:

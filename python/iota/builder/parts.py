@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
@@ -24,7 +24,10 @@ COORDINATES: tuple[str, ...] = get_args(Coordinate)
 @dataclass
 class RigidBody:
     """A rigid connection of points. With a shape, it has the shape's mass and inertia, and its points, of mass 0, are
-    attachments. rod: mass (kg) and radius (m) of a solid cylinder between its two points."""
+    attachments. rod: mass (kg) and radius (m) of a solid cylinder between its two points.
+
+    others: further shapes of it, each with the place of its origin (m) and its orientation (x y z w). All have one density: that given,
+    or that of the mass. inertia: about `center`, world axes, kg m^2, with `mass` and `center`: of a body that is not homogeneous."""
 
     points: list[int]
     name: str = ""
@@ -39,6 +42,9 @@ class RigidBody:
     velocity: Vector = (0.0, 0.0, 0.0)  # m/s, of a body with a shape
     spin: Vector = (0.0, 0.0, 0.0)  # rad/s, of a body with a shape
     look: str = ""  # name of one of the structure's looks
+    others: Sequence[tuple[Shape, Vector, tuple[float, ...]]] = ()
+    center: Vector | None = None  # of mass, m
+    inertia: Sequence[Sequence[float]] | None = None
 
 
 @dataclass

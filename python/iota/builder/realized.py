@@ -146,17 +146,35 @@ def _make_others(
 
 
 def _solid(part: RigidBody, system: _core.System) -> _core.Body:
-    return system.body(
+    assert part.shape is not None
+    density, mass = part.density, part.mass
+    if part.others and mass is not None:
+        shapes = [part.shape, *(shape for shape, _, _ in part.others)]
+        # With an inertia of its own the masses of single shapes count for nothing, and they need no volume.
+        density = mass / sum(s.mass_properties.volume for s in shapes) if part.inertia is None else None
+        mass = None if part.inertia is None else mass / len(shapes)
+    body = system.body(
         part.kind,
         part.damping,
         shape=part.shape,
-        density=part.density,
-        mass=part.mass,
+        density=density,
+        mass=mass,
         position=part.position,
         orientation=part.orientation,
         velocity=part.velocity,
         spin=part.spin,
     )
+    for shape, place, orientation in part.others:
+        other = system.body(
+            part.kind, part.damping, shape=shape, density=density, mass=mass, position=place, orientation=orientation
+        )
+        body.combine(other)
+    if part.inertia is not None:
+        assert part.mass is not None and part.center is not None  # as `problems` says
+        body.set_mass_properties(part.mass, part.center, part.inertia)
+    if part.others and part.kind not in ("static", "scripted"):
+        body.velocity, body.angular_velocity = part.velocity, part.spin
+    return body
 
 
 def _make_connections(structure: Contents, system: _core.System, made: Realized) -> None:
@@ -165,6 +183,8 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
         system.cosmetic_bond(points[p], points[q])
     for p, q in structure.hinges:
         points[p].combine(points[q])
+    for one, other in structure.passing:
+        system.ignore_contacts(made.bodies[one], made.bodies[other])
     for point in structure.nails:
         points[point].nail()
     what = ""

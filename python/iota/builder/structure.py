@@ -146,6 +146,7 @@ class Structure(Contents):
         twin.joints = [replace(joint, options=dict(joint.options)) for joint in self.joints]
         twin.ties = [replace(tie) for tie in self.ties]
         twin.couplings = [replace(coupling, terms=list(coupling.terms)) for coupling in self.couplings]
+        twin.passing = list(self.passing)
         twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
         twin.groups = {name: list(members) for name, members in self.groups.items()}
         twin.point_names, twin.looks = dict(self.point_names), dict(self.looks)
@@ -158,6 +159,8 @@ class Structure(Contents):
         moved.points.position[:] += np.asarray(way)
         for body in moved.bodies:
             body.position = Vec3(*body.position) + way
+            body.others = [(shape, Vec3(*at) + way, turn) for shape, at, turn in body.others] if body.others else ()
+            body.center = None if body.center is None else Vec3(*body.center) + way
         for joint in moved.joints:
             if "at" in joint.options:
                 joint.options["at"] = Vec3(*joint.options["at"]) + way
@@ -190,6 +193,7 @@ class Structure(Contents):
         ]
         self.hinges += pairs(other.hinges)
         self.lines += pairs(other.lines)
+        self.passing += [(a + bodies, b + bodies) for a, b in other.passing]
         self.nails += [point + shift.points for point in other.nails]
         for bond in other.bonds:
             self.bonds.append(replace(bond, p=bond.p + shift.points, q=bond.q + shift.points, name=named(bond.name)))

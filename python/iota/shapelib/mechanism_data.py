@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from iota import looks
+from iota._core import Shape
 from iota.builder.parts import BodyKind, Coordinate, JointKind, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
@@ -16,14 +19,16 @@ from iota.shapelib.imported import Imported
 
 @dataclass
 class Link:
-    """frame: in the world, z up. solid: None for a link that is only a reference. drawn: looks and their places in the
-    link's frame."""
+    """frame: in the world, z up. solid: None for a link that is only a reference. drawn, touching: looks, and the shapes by which it
+    touches, with their places in the link's frame. is_of: the link between two of whose joints this one is a ring."""
 
     name: str
     frame: Frame
     solid: LinkSolid | None
     drawn: list[tuple[looks.Look, Frame]] = field(default_factory=list)
+    touching: list[tuple[Shape, Frame]] = field(default_factory=list)
     kind: BodyKind = "dynamic"
+    is_of: str = ""
 
 
 @dataclass
@@ -52,13 +57,15 @@ class JointCoupling:
 
 @dataclass
 class Mechanism:
-    """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m."""
+    """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m. passing: names of links that do not
+    touch each other."""
 
     title: str
     links: list[Link] = field(default_factory=list)
     joints: list[LinkJoint] = field(default_factory=list)
     couplings: list[JointCoupling] = field(default_factory=list)
     ropes: list[tuple[str, tuple[str, Any], tuple[str, Any], float]] = field(default_factory=list)
+    passing: list[tuple[str, str]] = field(default_factory=list)
     counts: dict[str, int | float | str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
@@ -85,25 +92,41 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         solid = link.solid
         if solid is None:
             return
-        world = link.frame @ solid.frame
         number[link.name] = len(structure.bodies)
-        drawn = [_scaled(look_in(solid.frame, look, place), scale) for look, place in link.drawn]
-        structure.looks[link.name] = drawn or looks.solid("steel")
+        shapes = [(_scaled(shape, scale), link.frame @ place) for shape, place in _usable(link, structure.notes)]
+        ellipsoid = (_scaled(solid.shape, scale), link.frame @ solid.frame)
+        (shape, frame), *others = shapes or [ellipsoid]
+        own = Frame(
+            solid.frame.place, link.frame.inverse().turn @ frame.turn
+        )  # of the body: at its center, turned as its first shape
+        drawn = [_scaled_look(look_in(own, look, place), scale) for look, place in link.drawn]
+        structure.looks[link.name] = _dress(link, drawn, len(shapes))
+        turn = Y_UP @ link.frame.turn @ solid.frame.turn
+        squares = [(scale * size) ** 2 / 20 for size in solid.shape.size]
+        moments = solid.mass * np.diag([sum(squares) - square for square in squares])
+        inertia = turn @ moments @ turn.T
         structure.bodies.append(
             RigidBody(
                 [],
                 name=link.name,
                 kind=link.kind,
-                shape=type(solid.shape)([scale * size for size in solid.shape.size]),
+                shape=shape,
                 mass=solid.mass,
-                position=put(world.place),
-                orientation=to_quaternion(Y_UP @ world.turn),
+                position=put(frame.place),
+                orientation=to_quaternion(Y_UP @ frame.turn),
                 look=link.name,
+                others=[(other, put(at.place), to_quaternion(Y_UP @ at.turn)) for other, at in others],
+                center=put(ellipsoid[1].place),
+                inertia=((inertia + inertia.T) / 2).tolist(),
             )
         )
 
     for link in mechanism.links:
         add(link)
+    passing = {(min(pair), max(pair)) for pair in (*mechanism.passing, *_neighbors(mechanism))}
+    for one, other in sorted(passing):
+        if one in number and other in number:
+            structure.passing.append((number[one], number[other]))
     for joint in mechanism.joints:
         options = dict(joint.options, at=put(joint.at))
         if joint.axis is not None:
@@ -135,20 +158,73 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
     return structure
 
 
-def _scaled(look: looks.Look, scale: float) -> looks.Look:
+def _dress(link: Link, drawn: list[looks.Look], touching: int) -> looks.Look | list[looks.Look]:
+    """Its touching shapes where they are those that are drawn, with what is only drawn beside them; else what is drawn."""
+    if not drawn:
+        return looks.solid("steel")
+    seen = {(id(look.shape), id(place)): number for number, (look, place) in enumerate(link.drawn)}
+    same = [seen.get((id(shape), id(place))) for shape, place in link.touching]
+    if touching != len(same) or None in same:
+        return [looks.solid("paint", "#00000000"), *drawn] if touching > 1 else drawn
+    solids = [looks.solid(link.drawn[n][0].material, link.drawn[n][0].color) for n in same if n is not None]
+    return [*solids, *(look for n, look in enumerate(drawn) if n not in same)]
+
+
+def _neighbors(mechanism: Mechanism) -> Iterator[tuple[str, str]]:
+    """Links that overlap where a joint holds one at the other, as in MuJoCo: what is welded is one link here, and what is welded to
+    neighbors is a neighbor. The engine itself leaves out the two of a joint only."""
+    whole = {link.name: link.is_of or link.name for link in mechanism.links}
+
+    def root(name: str) -> str:
+        while whole[name] != name:
+            name = whole[name]
+        return name
+
+    for joint in mechanism.joints:
+        if joint.kind == "weld" and joint.b is not None:
+            whole[root(joint.a)] = root(joint.b)
+    members: dict[str, list[str]] = {}
+    for link in mechanism.links:
+        members.setdefault(root(link.name), []).append(link.name)
+    for joint in mechanism.joints:
+        if joint.b is not None:
+            near = {*members[root(joint.a)], *members[root(joint.b)]}
+            yield from combinations(near, 2)
+
+
+def _usable(link: Link, notes: list[str]) -> list[tuple[Shape, Frame]]:
+    """The shapes that its body can have: one that moves has a volume."""
+    usable = []
+    for shape, place in link.touching:
+        try:
+            if link.kind != "static":
+                shape.mass_properties  # noqa: B018
+        except ValueError as error:
+            notes.append(f"the link {link.name} does not touch by one of its shapes: {error}")
+        else:
+            usable.append((shape, place))
+    return usable
+
+
+def _scaled_look(look: looks.Look, scale: float) -> looks.Look:
     """Scaled, with the shape's own sizes."""
     from dataclasses import replace
 
+    shape = None if look.shape is None else _scaled(look.shape, scale)
+    return replace(look, shape=shape, offset=tuple(scale * v for v in look.offset))
+
+
+def _scaled(shape: Shape, scale: float) -> Shape:
     from iota import shapes
 
-    if scale == 1 or look.shape is None:
-        return look
-    sizes = shapes.to_json(look.shape)
+    if scale == 1:
+        return shape
+    sizes = shapes.to_json(shape)
     if "vertices" in sizes:
         sizes["vertices"] = (scale * np.array(sizes["vertices"])).tolist()
     else:
-        for name in look.shape.sizes:
+        for name in shape.sizes:
             sizes[name] = [scale * v for v in sizes[name]] if isinstance(sizes[name], list) else scale * sizes[name]
     sizes.pop("kind")
-    larger = type(look.shape)(**sizes)
-    return replace(look, shape=larger, offset=tuple(scale * v for v in look.offset))
+    larger: Shape = type(shape)(**sizes)
+    return larger

@@ -27,12 +27,12 @@ def mechanism(
     at: Vector = (0.0, 0.0, 0.0),
 ) -> Imported:
     """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass, inertia and
-    shapes of the file, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
+    shapes of the file, by which it touches, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
     of the file; a joint with the name of a link is "NAME joint". Files have z up, the structure has y up.
 
     base: of URDF, whether root links are welded to the world ("fixed", the default) or free; MJCF files specify it.
     scale: of lengths; masses are kept. at: place of the file's origin, m. Unsupported parts are left out and listed in
-    `notes`: transmissions, actuators, contacts, tendons over pulleys, nonlinear equalities, missing meshes. Joints that
+    `notes`: transmissions, actuators, coefficients of contacts, tendons over pulleys, nonlinear equalities, missing meshes. Joints that
     mimic others, equalities of joints and sums of joints (fixed tendons) become couplings. Raises `FileError` that names
     file and line, ImportError without MuJoCo for MJCF.
 

@@ -25,6 +25,8 @@ SITE = 6  # mjtObj
 WRAPPED_JOINT, WRAPPED_SITE = 1, 3  # mjtWrap
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
+MOST_MASKED = 1000  # bodies, pairs of which are compared
+Y_TO_Z = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # of land, whose heights are along y
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
 
@@ -142,14 +144,15 @@ class _Reader:
             if moves[body] and FREE not in kinds:
                 self.join(link, list(joints))
             mechanism.links.append(link)
+        self.pass_by()
         for number in range(m.neq):
             self.equality(number)
         for number in range(m.ntendon):
             self.tendon(number)
         planes = int((m.geom_type == 0).sum())
         for count, what in (
-            (self.armatures, "rotor inertias (armature)"), (m.nu, "actuators"), (m.nsensor, "sensors"), (m.nexclude, "exclusions of contacts"), (m.nkey, "keyframes"),
-            (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"), (m.nhfield, "height fields"),
+            (self.armatures, "rotor inertias (armature)"), (m.nu, "actuators"), (m.nsensor, "sensors"), (m.nkey, "keyframes"),
+            (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"),
         ):  # fmt: skip
             if count:
                 mechanism.notes.append(f"{count} {what} are left out")
@@ -180,6 +183,10 @@ class _Reader:
                 look = looks.Look(shape[0], "paint", f"#{red:02x}{green:02x}{blue:02x}")
                 where = Frame(m.geom_pos[geom].copy(), from_quaternion(x, y, z, w) @ shape[1])
                 link.drawn.append((look, where))
+                if m.geom_contype[geom] or m.geom_conaffinity[geom]:
+                    link.touching.append((shape[0], where))
+        if not link.touching:
+            link.touching = [(look.shape, where) for look, where in link.drawn if look.shape is not None]
         if link.drawn and not self.moves[body]:
             link.kind, link.solid = "static", solid_of(1.0, np.eye(3), Frame())
         return link
@@ -188,6 +195,13 @@ class _Reader:
         """By the numbers of mjtGeom; None for planes and geometries without a closed surface."""
         m = self.model
         size, kind = [float(v) for v in m.geom_size[geom]], int(m.geom_type[geom])
+        if kind == 1:
+            field = int(m.geom_dataid[geom])
+            rows, columns, first = m.hfield_nrow[field], m.hfield_ncol[field], m.hfield_adr[field]
+            x, y, height, _ = (float(v) for v in m.hfield_size[field])
+            # Its rows go along y and its columns along x. Below its lowest place it is a block, which nothing comes to.
+            heights = height * m.hfield_data[first : first + rows * columns].reshape(rows, columns).astype(float)
+            return Mesh.height_field(heights[::-1].T, (2 * x, 2 * y)), Y_TO_Z
         if kind == 2:
             return Sphere(size[0]), np.eye(3)
         if kind == 3:
@@ -207,6 +221,22 @@ class _Reader:
             except ValueError as error:
                 self.mechanism.notes.append(f"the mesh {m.mesh(mesh).name} is not drawn: {error}")
         return None
+
+    def pass_by(self) -> None:
+        """Links do not touch that MuJoCo excludes: those of `exclude`, and those whose masks say so."""
+        m, pairs = self.model, set()
+        for signature in (int(v) for v in m.exclude_signature):
+            pairs.add((signature >> 16, signature & 0xFFFF))
+        types, affinities = np.zeros(m.nbody, int), np.zeros(m.nbody, int)
+        np.bitwise_or.at(types, m.geom_bodyid, m.geom_contype)
+        np.bitwise_or.at(affinities, m.geom_bodyid, m.geom_conaffinity)
+        masked = [body for body in range(1, m.nbody) if types[body] or affinities[body]]
+        if any(types[body] != 1 or affinities[body] != 1 for body in masked) and len(masked) <= MOST_MASKED:
+            for a in masked:
+                free = (types[a] & affinities) | (types & affinities[a])
+                pairs |= {(a, b) for b in masked if a < b and not free[b]}
+        ordered = sorted({(min(a, b), max(a, b)) for a, b in pairs})
+        self.mechanism.passing += [(self.names[a], self.names[b]) for a, b in ordered]
 
     # --- joints ---------------------------------------------------------------------------------------------------
 
@@ -235,6 +265,8 @@ class _Reader:
                     solid_of(share * solid.mass, share * inertia, solid.frame),
                 )
                 ring.drawn = [(looks.sphere(1e-3), Frame(solid.frame.place))]
+                ring.touching = [(Sphere(1e-3), Frame(solid.frame.place))]
+                ring.is_of = link.name
                 self.mechanism.links.append(ring)
         for number, joint in enumerate(joints):
             a = link.name if number == rings else f"{link.name} ring {number + 1}"

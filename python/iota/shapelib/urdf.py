@@ -182,10 +182,13 @@ def _link(
             color = _color(visual, colors)
             where = _origin(visual)
             link.drawn.append((looks.Look(shape, "paint", color), Frame(where.place, where.turn @ turn)))
-    for collision in element.all("collision"):  # not used, but its missing meshes are reported
-        mesh = collision.need("geometry").first("mesh")
-        if mesh is not None and _find(mesh.text("filename"), Path(path)) is None:
-            missing.append(mesh.text("filename"))
+    for collision in element.all("collision"):
+        found = _shape(collision.need("geometry"), path, missing)
+        if found is not None:
+            where = _origin(collision)
+            link.touching.append((found[0], Frame(where.place, where.turn @ found[1])))
+    if not link.touching:
+        link.touching = [(look.shape, place) for look, place in link.drawn if look.shape is not None]
     return link
 
 

@@ -34,6 +34,53 @@ TEST(Solid, is_created_with_its_mass_pose_and_motion) {
   EXPECT_LT(norm(system.particles().velocity(corner) - velocity - cross_of(spin, lever)), 1e-13);
 }
 
+TEST(MassProperties, of_a_body_are_those_that_are_set_whatever_its_shapes_are) {
+  for (const double size : {1e-3, 1.0, 1e3}) {
+    System system;
+    const Vec3 velocity{size, 0, 0}, spin{1, 2, -3}, center{0.1 * size, -0.05 * size, 0.02 * size};
+    const BodyId body =
+        system.bodies().create(Box{{size, size, size}}, {.mass = 1, .velocity = velocity, .spin = spin});
+    const BodyId ball = system.bodies().create(Sphere{size / 2}, {.mass = 3, .position = {2 * size, 0, 0}});
+    (void)system.edits().combine(body, ball);
+    system.bodies().set_velocity(body, velocity), system.bodies().set_angular_velocity(body, spin);
+    const Vec3 former = system.bodies().center_of_mass(body);
+    const double unit = size * size;
+    const Matrix3 inertia{Vec3{2 * unit, 0.1 * unit, 0}, Vec3{0.1 * unit, 3 * unit, 0.2 * unit},
+                          Vec3{0, 0.2 * unit, 4 * unit}};
+    system.bodies().set_mass_properties(body, 5, center, inertia);
+    EXPECT_NEAR(system.bodies().mass(body), 5, 1e-12);
+    EXPECT_LT(norm(system.bodies().center_of_mass(body) - center), 1e-12 * size);
+    const Matrix3 now = system.bodies().inertia(body);
+    for (int i = 0; i < 3; ++i) EXPECT_LT(norm(now[i] - inertia[i]), 1e-12 * unit);
+    EXPECT_LT(norm(system.bodies().angular_velocity(body) - spin), 1e-11);
+    EXPECT_LT(norm(system.bodies().velocity(body) - velocity - cross_of(spin, center - former)), 1e-11 * size);
+    const std::vector<SolidView> solids = system.bodies().solids(body);
+    ASSERT_EQ(solids.size(), 2u);
+    EXPECT_LT(norm(solids[0].position), 1e-12 * size);
+    EXPECT_LT(norm(solids[1].position - Vec3{2 * size, 0, 0}), 1e-12 * size);
+    system.validate();
+  }
+}
+
+TEST(MassProperties, that_no_body_has_are_refused) {
+  System system;
+  const BodyId box = system.bodies().create(Box{{1, 1, 1}}, {.mass = 1});
+  const auto refused = [&](BodyId body, double mass, const Matrix3& inertia) {
+    EXPECT_THROW(system.bodies().set_mass_properties(body, mass, {}, inertia), std::invalid_argument);
+  };
+  const Matrix3 good{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  refused(box, 0, good), refused(box, std::nan(""), good);
+  refused(box, 1, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 2.1}});
+  refused(box, 1, {Vec3{1, 0.1, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}});
+  refused(box, 1, {Vec3{std::nan(""), 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}});
+  refused(box, 1, {});
+  refused(system.bodies().create_obstacle(Box{{1, 1, 1}}), 1, good);
+  refused(system.bodies().create(), 1, good);
+  (void)system.bodies().create_attachment(box, {1, 0, 0});
+  refused(box, 1, good);
+  EXPECT_NEAR(system.bodies().mass(box), 1, 1e-12);
+}
+
 TEST(Rod, has_the_moment_of_inertia_of_a_cylinder_about_its_center) {
   for (const double size : {1e-3, 1.0, 1e3}) {
     System system;

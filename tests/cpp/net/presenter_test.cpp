@@ -222,17 +222,25 @@ TEST(Presenter, draws_each_solid_of_a_body_in_a_material_of_its_own_with_what_is
     if (kind == "sphere") made.shape.sizes = {0.05F};
     return made;
   };
-  Presenter presenter;
-  presenter.set_visual("arm", {part("solid", "steel"), part("sphere", "glass"), part("solid", "brass")});
-  presenter.assign(arm, "arm", false);
-  const EntityChanges changes = presenter.present(system.viewer().take_scene_changes());
-  const std::uint32_t visual = entities<protocol::BodyEntity>(changes).at(arm.slot).visual;
-  const protocol::VisualEntity shown = entities<protocol::VisualEntity>(changes).at(visual);
-  std::vector<std::string> drawn;
-  for (const protocol::Part& each : shown.parts) drawn.push_back(each.shape.kind + " of " + each.material);
+  const auto drawn_as = [&](const std::vector<protocol::Part>& parts) {
+    Presenter presenter;
+    presenter.set_visual("arm", parts);
+    presenter.assign(arm, "arm", false);
+    const EntityChanges changes = presenter.present(system.viewer().take_scene_changes(true));
+    const std::uint32_t visual = entities<protocol::BodyEntity>(changes).at(arm.slot).visual;
+    std::vector<std::string> drawn;
+    for (const protocol::Part& each : entities<protocol::VisualEntity>(changes).at(visual).parts)
+      drawn.push_back(each.shape.kind + " of " + each.material);
+    return drawn;
+  };
+  using Drawn = std::vector<std::string>;
   // The last material is that of all further solids.
-  EXPECT_EQ(drawn,
-            (std::vector<std::string>{"capsule of steel", "sphere of brass", "sphere of brass", "sphere of glass"}));
+  EXPECT_EQ(drawn_as({part("solid", "steel"), part("sphere", "glass"), part("solid", "brass")}),
+            (Drawn{"capsule of steel", "sphere of brass", "sphere of brass", "sphere of glass"}));
+  protocol::Part unseen = part("solid", "paint");
+  unseen.color = 0xFF000000;
+  EXPECT_EQ(drawn_as({unseen, part("sphere", "glass")}), (Drawn{"sphere of glass"}));
+  EXPECT_EQ(drawn_as({unseen}).size(), 3u) << "something is drawn";
 }
 
 }  // namespace
