@@ -36,7 +36,8 @@ class Places : public View {
 
   explicit Places(Core& core) : View(core) {}
 
-  /// The first thing that a ray meets within `farthest`, m. Throws std::invalid_argument for a direction of zero.
+  /// The first thing that a ray meets within `farthest`, m. Throws std::invalid_argument for a direction of zero, and for
+  /// `farthest` below 0 or none.
   std::optional<Hit> ray(const Vec3& from, const Vec3& direction,
                          double farthest = std::numeric_limits<double>::infinity(), Only only = {});
   /// The thing whose surface is nearest.

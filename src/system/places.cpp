@@ -66,6 +66,7 @@ void Places::for_each(const Only& only, Search search, Visit visit) {
 template <class Meet>
 std::optional<Hit> Places::find_first(const Only& only, const Vec3& from, const Vec3& unit, double width,
                                       double farthest, Meet meet) {
+  if (!(farthest >= 0)) throw std::invalid_argument("farthest must be 0 m or more, not " + std::to_string(farthest));
   std::optional<Hit> first;
   for_each(
       only, [&](const contact::OutlineTree& tree, auto visit) { tree.along(from, unit, width, farthest, visit); },

@@ -426,6 +426,10 @@ def test_gaps_and_casts_know_rooms_of_triangles_rings_ropes_and_planes() -> None
     assert world.queries.cast(iota.Sphere(2), (1, 2, 0), (0, 0, 1)).distance == 0
     with pytest.raises(ValueError, match="of one with itself"):
         world.queries.gap(ball, ball)
+    for farthest in (math.nan, -1.0):
+        for ask in (world.queries.ray, partial(world.queries.cast, iota.Sphere(0.1)), world.queries.rays):
+            with pytest.raises(ValueError, match="farthest must be 0 m or more"):
+                ask((0, 1, 0), (0, -1, 0), farthest=farthest)
     with pytest.raises(ValueError, match="only a convex shape"):
         world.queries.cast(iota.Torus(1, 0.1), (0, 0, 0), (1, 0, 0))
 
