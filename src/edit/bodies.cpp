@@ -179,7 +179,8 @@ void apply(Editor& e, const SetMassProperties& c) {
   refuse_obstacle(model, body, "have a mass");
   require_mass("mass", c.mass);
   require_finite("center", c.center);
-  for (const Vec3& row : c.inertia) require_finite("inertia", row);
+  for (const Vec3& row : c.inertia)
+    if (!is_finite(row)) throw std::invalid_argument("inertia must be finite");
   std::size_t own = 0;
   bool may_move = true;
   model.for_each_solid_of(body, [&](std::uint32_t solid) {

@@ -1020,6 +1020,7 @@ LINKS = """<mujoco>
     <body name="on the table" pos="3 0 0.6"><freejoint/>
       <inertial pos="0 0 -0.02" mass="2" diaginertia="0.02 0.03 0.04"/><geom type="cylinder" size="0.1 0.05"/>
     </body>
+    <body name="ghost" pos="0 0 0.5"><freejoint/><geom size="0.1" contype="0" conaffinity="0"/></body>
   </worldbody>
 </mujoco>"""
 
@@ -1036,6 +1037,7 @@ def test_links_touch_by_the_shapes_of_their_file_and_have_its_inertia(write: Wri
         principal = np.sort(np.linalg.eigvalsh(np.array(body.inertia)))
         assert principal == pytest.approx(np.sort(model.body_inertia[number]), rel=1e-6)
     assert len(made["dumbbell"].solids) == 3, "what is only seen does not touch"
+    assert made["ghost"].material == iota.Material(touches="nothing")
     world = iota.World(system, ground=0.0)
     world.advance(360)
     heights = {name: made[name].center_of_mass.y for name in ("box", "dumbbell", "on the table")}
@@ -1050,11 +1052,15 @@ def test_links_of_a_urdf_file_touch_by_their_collisions_and_else_by_what_is_seen
     <collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision>
     <collision><origin xyz="0.3 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>
   </link>
+  <link name="ghost"><visual><geometry><sphere radius="0.1"/></geometry></visual></link>
 </robot>"""
     seen = text.replace("collision", "hidden").replace("1 1 1", "0.6 0.4 0.3")
     for content, shapes, height in ((text, 2, 0.1), (seen, 1, 0.15)):
         system = iota.System()
-        body = shapelib.mechanism(write("two.urdf", content), base="free", at=(0, 1, 0)).realize(system)["a"]
+        made = shapelib.mechanism(write("two.urdf", content), base="free", at=(0, 1, 0)).realize(system)
+        body, ghost = made["a"], made["ghost"]
+        assert (ghost.material is None) == (content == seen)
+        ghost.position = (5, 5, 5)
         assert len(body.solids) == shapes
         assert tuple(body.center_of_mass) == pytest.approx((0.05, 1, 0), abs=1e-12)
         assert np.array(body.inertia) == pytest.approx(np.diag([0.02, 0.04, 0.03]), abs=1e-9)  # y up

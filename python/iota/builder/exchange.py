@@ -27,7 +27,7 @@ COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
 # The fields of parts that are not numbers; the engine checks numbers.
 FIELDS: dict[str, type] = {
     "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "law": str, "parameters": dict,
-    "options": dict, "terms": list, "shape": dict, "others": list,
+    "options": dict, "terms": list, "shape": dict, "others": list, "touches": bool,
 }  # fmt: skip
 
 VERSION = 1  # rises when files of before can no longer be read, or would be read wrongly

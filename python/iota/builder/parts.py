@@ -42,6 +42,7 @@ class RigidBody:
     velocity: Vector = (0.0, 0.0, 0.0)  # m/s, of a body with a shape
     spin: Vector = (0.0, 0.0, 0.0)  # rad/s, of a body with a shape
     look: str = ""  # name of one of the structure's looks
+    touches: bool = True  # False: it passes through everything
     others: Sequence[tuple[Shape, Vector, tuple[float, ...]]] = ()
     center: Vector | None = None  # of mass, m
     inertia: Sequence[Sequence[float]] | None = None

@@ -169,6 +169,8 @@ def _solid(part: RigidBody, system: _core.System) -> _core.Body:
             part.kind, part.damping, shape=shape, density=density, mass=mass, position=place, orientation=orientation
         )
         body.combine(other)
+    if not part.touches:
+        body.material = _core.Material(touches="nothing")
     if part.inertia is not None:
         assert part.mass is not None and part.center is not None  # as `problems` says
         body.set_mass_properties(part.mass, part.center, part.inertia)

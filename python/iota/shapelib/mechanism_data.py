@@ -20,7 +20,7 @@ from iota.shapelib.imported import Imported
 @dataclass
 class Link:
     """frame: in the world, z up. solid: None for a link that is only a reference. drawn, touching: looks, and the shapes by which it
-    touches, with their places in the link's frame. is_of: the link between two of whose joints this one is a ring."""
+    touches, with their places in the link's frame. touches: False for one that is only seen. is_of: the link between two of whose joints this one is a ring."""
 
     name: str
     frame: Frame
@@ -28,7 +28,13 @@ class Link:
     drawn: list[tuple[looks.Look, Frame]] = field(default_factory=list)
     touching: list[tuple[Shape, Frame]] = field(default_factory=list)
     kind: BodyKind = "dynamic"
+    touches: bool = True
     is_of: str = ""
+
+
+def seen_shapes(link: Link) -> list[tuple[Shape, Frame]]:
+    """Those that are drawn, as shapes to touch by."""
+    return [(look.shape, place) for look, place in link.drawn if look.shape is not None]
 
 
 @dataclass
@@ -96,9 +102,8 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         shapes = [(_scaled(shape, scale), link.frame @ place) for shape, place in _usable(link, structure.notes)]
         ellipsoid = (_scaled(solid.shape, scale), link.frame @ solid.frame)
         (shape, frame), *others = shapes or [ellipsoid]
-        own = Frame(
-            solid.frame.place, link.frame.inverse().turn @ frame.turn
-        )  # of the body: at its center, turned as its first shape
+        # The body's frame is at its center, and turned as its first shape.
+        own = Frame(solid.frame.place, link.frame.inverse().turn @ frame.turn)
         drawn = [_scaled_look(look_in(own, look, place), scale) for look, place in link.drawn]
         structure.looks[link.name] = _dress(link, drawn, len(shapes))
         turn = Y_UP @ link.frame.turn @ solid.frame.turn
@@ -115,6 +120,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
                 position=put(frame.place),
                 orientation=to_quaternion(Y_UP @ frame.turn),
                 look=link.name,
+                touches=link.touches,
                 others=[(other, put(at.place), to_quaternion(Y_UP @ at.turn)) for other, at in others],
                 center=put(ellipsoid[1].place),
                 inertia=((inertia + inertia.T) / 2).tolist(),

@@ -15,7 +15,7 @@ from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
 from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
 from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import LIGHTEST, X_TO_Z
 
@@ -185,8 +185,8 @@ class _Reader:
                 link.drawn.append((look, where))
                 if m.geom_contype[geom] or m.geom_conaffinity[geom]:
                     link.touching.append((shape[0], where))
-        if not link.touching:
-            link.touching = [(look.shape, where) for look, where in link.drawn if look.shape is not None]
+        link.touches = bool(link.touching or not link.drawn)
+        link.touching = link.touching or seen_shapes(link)
         if link.drawn and not self.moves[body]:
             link.kind, link.solid = "static", solid_of(1.0, np.eye(3), Frame())
         return link
@@ -231,7 +231,10 @@ class _Reader:
         np.bitwise_or.at(types, m.geom_bodyid, m.geom_contype)
         np.bitwise_or.at(affinities, m.geom_bodyid, m.geom_conaffinity)
         masked = [body for body in range(1, m.nbody) if types[body] or affinities[body]]
-        if any(types[body] != 1 or affinities[body] != 1 for body in masked) and len(masked) <= MOST_MASKED:
+        has_masks = any(types[body] != 1 or affinities[body] != 1 for body in masked)
+        if has_masks and len(masked) > MOST_MASKED:
+            self.mechanism.notes.append(f"masks of contacts are left out, as more than {MOST_MASKED} bodies have them")
+        elif has_masks:
             for a in masked:
                 free = (types[a] & affinities) | (types & affinities[a])
                 pairs |= {(a, b) for b in masked if a < b and not free[b]}
@@ -266,7 +269,7 @@ class _Reader:
                 )
                 ring.drawn = [(looks.sphere(1e-3), Frame(solid.frame.place))]
                 ring.touching = [(Sphere(1e-3), Frame(solid.frame.place))]
-                ring.is_of = link.name
+                ring.touches, ring.is_of = link.touches, link.name
                 self.mechanism.links.append(ring)
         for number, joint in enumerate(joints):
             a = link.name if number == rings else f"{link.name} ring {number + 1}"

@@ -15,7 +15,7 @@ from iota._core import Box, Cylinder, Mesh, Shape, Sphere
 from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.frames import Frame, about, from_rpy, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
 
@@ -62,6 +62,10 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint) @ moved
         if name != "world":
             mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
+    has_collisions = any(link.touching for link in mechanism.links)
+    for link in mechanism.links:
+        link.touches = bool(link.touching) or not has_collisions
+        link.touching = link.touching or seen_shapes(link)
     moving = 0
     for name in order:
         joint = joint_of.get(name)
@@ -187,8 +191,6 @@ def _link(
         if found is not None:
             where = _origin(collision)
             link.touching.append((found[0], Frame(where.place, where.turn @ found[1])))
-    if not link.touching:
-        link.touching = [(look.shape, place) for look, place in link.drawn if look.shape is not None]
     return link
 
 
