@@ -142,7 +142,9 @@ def test_a_flood_neither_stops_a_world_nor_is_told_to_others(served: Served, usu
             assert during < 2.2 * RATE
             other.send("control", command=1, value=0.0)
         else:
-            assert during > 0.05 * usual  # the flood and its world share a core here with other suites
+            # A world that stands still takes none. The flood and its world share a core with other suites here: alone they
+            # take 0.25 to 1 of them, beside two compilers 0.03.
+            assert during > 0.01 * usual
         assert [card for card in other.notices if card["level"] == 2] == []
         assert memory_of(served.process) - before < MEMORY
         step = other.last["poses"]["step"]
