@@ -33,7 +33,7 @@ class Link:
 
 
 def seen_shapes(link: Link) -> list[tuple[Shape, Frame]]:
-    """Those that are drawn, as shapes to touch by."""
+    """The shapes that are drawn, to touch by."""
     return [(look.shape, place) for look, place in link.drawn if look.shape is not None]
 
 
