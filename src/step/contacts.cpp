@@ -282,14 +282,15 @@ namespace {
 /// Whether a hinge or a joint holds one at the other, or will do so when their particles have met.
 bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
   const auto [fewer, other] = model.bodies[a].count <= model.bodies[b].count ? std::pair(a, b) : std::pair(b, a);
-  const bool has_joints = ingredient::Joints::ties_any(model);
+  const bool has_joints = ingredient::Joints::ties_any(model), has_closings = model.closings.size() > 0;
   bool any = false;
   model.for_each_particle_of(fewer, [&](std::uint32_t p) {
     const model::Particle& particle = model.particles[p];
     if (any) return;
     if (model.rings[particle.ring].count > 1)
       model.for_each_in_ring(particle.ring, [&](std::uint32_t q) { any = any || model.particles[q].body == other; });
-    ingredient::Closings::visit_joined(model, p, [&](std::uint32_t body) { any = any || body == other; });
+    if (has_closings)
+      ingredient::Closings::visit_joined(model, p, [&](std::uint32_t body) { any = any || body == other; });
     // Also of a point that is no unknown, as it follows from those of its body.
     if (has_joints) any = any || ingredient::Joints::join(model, p, other);
   });

@@ -100,6 +100,13 @@ class LinkSolid:
     shape: Ellipsoid
     is_changed: bool  # the given inertia is impossible for a rigid body, or too thin
 
+    @property
+    def inertia(self) -> Array:
+        """(3, 3), kg m^2, about the center, along the axes of `frame`."""
+        squares = np.square(self.shape.size) / 20
+        moments: Array = self.mass * np.diag(squares.sum() - squares)
+        return moments
+
 
 def solid_of(mass: float, inertia: Array, at: Frame) -> LinkSolid:
     """mass: kg, above 0. inertia: (3, 3), kg m^2, about the center, along the axes of `at`. The mean squares of a body along

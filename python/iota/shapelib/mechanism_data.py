@@ -19,8 +19,9 @@ from iota.shapelib.imported import Imported
 
 @dataclass
 class Link:
-    """frame: in the world, z up. solid: None for a link that is only a reference. drawn, touching: looks, and the shapes by which it
-    touches, with their places in the link's frame. touches: False for one that is only seen. is_of: the link between two of whose joints this one is a ring."""
+    """frame: in the world, z up. solid: None for a link that is only a reference. drawn, touching: looks, and the shapes by
+    which it touches, with their places in the link's frame. touches: False for one that is only seen. is_of: the link between
+    two of whose joints this one is a ring."""
 
     name: str
     frame: Frame
@@ -107,9 +108,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         drawn = [_scaled_look(look_in(own, look, place), scale) for look, place in link.drawn]
         structure.looks[link.name] = _dress(link, drawn, len(shapes))
         turn = Y_UP @ link.frame.turn @ solid.frame.turn
-        squares = [(scale * size) ** 2 / 20 for size in solid.shape.size]
-        moments = solid.mass * np.diag([sum(squares) - square for square in squares])
-        inertia = turn @ moments @ turn.T
+        inertia = scale**2 * turn @ solid.inertia @ turn.T
         structure.bodies.append(
             RigidBody(
                 [],

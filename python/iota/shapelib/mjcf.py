@@ -238,8 +238,7 @@ class _Reader:
             for a in masked:
                 free = (types[a] & affinities) | (types & affinities[a])
                 pairs |= {(a, b) for b in masked if a < b and not free[b]}
-        ordered = sorted({(min(a, b), max(a, b)) for a, b in pairs})
-        self.mechanism.passing += [(self.names[a], self.names[b]) for a, b in ordered]
+        self.mechanism.passing += [(self.names[a], self.names[b]) for a, b in pairs]
 
     # --- joints ---------------------------------------------------------------------------------------------------
 
@@ -256,8 +255,7 @@ class _Reader:
         rings = len(joints) - 1
         solid = link.solid
         if rings:
-            inertia = solid.mass * np.diag([s * s / 20 for s in solid.shape.size])
-            inertia = np.trace(inertia) * np.eye(3) - inertia
+            inertia = solid.inertia
             share = CARDAN
             own = 1 - rings * share
             link.solid = solid_of(own * solid.mass, own * inertia, solid.frame)
