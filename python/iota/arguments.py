@@ -31,9 +31,9 @@ RAISE = dis.opmap["RAISE_VARARGS"]  # the statement
 
 def of_type(value: Any, kind: type, name: str) -> Any:
     """The value, of data from a file. Raises ValueError that names it unless it is of its kind; a tuple is a list."""
-    if isinstance(value, (list, tuple) if kind is list else kind) and not isinstance(value, bool):
+    if isinstance(value, (list, tuple) if kind is list else kind) and isinstance(value, bool) == (kind is bool):
         return value
-    words = {dict: "an object", list: "a list", str: "a text", int: "a whole number"}
+    words = {dict: "an object", list: "a list", str: "a text", int: "a whole number", bool: "true or false"}
     raise ValueError(f"{name} must be {words[kind]}, not {SHORT.repr(value)}")
 
 

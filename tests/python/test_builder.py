@@ -272,6 +272,28 @@ def test_a_body_of_several_shapes_has_them_and_the_given_inertia() -> None:
     assert "passing" not in both.to_json() or both.passing == [(1, 2)]
 
 
+def test_what_only_is_seen_is_saved_and_bad_shapes_and_pairs_are_told_in_words() -> None:
+    seen = iota.builder.Structure()
+    seen.body(shape=iota.Sphere(0.1), touches=False)
+    data = json.loads(json.dumps(seen.to_json()))
+    system = iota.System()
+    iota.builder.Structure.from_json(data).realize(system)
+    assert system.bodies[0].material == iota.Material(touches="nothing")
+
+    def told(part: dict[str, object], **more: object) -> str:
+        system = iota.System()
+        with pytest.raises(ValueError) as error:
+            iota.builder.Structure.from_json(data | {"bodies": [data["bodies"][0] | part], **more}).realize(system)
+        assert not system.bodies
+        return str(error.value)
+
+    assert "touches must be true or false, not 3" in told({"touches": 3})
+    assert "each of others must be a list, not 1" in told({"others": [1]})
+    assert "a shape, its place and its orientation, not [1]" in told({"others": [[1]]})
+    assert "passing 0 must be two bodies, not 1" in told({}, passing=[[0]])
+    assert "there is no body 'a'" in told({}, passing=[[0, "a"]])
+
+
 def test_a_body_without_a_shape_has_no_inertia_of_its_own() -> None:
     wrong = iota.builder.Structure()
     wrong.body(wrong.point((0, 0, 0)), inertia=((1, 0, 0), (0, 1, 0), (0, 0, 1)))

@@ -97,7 +97,7 @@ def _missing_bodies(structure: Contents) -> Iterator[str]:
 
     for number, pair in enumerate(structure.passing):
         for body in pair:
-            if not 0 <= body < count:
+            if body not in range(count):
                 yield f"passing {number}: there is no body {body!r}, only {count} bodies"
 
 

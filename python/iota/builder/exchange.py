@@ -68,14 +68,16 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
             try:
                 read: dict[str, Any] = {"shape": shapes.from_json(entry["shape"])} if "shape" in entry else {}
                 if "others" in entry:
-                    read["others"] = [(shapes.from_json(shape), at, turn) for shape, at, turn in entry["others"]]
+                    read["others"] = [_placed(other) for other in entry["others"]]
                 getattr(structure, name).append(kind(**entry | read))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{owner}: {error}") from None
     for name in PAIRS:
         for number, pair in enumerate(of_type(data.get(name, []), list, name)):
             if len(of_type(pair, list, f"{name} {number}")) != 2:
-                raise ValueError(f"{name} {number} must be two points, not {len(pair)}")
+                raise ValueError(
+                    f"{name} {number} must be two {'bodies' if name == 'passing' else 'points'}, not {len(pair)}"
+                )
         setattr(structure, name, [(p, q) for p, q in data.get(name, ())])
     for name in PLAIN:
         usual = getattr(structure, name)
@@ -88,6 +90,13 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
         except ValueError as error:
             raise ValueError(f"look {name!r}: {error}") from None
     return structure
+
+
+def _placed(other: Any) -> tuple[Any, Any, Any]:
+    if len(of_type(other, list, "each of others")) != 3:
+        raise ValueError(f"each of others must be a shape, its place and its orientation, not {SHORT.repr(other)}")
+    shape, place, orientation = other
+    return shapes.from_json(shape), place, orientation
 
 
 def _rows(points: Any) -> dict[str, Any]:
