@@ -2,6 +2,7 @@
 import { BufferAttribute, BufferGeometry, Color, Matrix4, Object3D, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { Hit, pickRay } from "../src/interact/picking.ts";
+import { Points } from "../src/scene/points.ts";
 import { body, bodyEntity, id, packRotation, part, visual, TestWorld } from "./test_world.ts";
 
 const link = visual(0, "link", part("capsule", [0.05, 0.1]), part("sphere", [0.06], { offset: [0.1, 0, 0] }));
@@ -168,6 +169,25 @@ describe("bodies", () => {
     expect(test.meshes().map((mesh) => mesh.count)).toEqual(members);
     test.set("body", bodyEntity(1, { name: "left arm" }), bodyEntity(0, { length: 0.3 }));
     expect(bodies.renamed).toBe(1);
+  });
+
+  it("have the same corners for the first view in any detail", () => {
+    const test = told(1);
+    const { body: view } = test.world.entities;
+    const corners = (away: number) => {
+      view.eye.set(away, 0, 0);
+      for (let frame = 0; frame < 10; frame++) {
+        view.update(0.016, frame * 16);
+        view.draw(0.016);
+      }
+      const points = new Points();
+      view.addCorners(points, 0);
+      return { vertices: test.meshes()[0].geometry.getAttribute("position").count, places: points.xyz.slice(0, 3 * points.count) };
+    };
+    const [near, far] = [corners(0.5), corners(1000)];
+    expect(near.vertices).toBeGreaterThan(far.vertices);
+    expect(near.places).toEqual(far.places);
+    expect(Math.max(...near.places)).toBeCloseTo(0.16, 3);
   });
 
   it("wait for a visual that comes after them", () => {

@@ -5,6 +5,7 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { parseShape, shapeDistance, shapeReach, makeGeometry } from "../src/scene/shapes/shape.ts";
+import { boxOfGeometry } from "../src/scene/points.ts";
 import { shapeList } from "../src/scene/shapes/shape_list.ts";
 import type { Detail } from "../src/scene/shapes/kind.ts";
 
@@ -46,6 +47,26 @@ describe.each(samples.map((sample) => [`${sample.kind} of ${sample.sizes.join(" 
   it("holds all of its points within its reach", () => {
     for (const point of sample.points) {
       if (shapeDistance(shape, ...point) <= 0) expect(Math.hypot(...point)).toBeLessThanOrEqual(shapeReach(shape) * (1 + 1e-6));
+    }
+  });
+
+  it("fills its box, whatever the detail", () => {
+    const { low, high } = shape.kind.box(shape);
+    if (sample.kind === "half_space") {
+      expect(low).toEqual([-Infinity, -Infinity, -Infinity]);
+      return;
+    }
+    for (const point of sample.points) {
+      if (shapeDistance(shape, ...point) > 0) continue;
+      point.forEach((at, axis) => {
+        expect(at).toBeGreaterThanOrEqual(low[axis] - 1e-6 * sample.scale);
+        expect(at).toBeLessThanOrEqual(high[axis] + 1e-6 * sample.scale);
+      });
+    }
+    const drawn = boxOfGeometry(makeGeometry(shape, "fine"));
+    for (const axis of [0, 1, 2]) {
+      expect(Math.abs(drawn.low[axis] - low[axis]) / sample.scale).toBeLessThan(0.04); // a cone's rim has a bevel
+      expect(Math.abs(drawn.high[axis] - high[axis]) / sample.scale).toBeLessThan(0.04); // a cone's rim has a bevel
     }
   });
 

@@ -2,6 +2,7 @@
 // Sample points of the drawn scene, for everything that depends on its size: camera, light, ground, fog.
 
 import { Vector3, type BufferGeometry, type Matrix4, type Quaternion } from "three";
+import type { Box } from "./shapes/kind.ts";
 
 /** Largest number of points that stand for one thing. */
 const mostOfOne = 400;
@@ -69,14 +70,19 @@ export interface Bounds {
   readonly lowest: number;
 }
 
-/** Adds the transformed corners of a geometry's box. */
-export function addCorners(points: Points, geometry: BufferGeometry, { elements: m }: Matrix4): void {
+/** The box of a geometry along its axes. */
+export function boxOfGeometry(geometry: BufferGeometry): Box {
   if (geometry.boundingBox === null) geometry.computeBoundingBox();
   const { min, max } = geometry.boundingBox!;
+  return { low: min.toArray(), high: max.toArray() };
+}
+
+/** Adds the transformed corners of a box. */
+export function addCorners(points: Points, { low, high }: Box, { elements: m }: Matrix4): void {
   for (let corner = 0; corner < 8; corner++) {
-    const x = corner & 1 ? max.x : min.x;
-    const y = corner & 2 ? max.y : min.y;
-    const z = corner & 4 ? max.z : min.z;
+    const x = (corner & 1 ? high : low)[0];
+    const y = (corner & 2 ? high : low)[1];
+    const z = (corner & 4 ? high : low)[2];
     points.add(m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13], m[2] * x + m[6] * y + m[10] * z + m[14]);
   }
 }

@@ -10,7 +10,7 @@ import type { DrawnPart, Outline } from "../outline.ts";
 import type { Cover, Pickable } from "../pickable.ts";
 import { addCorners, type Points } from "../points.ts";
 import { grown, mostSlots, type PoseBuffer } from "../pose_buffer.ts";
-import type { Detail } from "../shapes/kind.ts";
+import type { Box, Detail } from "../shapes/kind.ts";
 import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, wordOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
 import type { Wall } from "../walls.ts";
 import type { EntityView } from "./entity.ts";
@@ -69,6 +69,11 @@ class Batch {
   /** Radius about the part's own middle, m. */
   get reach(): number {
     return shapeReach(this.shape_);
+  }
+
+  /** Of the shape for which the geometry is made; a longer body's part is stretched by its matrix. */
+  get box(): Box {
+    return this.shape_.kind.box(this.shape_);
   }
 
   get placements(): Float32Array {
@@ -369,9 +374,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     }
   }
 
-  /** Adds the corners of a drawn body. */
+  /** Adds the corners of a drawn body, whatever the detail in which it is drawn now: the first view depends on them. */
   addCorners(points: Points, slot: number): void {
-    for (const instance of this.bodies_.get(slot)?.instances ?? noInstances) addCorners(points, instance.mesh.geometry, this.placed_(slot, instance));
+    for (const instance of this.bodies_.get(slot)?.instances ?? noInstances) addCorners(points, instance.batch.box, this.placed_(slot, instance));
   }
 
   /** The meshes of triangles of bodies that stay where they are; a place is only valid until the next one. */

@@ -6,7 +6,7 @@ import type { Part } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import { readPart } from "../parts.ts";
-import { addCorners, type Points } from "../points.ts";
+import { addCorners, boxOfGeometry, type Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeGeometry } from "../shapes/shape.ts";
 import type { Entity, EntityView } from "./entity.ts";
@@ -72,7 +72,7 @@ export abstract class Placed<Record extends Entity & { readonly part: Part }> im
     for (const { entity, pool, index } of this.shown_.values()) {
       if (this.isAttached_(entity)) continue;
       pool.mesh.getMatrixAt(index, this.matrix_);
-      addCorners(points, pool.mesh.geometry, this.matrix_);
+      addCorners(points, boxOfGeometry(pool.mesh.geometry), this.matrix_);
     }
   }
 

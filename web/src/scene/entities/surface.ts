@@ -11,7 +11,7 @@ import { casterLayer } from "../contact_shadow.ts";
 import { materialOf } from "../materials.ts";
 import { opacityOf, textOf } from "../parts.ts";
 import type { Cover, CoverHit } from "../pickable.ts";
-import { addCorners, type Points } from "../points.ts";
+import { addCorners, boxOfGeometry, type Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { drawTriangles } from "../shapes/mesh.ts";
 import type { EntityView } from "./entity.ts";
@@ -89,7 +89,7 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
     for (const { entity: { at, bodies, points: own }, bends, mesh } of this.surfaces_.values()) {
       if (!bends && moves(at) && this.isFixed_(at.body)) {
         mesh.updateMatrixWorld();
-        addCorners(points, mesh.geometry, mesh.matrixWorld);
+        addCorners(points, boxOfGeometry(mesh.geometry), mesh.matrixWorld);
         continue;
       }
       if (bends ? bodies.some((body) => body !== NO_BODY) : moves(at)) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { BoxGeometry, BufferAttribute, BufferGeometry } from "three";
 import { RoundedBoxGeometry } from "three/examples/jsm/geometries/RoundedBoxGeometry.js";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 import { bevel } from "./sweep.ts";
 
 /** Texture coordinates of a box by meters, u along its longest side: grain and brushing run along a beam. */
@@ -93,6 +93,7 @@ export const box: Kind = {
   reach({ sizes: [x, y, z, rounding] }) {
     return Math.hypot(x / 2 - rounding, y / 2 - rounding, z / 2 - rounding) + rounding;
   },
+  box: ({ sizes: [x, y, z] }) => boxAbout(x / 2, y / 2, z / 2),
   draw({ sizes: [x, y, z, rounding] }, detail) {
     const least = Math.min(x, y, z);
     const round = Math.max(rounding, bevel * least);

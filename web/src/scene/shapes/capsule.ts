@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { layRope } from "./rope.ts";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 import { arc, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
 /** A cylinder along x with half balls at its ends. */
@@ -10,6 +10,7 @@ export const capsule: Kind = {
   word: () => "rod",
   distance: ({ sizes }, x, y, z) => Math.hypot(Math.max(0, Math.abs(x) - sizes[1] / 2), y, z) - sizes[0],
   reach: ({ sizes: [radius, length] }) => length / 2 + radius,
+  box: ({ sizes: [radius, length] }) => boxAbout(length / 2 + radius, radius, radius),
   draw({ sizes: [radius, length] }, detail, material) {
     const steps = { fine: 6, coarse: 2, tiny: 1 }[detail];
     const profile: ProfilePoint[] = [];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 import { arc, bevel, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
 /** Along x: its base at -length/2, its tip at +length/2. In a half plane through the axis it is a triangle. */
@@ -20,6 +20,7 @@ export const cone: Kind = {
     return down < slant ? side : Math.hypot(base, away - radius);
   },
   reach: ({ sizes: [radius, length] }) => Math.hypot(length / 2, radius),
+  box: ({ sizes: [radius, length] }) => boxAbout(length / 2, radius, radius),
   draw({ sizes: [radius, length] }, detail) {
     const slant = Math.hypot(length, radius);
     const normal = { nx: radius / slant, nr: length / slant };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { layRope } from "./rope.ts";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 import { arc, bevel, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
 /** Along x, with flat ends; its edges rounded by arcs of `rounding`. */
@@ -14,6 +14,7 @@ export const cylinder: Kind = {
     return Math.min(Math.max(side, end), 0) + Math.hypot(Math.max(side, 0), Math.max(end, 0)) - sizes[2];
   },
   reach: ({ sizes: [radius, length] }) => Math.hypot(length / 2, radius),
+  box: ({ sizes: [radius, length] }) => boxAbout(length / 2, radius, radius),
   draw({ sizes: [radius, length, rounding] }, detail, material) {
     const least = Math.min(2 * radius, length);
     const edge = Math.max(rounding, bevel * least);

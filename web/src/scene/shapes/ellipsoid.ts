@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { SphereGeometry } from "three";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 
 const half = [0, 0, 0];
 const at = [0, 0, 0];
@@ -59,6 +59,7 @@ export const ellipsoid: Kind = {
   sizes: ["size_x", "size_y", "size_z"],
   distance: ({ sizes }, x, y, z) => distance(sizes, x, y, z),
   reach: ({ sizes }) => Math.max(...sizes) / 2,
+  box: ({ sizes: [x, y, z] }) => boxAbout(x / 2, y / 2, z / 2),
   draw({ sizes: [x, y, z] }, detail) {
     const [around, along] = { fine: [32, 20], coarse: [14, 8], tiny: [8, 5] }[detail];
     return new SphereGeometry(0.5, around, along).scale(x, y, z);

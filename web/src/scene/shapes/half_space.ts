@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { PlaneGeometry, Quaternion, Vector3 } from "three";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 
 /** Edge of the drawn square of the plane, m: its end is hidden by fog. */
 const drawn = 1000;
@@ -12,6 +12,7 @@ export const halfSpace: Kind = {
   word: () => "ground",
   distance: ({ sizes: n }, x, y, z) => (n[0] * x + n[1] * y + n[2] * z) / Math.hypot(n[0], n[1], n[2]),
   reach: () => Infinity,
+  box: () => boxAbout(Infinity, Infinity, Infinity),
   draw({ sizes: [x, y, z] }) {
     const geometry = new PlaneGeometry(drawn, drawn);
     const uv = geometry.getAttribute("uv");

@@ -15,6 +15,17 @@ export interface Solid {
   readonly mesh: MeshData | null;
 }
 
+/** The least and largest coordinates. */
+export interface Box {
+  readonly low: readonly number[];
+  readonly high: readonly number[];
+}
+
+/** A box with its middle at the origin, by half its sizes. */
+export function boxAbout(x: number, y: number, z: number): Box {
+  return { low: [-x, -y, -z], high: [x, y, z] };
+}
+
 /** One kind of shape; the engine has a header of the same name in src/shape. */
 export interface Kind {
   readonly name: string;
@@ -26,6 +37,8 @@ export interface Kind {
   distance(solid: Solid, x: number, y: number, z: number): number;
   /** Radius of the smallest enclosing sphere about the origin. */
   reach(solid: Solid): number;
+  /** The smallest enclosing box along the axes; drawn triangles may be smaller, by their detail. */
+  box(solid: Solid): Box;
   /** Triangles, with texture coordinates; the caller disposes of them. */
   draw(solid: Solid, detail: Detail, material: string): BufferGeometry;
 }

@@ -3,7 +3,7 @@
 
 import { BufferAttribute, BufferGeometry } from "three";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 
 /** A closed surface; from outside each triangle is counter-clockwise. */
 export interface MeshData {
@@ -146,5 +146,6 @@ export const mesh: Kind = {
   word: () => "part",
   distance: ({ mesh: data }, x, y, z) => (data === null ? Infinity : meshDistance(data, x, y, z)),
   reach: ({ mesh: data }) => (data === null ? 0 : meshReach(data)),
+  box: ({ mesh: data }) => data ?? boxAbout(0, 0, 0),
   draw: ({ mesh: data }) => (data === null ? new BufferGeometry() : drawTriangles(data.positions, data.triangles)),
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Kind } from "./kind.ts";
+import { boxAbout, type Kind } from "./kind.ts";
 import { sweep } from "./sweep.ts";
 
 /** A ring in the x-y plane, or with `stretch` the stadium of a chain link: two half circles and two straight sides. */
@@ -12,6 +12,7 @@ export const torus: Kind = {
     return Math.hypot(Math.hypot(beyond, y) - sizes[0], z) - sizes[1];
   },
   reach: ({ sizes: [radius, tube, stretch] }) => stretch / 2 + radius + tube,
+  box: ({ sizes: [radius, tube, stretch] }) => boxAbout(stretch / 2 + radius + tube, radius + tube, tube),
   draw({ sizes: [radius, tube, stretch] }, detail) {
     const bends = detail === "fine" ? 20 : 6;
     const columns = detail === "fine" ? 18 : 7;
