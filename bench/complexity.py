@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What complexity management gains, and the error that is seen: the figures of docs/complexity.md.
 
-    python bench/complexity.py [gain | budget | walk | tour | control]
+    python bench/complexity.py [gain | budget | walk | tour | control | pace]
 
 Times are processor times. The error is the angle at which a viewer 10 m away sees a point beside its place in the full
 simulation from the same state, over 0.5 s.
@@ -18,6 +18,9 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "python"))
+from page_client import PageClient
 
 import iota
 from iota.studies import cradle_contact, crowd, museum, shoal, weather
@@ -384,6 +387,30 @@ def control(count: int = 10_000) -> None:
     )
 
 
+def pace(count: int = 1500, seconds: int = 12) -> None:
+    """How near a served world without a budget comes to real time, as a page shows it, with and without a budget of its own."""
+    for may_give in (False, True):
+        world = iota.World(iota.System(), ground=None)
+        world.camera = iota.Camera(position=(0, 1, 4), target=(0, 0, 0))
+        for number in range(count):
+            at = iota.Vec3(5.5 * (number % 20 - 9.5), 0.01 * (number % 7), -3.0 * (number // 20))
+            iota.builder.chain(links=8, length=2.4, top=at, direction=(1.0, -0.1 * (number % 9), 0.0)).realize(
+                world.system
+            )
+        if not may_give:
+            world.levels.off()
+        reached: list[float] = []
+        with PageClient(world.start(port=0)):
+            for _ in range(2 * seconds):
+                began, at_first = time.perf_counter(), world.call(lambda world=world: world.system.time)
+                time.sleep(0.5)
+                simulated = world.call(lambda world=world: world.system.time) - at_first
+                reached.append(simulated / (time.perf_counter() - began))
+            told = world.call(lambda world=world: str(world.levels))
+        world.stop()
+        print(f"of real time, each half second: {' '.join(f'{share:.2f}' for share in reached)}; {told}", flush=True)
+
+
 def main() -> None:
     wanted = sys.argv[1] if len(sys.argv) > 1 else "gain"
     if wanted == "gain":
@@ -396,6 +423,8 @@ def main() -> None:
         tour(*map(int, sys.argv[2:4]))
     elif wanted == "control":
         control()
+    elif wanted == "pace":
+        pace(*map(int, sys.argv[2:4]))
 
 
 if __name__ == "__main__":

@@ -4,17 +4,20 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from page_client import PageClient
 
 import iota
 from iota.studies import crowd
 from iota.world import levels
-from iota.world.levels import Level, Managed
+from iota.world.clients import Client
+from iota.world.levels import OWN_REST, Level, Managed
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
 FAR = 200.0  # m
@@ -157,12 +160,32 @@ def test_what_is_pinned_or_has_a_significance_of_its_own_is_kept(made: tuple[iot
     assert system.validate() == []
 
 
+def test_what_the_script_says_of_one_thing_leaves_the_others_managed(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    world.levels.pin(roots[3])
+    world.levels.manage(roots[4].articulate, levels=["full", "1/4"])
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    assert [root.stride for root in roots[1:]] == [0, 0, 1, 4, 0]
+    late = world.levels.manage(roots[5].articulate, levels=["full", "1/8"])  # it came under management by itself
+    with pytest.raises(ValueError, match="is managed already"):
+        world.levels.manage(roots[5])
+    run(world, 60)
+    assert late.level.name == "1/8" and len(world.levels.things) == 6
+    world.levels.off()
+    assert [root.stride for root in roots] == [1] * 6
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    assert [root.stride for root in roots[1:]] == [0, 0, 1, 4, 8], "what was said is known after `off`"
+    assert world.system.validate() == []
+
+
 def test_a_thing_of_several_articulates_has_one_level(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     thing = world.levels.manage([roots[3], roots[4]], name="two chains")
     assert len(thing.bodies) == 10 and all(level.name != "stiff" for level in thing.levels)
     world.levels.budget_ms = LITTLE
-    run(world, 60)
+    run(world, 150)
     assert thing.level.name == "frozen" and roots[3].stride == roots[4].stride == 0
     roots[4].articulate.bodies[-1].velocity = (0, 0, 1)
     for _ in range(12):
@@ -170,7 +193,7 @@ def test_a_thing_of_several_articulates_has_one_level(made: tuple[iota.World, li
         if thing.level.name == "full":
             break
     assert roots[3].stride == roots[4].stride == 1, "an edit of one of them"
-    assert world.levels.changes[-1].reason == "touched" and world.levels.changes[-1].thing == "two chains"
+    assert [change.reason for change in world.levels.changes if change.thing == "two chains"][-1] == "touched"
     roots[3].destroy()
     world.levels.budget_ms = PLENTY
     run(world, 60)
@@ -341,6 +364,54 @@ def test_a_level_whose_function_raises_is_told_and_not_tried_again(
     run(world, 80)
     assert thing.is_pinned
     assert capsys.readouterr().err.count("RuntimeError: no such model") == 1
+
+
+def test_a_world_that_is_too_slow_reduces_by_itself_what_nobody_sees(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    levels, slow, enough = world.levels, 0.5, 1e4
+    levels._keep_pace(slow, LITTLE)
+    run(world, 10)
+    assert levels.budget_ms is None, "nobody looks"
+    world._state.clients.by_id[1] = Client(1)
+    levels.pin(roots[5])
+    levels._keep_pace(slow, LITTLE)
+    assert "to keep up with real time" in str(levels)
+    run(world, 200)
+    at = [thing.level.name for thing in sorted(levels.things, key=lambda thing: thing.root.slot)]
+    assert at == ["full", "1/8", "1/8", "frozen", "frozen", "full"], "2, 22, 42, ... m away, the last one pinned"
+    levels.viewers = lambda: [(0, 0, -20.0 * 3 + 20)]  # one of them comes into sight
+    run(world, 60)
+    assert roots[3].stride == 8
+    for _ in range(3):
+        levels._keep_pace(1.0, enough)
+        run(world, 60)
+    assert [root.stride for root in roots] == [1] * 6
+    for _ in range(OWN_REST + 2):
+        levels._keep_pace(1.0, enough)
+    assert levels.budget_ms is None
+    levels._keep_pace(slow, LITTLE)
+    assert levels.budget_ms is not None
+    levels.off()
+    levels._keep_pace(slow, LITTLE)
+    assert levels.budget_ms is None, "this is for good"
+    levels.budget_ms = PLENTY
+    levels._keep_pace(slow, LITTLE)
+    assert levels.budget_ms == PLENTY
+    assert world.system.validate() == []
+
+
+def test_a_served_world_gives_itself_a_budget_while_a_page_shows_it(run_world: Callable[[iota.World], str]) -> None:
+    world = iota.World(iota.System(), ground=None, dt=1e-5)  # no machine takes these steps in time
+    chain(world.system, (0, 0, 0))
+    url = run_world(world)
+    time.sleep(0.3)
+    assert world.levels.budget_ms is None
+    with PageClient(url) as page:
+        page.wait_for(lambda: world.levels.budget_ms is not None)
+    end = time.monotonic() + 10
+    while world.levels.budget_ms is not None and time.monotonic() < end:
+        time.sleep(0.01)
+    assert world.levels.budget_ms is None
 
 
 @pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf")])
@@ -544,7 +615,7 @@ def test_an_undo_inside_of_a_change_leaves_nothing_reduced_that_counts_as_full(
     thing = world.levels.manage(roots[5].articulate, levels=["full", "1/8"], on_level=undo)
     other = world.levels.manage(roots[4].articulate, levels=["full", "1/8"])
     world.levels.budget_ms = LITTLE
-    run(world, 20)
+    run(world, 60)
     with world.system.edit():
         roots[3].particles[0].release()  # to be undone
     run(world, 3)
@@ -564,7 +635,7 @@ def test_what_an_undo_brings_back_is_managed_again(made: tuple[iota.World, list[
     thing = world.levels.manage(roots[5].articulate, levels=["full", "1/8"])
     world.levels.manage(roots[0].articulate)
     world.levels.budget_ms = LITTLE
-    run(world, 20)
+    run(world, 60)
     assert roots[5].stride == 8
     with world.system.edit():
         for body in roots[5].articulate.bodies:

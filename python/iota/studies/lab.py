@@ -30,7 +30,7 @@ def build() -> iota.World:
     cradle.add_actions(world, cradle.Cradle(world, CRADLE), on_lift=story.touch)
     world.camera = VIEWS[0]
     world.levels.manage(blocks.axle.a, levels=("full", "frozen"), name="ladder")
-    world.levels.budget_ms = 4.0  # the cradle costs little, and its script moves it in each step
+    world.levels.budget_ms = 4.0
 
     @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")
     def next_view() -> None:

@@ -55,6 +55,10 @@ EARLY, LATE = 1.1, 0.9  # of the sight: nearer, it begins to be found; nearer, i
 GONE = 1000  # things that are remembered after their end
 JOINED = "joined"  # the reason of a change: two things have become one
 LEAST_SLACK = 0.25  # m: so far viewers go at least before a thing is looked at again
+# The budget that a world gives itself: when it begins, its share of the time that a step has, and after how many frames without need it ends.
+TOO_SLOW, OWN_SHARE, OWN_REST = 0.95, 0.8, 600
+LEAST_SHARE = 0.5  # of a step's time that it computes at least; less is a measurement that failed
+UNSEEN = 1 / SIGHT  # rad, rad/s: what is smaller, slower and out of sight may stand still without anybody's noticing it
 
 
 @dataclass(frozen=True)
@@ -152,6 +156,7 @@ class Managed:
     significance: Callable[[Managed], float] | None = None
     on_level: Callable[[Managed, Level], None] | None = None
     is_pinned: bool = False
+    is_chosen: bool = False  # by a call of `manage`
     is_jointed: bool = field(default=False, repr=False)  # joints, bonds or angle springs hold it
     index: int = field(default=0, repr=False)
     _stand_in: StandIn | None = field(default=None, repr=False)
@@ -291,7 +296,8 @@ class Managed:
 
 class Levels(Part):
     """Manages complexity: `world.levels.budget_ms` is the processor time that a step may take; what matters least is simulated less,
-    until it does. Without a budget it does nothing and costs nothing.
+    until it does. A world without a budget that is too slow for real time, and at which somebody looks, gives itself one: see
+    `budget_ms`. Until then this does nothing and costs nothing.
 
         world.levels.budget_ms = 4
         world.levels.viewers = lambda: [walker.position]
@@ -305,6 +311,10 @@ class Levels(Part):
         self._system, self._scene, self._clients, self._guard = system, scene, clients, guard
         self._costs = costs
         self._budget: float | None = None
+        self._may_give = True  # the world may give itself a budget
+        self._is_own = False  # it has
+        self._rest = 0  # frames in which its own budget reduced nothing
+        self._wall_ms = 0.0
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
@@ -315,12 +325,12 @@ class Levels(Part):
         self._version = -1  # of the structure after the latest changes of levels, which make and end no ties
         self._by_root: dict[Body, Managed] = {}  # empty: as of no time
         self._things: list[Managed] = []
+        self._names: set[str] = set()  # theirs, and of some that were
         self._parked: list[Managed] = []  # that were managed until `off`
         self._gone: deque[Managed] = deque(maxlen=GONE)  # destroyed or joined: an undo may bring them back
         self._is_restored = False  # a function of the script has made an undo or a reset within a change
         self._arrays = _Arrays(system)
         self._is_old = False
-        self._manages_all = False
         self._count, self._looked_at = -1, -HOLD  # articulates, and the step in which they were counted
         self._steps = 0
         self._expected_step: int | None = None
@@ -338,15 +348,17 @@ class Levels(Part):
 
     @property
     def budget_ms(self) -> float | None:
-        """Processor time that a step may take, ms; None: all is full. Without a call of `manage`, all articulates are
-        managed. Raises ValueError for numbers that are not above 0."""
+        """Processor time that a step may take, ms; None: all is full. Raises ValueError for numbers that are not above 0.
+
+        A world without a budget that falls behind real time while somebody looks at it gives itself one, until it keeps up again
+        in full. Of what is in sight it reduces only how often it is simulated, to an eighth at most; what is frozen then is small and
+        slow and out of sight. `off()`, or None, forbids it."""
         return self._budget
 
     @budget_ms.setter
     def budget_ms(self, value: float | None) -> None:
         if value is None:
-            if self._budget is not None:
-                self.off()
+            self.off()
             return
         if not is_number(value):
             raise TypeError(f"budget_ms must be a number of ms or None, not {SHORT.repr(value)}")
@@ -354,8 +366,13 @@ class Levels(Part):
             raise ValueError(f"budget_ms must be above 0, got {value:g}; None turns management off")
         if not isinstance(self._system, System):
             raise TypeError("complexity management needs a System; this world has a simulator of its own")
-        self._budget = float(value)
+        self._give(float(value), is_own=False)
+
+    def _give(self, ms: float, is_own: bool) -> None:
+        self._budget, self._is_own, self._rest = ms, is_own, 0
+        self._arrays.is_mild = is_own
         self._parked = []
+        self._is_old = True
 
     @property
     def reach(self) -> float:
@@ -409,8 +426,8 @@ class Levels(Part):
         on_level: Callable[[Managed, Level], None] | None = None,
         name: str = "",
     ) -> Managed:
-        """Manages a thing: an articulate, or several that belong together, as the parts of an engine do, which joints hold: then all
-        bodies that are given, and what is hinged to them, have one level. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
+        """Says how a thing is managed: an articulate, or several that belong together, as the parts of an engine do, which joints hold: then all
+        bodies that are given, and what is hinged to them, have one level. Without a call each articulate is a thing. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
         "1/8", "stiff", "frozen") or `Level`s of one's own; None: all that it can have. significance: a function that returns a
         number, instead of visual angle times speed (rad^2/s) for the most interested viewer. on_level: is told each change.
 
@@ -435,18 +452,22 @@ class Levels(Part):
         _refuse_no_function("on_level", on_level)
         if not isinstance(name, str):
             raise TypeError(f"the name of a thing must be a text, not {SHORT.repr(name)}")
-        for root in roots:
-            if (managed := self._find(root)) is not None:
-                raise ValueError(f"{root!r} is managed already, as {managed.name!r}")
+        before = list(dict.fromkeys(managed for root in roots if (managed := self._find(root)) is not None))
+        if chosen_before := next((each for each in before if each.is_chosen), None):
+            raise ValueError(f"{chosen_before.root!r} is managed already, as {chosen_before.name!r}")
         if not any(body.particles for body in members):
             raise ValueError(f"{bodies[0]!r} has no particles, so it never moves, and costs nothing")
         is_jointed = self._has_joints(members)
         can_be_stiff = len(roots) == 1 and len(members) > 1 and not is_jointed
         chosen = None if levels is None else self._levels(levels, can_be_stiff)
-        made = self._add(roots[0], members, can_be_stiff, name, tuple(roots[1:]))
+        for managed in before:
+            self._release(managed)
+            self._things.remove(managed)
+        made = self._add(roots[0], members, can_be_stiff, name, self._lined(), tuple(roots[1:]))
         made.levels = chosen or made.levels
         made.is_jointed = is_jointed
         made.significance, made.on_level = significance, on_level
+        made.is_chosen, made.is_pinned = True, any(each.is_pinned for each in before)
         return made
 
     def pin(self, thing: Body | Articulate | Managed) -> None:
@@ -454,27 +475,53 @@ class Levels(Part):
         managed = thing if isinstance(thing, Managed) else self._find(thing)
         if managed is None:
             managed = self.manage(thing)  # type: ignore[arg-type]
+            managed.is_chosen = False
         managed.is_pinned = True
         if managed.index:
             self._change(managed, 0, 0.0, 0.0, "pinned")
         self._is_old = True
 
     def off(self) -> None:
-        """All is full again, and stays so."""
-        self._budget = None
+        """All is full again, and stays so, also where the world cannot keep up with real time. Another budget finds what `manage` and
+        `pin` have said."""
+        self._may_give = False
+        if self._budget is not None:
+            self._be_full()
+
+    def _be_full(self) -> None:
+        self._budget, self._is_own = None, False
         for thing in self._things:
-            if thing.index and thing.root.alive:
-                self._change(thing, 0, 0.0, 0.0, "off")
+            self._release(thing)
         for thing in self._things:  # a function of the script may have undone that
             thing._be_full()
         self._parked = [*self._things, *self._gone]
         self._coming.clear()
-        self._things.clear()
+        self._things = [thing for thing in self._things if thing.is_chosen or thing.is_pinned]
+        self._names = {thing.name for thing in self._things}
         self._gone.clear()
-        self._manages_all = False
         self._count = -1
         self._expected_step = self._system.step_count
         self._is_old = True
+
+    def _release(self, thing: Managed) -> None:
+        if thing.index and thing.root.alive:
+            self._change(thing, 0, 0.0, 0.0, "off")
+
+    def _keep_pace(self, reached: float, ms: float) -> None:
+        """With each frame of a world that is served in real time. reached: share of that; ms: real time that a step has. Gives the world
+        a budget of its own if it is too slow, and takes it back when nothing had to be reduced for a while."""
+        is_watched = bool(self._clients.by_id)
+        if self._is_own:
+            # On several cores a step has more processor time than time.
+            cores = max(self._ms / self._wall_ms, LEAST_SHARE) if self._wall_ms > 0 else 1.0
+            self._budget = OWN_SHARE * ms * cores
+            needs = reached < TOO_SLOW or any(thing.index for thing in self._things)
+            self._rest = 0 if needs else self._rest + 1
+            if self._rest > OWN_REST or not is_watched:
+                self._be_full()
+        elif self._may_give and self._budget is None and reached < TOO_SLOW and is_watched:
+            if isinstance(self._system, System):
+                self._give(OWN_SHARE * ms, is_own=True)
 
     @property
     def things(self) -> list[Managed]:
@@ -509,7 +556,8 @@ class Levels(Part):
             return "no budget: all is full"
         filled = min(10, round(10 * self._ms / self._budget))
         counts = ", ".join(f"{count} {name}" for name, count in self.counts().items())
-        return f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:g} ms: {counts}"
+        whose = " to keep up with real time" if self._is_own else ""
+        return f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:.3g} ms{whose}: {counts}"
 
     def _shown(self) -> tuple[list[tuple[str, int, list[int]]], list[str]]:
         """For pages: each level with the number of its things and slots of their bodies, the best first, and the latest
@@ -539,7 +587,7 @@ class Levels(Part):
 
     def _step(self, dt: float) -> StepReport:
         """A step of the system, within the budget."""
-        began = time.process_time()
+        began, at = time.process_time(), time.perf_counter()
         try:
             with self._costs.of("levels"):
                 self._plan()
@@ -553,6 +601,8 @@ class Levels(Part):
             return self._system.step(dt)
         finally:
             ended = time.process_time()
+            wall_ms = 1e3 * (time.perf_counter() - at)
+            self._wall_ms = wall_ms if self._wall_ms == 0 else self._wall_ms + SMOOTH * (wall_ms - self._wall_ms)
             self._expected_step = self._system.step_count
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
             self._take_ms(1e3 * (ended - began))
@@ -594,15 +644,11 @@ class Levels(Part):
         if self._is_restored or (self._expected_step != self._system.step_count and self._expected_step is not None):
             self._is_restored = False
             self._resync()
-        if not self._things and not self._manages_all:
-            self._manages_all = True
-            self._looked_at = -HOLD
         count = self._system.articulate_count
         if count != self._count and self._steps - self._looked_at >= HOLD:
             self._looked_at, self._count = self._steps, count
             self._is_old = True
-            if self._manages_all:
-                self._manage_all()
+            self._manage_all()
         is_new = self._is_old or self._steps == 0
         if self._is_old:
             self._things = self._living()
@@ -633,6 +679,11 @@ class Levels(Part):
                 arrays.look(rows, part, seen, self._reach, self._sight)
             for near in np.nonzero(arrays.near[rows] & (arrays.level[rows] > 0))[0]:
                 self._change(self._things[part + arrays.slices * int(near)], 0, 1.0, 0.0, "in reach")
+            for seen_again in np.nonzero(arrays.level[rows] > arrays.lowest[rows])[0]:
+                row = part + arrays.slices * int(seen_again)
+                self._change(
+                    self._things[row], int(arrays.lowest[row]), float(arrays.significance[row]), 0.0, "in sight"
+                )
         self._free_held()
         self._follow_engine()
         for row, thing in arrays.own:
@@ -655,7 +706,7 @@ class Levels(Part):
         waited = self._steps - arrays.changed
         if self._ms > self._full * budget:
             hold = HOLD_URGENT if is_urgent else HOLD
-            free = (waited >= hold) & ~arrays.near & ~arrays.pinned & (arrays.level < arrays.last)
+            free = (waited >= hold) & ~arrays.near & ~arrays.pinned & (arrays.level < arrays.lowest)
             self._reduce(
                 np.nonzero(free)[0],
                 self._ms - (self._full - AIM) * budget,
@@ -933,7 +984,7 @@ class Levels(Part):
 
     def _manage_all(self) -> None:
         """Also what was made, or parted, since this was called last."""
-        jointed = self._jointed()
+        jointed, lined = self._jointed(), self._lined()
         known = {root.articulate.number for thing in self._things if thing._lives() for root in thing._roots}
         for articulate in self._system.articulates:
             if articulate.number in known:
@@ -942,12 +993,19 @@ class Levels(Part):
             moving = [body for body in members if body.kind in ("dynamic", "resting")]
             if moving and not moving[0].is_spark and any(len(body.particles) > 1 for body in moving):
                 is_jointed = any(body in jointed for body in members)
-                made = self._add(moving[0], members, len(members) > 1 and not is_jointed, "")
+                made = self._add(moving[0], members, len(members) > 1 and not is_jointed, "", lined)
                 made.is_jointed = is_jointed
 
     def _add(
-        self, root: Body, members: list[Body], can_be_stiff: bool, name: str, others: tuple[Body, ...] = ()
+        self,
+        root: Body,
+        members: list[Body],
+        can_be_stiff: bool,
+        name: str,
+        lined: set[Body],
+        others: tuple[Body, ...] = (),
     ) -> Managed:
+        """lined: bodies with lines of their own."""
         size, middle, extent = _measured(members)
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
         # A thing that hangs saves little by stiffness, and loses its swing: strides of 8 cost less.
@@ -956,7 +1014,6 @@ class Levels(Part):
         levels = tuple(stiff if level is STIFF else level for level in STANDARD if has_stiff or level is not STIFF)
         lines: list[tuple[Particle, Particle]] = []
         if can_be_stiff:  # as they are drawn now
-            lined = {p.body for p, _ in self._system.cosmetic_lines}
             plain = [body for body in members if not body.solids and body not in lined]
             lines = [pair for body in plain for pair in pairwise(body.particles)]
         made = Managed(
@@ -970,6 +1027,7 @@ class Levels(Part):
             _lines=lines,
         )
         made._members = made.bodies
+        self._names.add(made.name)
         self._things.append(made)
         self._is_old = True
         return made
@@ -983,9 +1041,8 @@ class Levels(Part):
         name = next((body.name for body in (root, *members) if body.name), "")
         if not name:
             return f"{kind} {root.slot}" if len(members) == 1 else f"{kind} from {_word_for(root)} {root.slot}"
-        if any(f"{name!r}" in thing.name for thing in self._things):
-            name = f"{name} {root.slot}"
-        return f"{kind} {name!r}"
+        called = f"{kind} {name!r}"
+        return called if called not in self._names else f"{kind} {f'{name} {root.slot}'!r}"
 
     def _levels(self, given: Sequence[str | Level], can_be_stiff: bool) -> tuple[Level, ...]:
         levels: list[Level] = []
@@ -1007,6 +1064,9 @@ class Levels(Part):
                 "a thing can be stiff if it is one articulate of several bodies, held together by hinges alone: joints would end when its bodies become one"
             )
         return tuple(levels)
+
+    def _lined(self) -> set[Body]:
+        return {p.body for p, _ in self._system.cosmetic_lines}
 
     def _jointed(self) -> set[Body]:
         """Bodies that joints, bonds and angle springs refer to."""
@@ -1138,6 +1198,12 @@ def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
     return max(size, 1e-6), points[middle], extent
 
 
+def _last_that_moves(levels: Sequence[Level]) -> int:
+    """Index of the last one at which all of a thing moves, as far as those before it do."""
+    stopped = (i for i, level in enumerate(levels) if level.is_stiff or level.stride == 0)
+    return next(stopped, len(levels)) - 1
+
+
 def _lengths(vectors: Floats) -> Floats:
     result: Floats = np.sqrt(np.einsum("...i,...i", vectors, vectors))
     return result
@@ -1168,6 +1234,7 @@ class _Arrays:
         self._refused = np.zeros(0, dtype=int)  # until this step
         self._now = 0  # step
         self.since = np.zeros(0)  # s: it has been frozen and out of sight; nan: it is not
+        self.is_mild = False  # nothing in sight is stopped
         self.build([])
 
     def build(self, things: list[Managed]) -> None:
@@ -1180,7 +1247,9 @@ class _Arrays:
         self.own = [(row, thing) for row, thing in enumerate(things) if thing.significance is not None]
         self._asked = np.array([thing.significance is not None for thing in things], dtype=bool)
         self.level = np.array([thing.index for thing in things], dtype=int)
-        self.last = np.array([len(thing.levels) - 1 for thing in things], dtype=int)
+        self._last = np.array([len(thing.levels) - 1 for thing in things], dtype=int)
+        self._mildest = np.array([_last_that_moves(thing.levels) for thing in things], dtype=int)
+        self.lowest = (self._mildest if self.is_mild else self._last).copy()  # level that it may have now
         self.pinned = np.array([thing.is_pinned for thing in things], dtype=bool)
         self.size = np.array([thing.size for thing in things], dtype=float)
         self.extent = np.array([thing._extent for thing in things], dtype=float)
@@ -1321,6 +1390,9 @@ class _Arrays:
             self.is_near[rows] = distance - self.extent[rows] < LATE * sight
             distance = np.maximum(distance - 0.5 * size, 1e-3)
             seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
+            if self.is_mild:
+                is_unseen = self.is_far[rows] & (np.maximum(size, speeds) < UNSEEN * distance)
+                self.lowest[rows] = np.where(is_unseen, self._last[rows], self._mildest[rows])
         else:
             seen = speeds + IDLE
             self.near[rows], self.is_far[rows], self.is_near[rows] = False, True, False
@@ -1340,7 +1412,7 @@ class _Arrays:
     def next_level(self, rows: NDArray[np.intp]) -> NDArray[np.intp]:
         """The next one that is expected to cost less; the present one if there is none."""
         index = np.arange(self.shares.shape[1])
-        is_less = (index > self.level[rows, None]) & (index <= self.last[rows, None])
+        is_less = (index > self.level[rows, None]) & (index <= self.lowest[rows, None])
         is_less &= self._shares_of(rows) < 0.9 * self.share_now(rows)[:, None]
         target: NDArray[np.intp] = np.where(is_less.any(axis=1), is_less.argmax(axis=1), self.level[rows])
         return target

@@ -85,6 +85,7 @@ ELSEWHERE = (
         "start_recording": "world.pages.record(file)",
     }
 )
+TOO_SLOW, PATIENCE = 0.8, 3.0  # of real time; s until users are told
 PAUSED = "The world is paused. A reset begins it anew."
 ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 
@@ -137,6 +138,7 @@ class World:
         self._inputs = inputs = Inputs(state, self._guard, self._stepper.step, self._stepper.reset)
         state.clients.take_picture = self._take_picture
         self._real_time = RealTime(state.clock)
+        self._slow_since = math.inf  # s
         self._drawings = Drawings(state.things, state.notices, state.scene)
         self._controls = Controls(state.things, state.actions, lambda action, bodies: inputs.act(action, 0, bodies))
         self._events = Events(state.listeners, state.system)
@@ -724,7 +726,15 @@ class World:
             self._pages._frame()
         publisher = self._pages._publisher
         self._stepper.check_journal(None if publisher is None else publisher.room)
-        if self.clock.reached_speed < 0.8:
+        self._keep_pace()
+
+    def _keep_pace(self) -> None:
+        """A world that is too slow for real time is simulated less where nobody sees it; if that does not help, users are told."""
+        reached, now = self.clock.reached_speed, time.monotonic()
+        if self.clock.speed > 0:
+            self.levels._keep_pace(reached, 1e3 * self.dt / self.clock.speed)
+        self._slow_since = math.inf if reached >= TOO_SLOW else min(self._slow_since, now)
+        if now > self._slow_since + PATIENCE:
             text = "This machine is too slow for this world in real time: it runs in slow motion."
             self._state.notices.warn_once(text)
 

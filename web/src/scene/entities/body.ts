@@ -71,7 +71,7 @@ class Batch {
     return shapeReach(this.shape_);
   }
 
-  /** Of the shape for which the geometry is made; a longer body's part is stretched by its matrix. */
+  /** The box of the shape for which the geometry is made; a longer body's part is stretched by its matrix. */
   get box(): Box {
     return this.shape_.kind.box(this.shape_);
   }
