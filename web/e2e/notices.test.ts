@@ -70,7 +70,7 @@ it("a user is shown the budget of a step, and bodies in the color of their level
   await tab.until("the script knows where this user is", () => iota.page.world.people.length === 1);
   expect(await tab.page.locator("#meter").isVisible()).toBe(false);
   await tab.page.keyboard.press("i");
-  await expect.poll(() => tab.page.textContent("#meter")).toMatch(/budget [^]* of 1000 ms[^]*3 full/);
+  await expect.poll(() => tab.page.textContent("#meter")).toMatch(/budget [^]* of 1000 ms[^]*6 full/);
   await tab.page.keyboard.press("6");
   await expect.poll(() => tab.page.textContent("#meter")).toMatch(/of 0.001 ms[^]*3 frozen[^]* to frozen, /);
   const tinted = () => tab.page.evaluate(() => {

@@ -10,14 +10,15 @@ import iota
 
 def build() -> iota.World:
     system = iota.System(gravity=(0, 0, 0))
-    for k in range(3):
-        system.body(shape=iota.Sphere(0.2), mass=1.0, position=(0.6 * k, 0.5, 0))
+    kept = [system.body(shape=iota.Sphere(0.2), mass=1.0, position=(0.6 * k, 0.5, 0)) for k in range(3)]
     far = [system.body(shape=iota.Sphere(0.2), mass=1.0, position=(0.6 * k, 1.2, 0)) for k in range(3)]
     world = iota.World(system, title="notices", ground=0.0, camera=iota.Camera((0.6, 1, 4), (0.6, 0.9, 0)))
     world.drawings.label("Which of these balls is the heaviest?", offset=(0.6, 2.25, 0))
     world.controls.slider("mass", 0, 1)
     world.levels.reach = 0.0
     world.levels.budget_ms = 1e3
+    for ball in kept:
+        world.levels.pin(ball)
     for ball in far:
         world.levels.manage(ball, significance=lambda thing: 1.0)
     notice = world.users.notice
