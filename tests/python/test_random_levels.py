@@ -19,6 +19,7 @@ from iota import looks
 from iota.builder import Structure
 from iota.studies import crowd
 from iota.world import levels as levels_module
+from iota.world.clients import Client
 from iota.world.levels import Level, Managed
 
 SCENES = int(os.environ.get("IOTA_LEVEL_SCENES", "200" if TRIES_ALL else "10"))
@@ -202,6 +203,10 @@ class Scene:
             self.is_edited = False
             if dice.random() < 0.1:
                 levels.budget_ms = dice.choice((None, 10 ** dice.uniform(-5, 1)))
+                if levels.budget_ms is None and step % 2 == 0:  # the world's own, as if a page were open
+                    self.world._state.clients.by_id[1] = Client(1)
+                    levels._may_give = True
+                    levels._keep_pace(0.5, 10 ** (-step % 7 - 5))
                 with pytest.raises(ValueError, match="budget_ms must be above 0"):
                     levels.budget_ms = dice.choice(BAD)
             if self.teleports:

@@ -261,12 +261,6 @@ class Managed:
     def _has(self, body: Body) -> bool:
         return any(root.articulate == body.articulate for root in self._roots)
 
-    def _be_full(self) -> None:
-        """Whatever an undo has made of it, it takes every step."""
-        for body in dict.fromkeys([*self._roots, *self._members]):
-            if body.alive and body.stride != 1:
-                body.articulate.stride = 1
-
     def _set_stride(self, stride: int) -> None:
         for root in self._roots:
             root.articulate.stride = stride
@@ -326,7 +320,7 @@ class Levels(Part):
         self._by_root: dict[Body, Managed] = {}  # empty: as of no time
         self._things: list[Managed] = []
         self._names: set[str] = set()  # theirs, and of some that were
-        self._parked: list[Managed] = []  # that were managed until `off`
+        self._was_on = False  # there was a budget, so an undo may bring strides back
         self._gone: deque[Managed] = deque(maxlen=GONE)  # destroyed or joined: an undo may bring them back
         self._is_restored = False  # a function of the script has made an undo or a reset within a change
         self._arrays = _Arrays(system)
@@ -371,8 +365,7 @@ class Levels(Part):
     def _give(self, ms: float, is_own: bool) -> None:
         self._budget, self._is_own, self._rest = ms, is_own, 0
         self._arrays.is_mild = is_own
-        self._parked = []
-        self._is_old = True
+        self._was_on = self._is_old = True
 
     @property
     def reach(self) -> float:
@@ -492,16 +485,20 @@ class Levels(Part):
         self._budget, self._is_own = None, False
         for thing in self._things:
             self._release(thing)
-        for thing in self._things:  # a function of the script may have undone that
-            thing._be_full()
-        self._parked = [*self._things, *self._gone]
+        self._end_strides()
         self._coming.clear()
         self._things = [thing for thing in self._things if thing.is_chosen or thing.is_pinned]
         self._names = {thing.name for thing in self._things}
         self._gone.clear()
-        self._count = -1
+        self._count, self._looked_at = -1, self._steps - HOLD
         self._expected_step = self._system.step_count
         self._is_old = True
+
+    def _end_strides(self) -> None:
+        """Also those that an undo has brought back since things were looked at."""
+        for articulate in self._system.articulates:
+            if any(body.stride != 1 for body in articulate.bodies):
+                articulate.stride = 1
 
     def _release(self, thing: Managed) -> None:
         if thing.index and thing.root.alive:
@@ -609,11 +606,10 @@ class Levels(Part):
 
     def _stay_off(self) -> None:
         """Before a step without a budget: an undo or a reset to a time with one brings strides back."""
-        if not self._parked:
+        if not self._was_on:
             return
         if self._system.step_count != self._expected_step:
-            for thing in self._parked:
-                thing._be_full()
+            self._end_strides()
         self._expected_step = self._system.step_count + 1
 
     def _take_ms(self, ms: float) -> None:
