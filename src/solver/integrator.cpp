@@ -618,7 +618,26 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 
 bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
   make_guess(problem, stage);
-  return solve(problem, stage, report) || solve_softer_contacts(problem, stage, report);
+  return solve(problem, stage, report) || solve_jammed_contacts(problem, stage, report) ||
+         solve_softer_contacts(problem, stage, report);
+}
+
+// What slips may press itself so that no force of friction along its slip balances it, as chalk that is pushed over a board
+// (Painleve 1895): it jams. The states that Newton's method passes from slipping do not lead there; those without a bound of
+// friction do. In heaps, which have sweeps, it would only take from their iterations.
+bool Integrator::solve_jammed_contacts(Problem& problem, const Stage& stage, AdvanceReport& report) {
+  const std::span<ContactConstraint> contacts = problem.items_of<ContactConstraint>();
+  if (contacts.empty() || may_sweep_ || stage.is_projection() || stage.compliance > exact_rows) return false;
+  constexpr double unbounded = 1e6;
+  constexpr int few = 6;  // iterations: where it jams, 2 to 8 do
+  problem.set_multipliers(multipliers_saved_);
+  make_guess(problem, stage);
+  for (ContactConstraint& c : contacts) c.friction *= unbounded, c.static_friction *= unbounded;
+  Stage brief = stage;
+  brief.max_iterations = few;
+  const bool is_held = solve(problem, brief, report);
+  for (ContactConstraint& c : contacts) c.friction /= unbounded, c.static_friction /= unbounded;
+  return is_held && solve(problem, brief, report);
 }
 
 // Contacts that cycle between sticking, slipping and opening find their states where they are soft, and keep them while they

@@ -142,6 +142,7 @@ class Integrator {
   void sweep_lengths(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   bool solve(Problem&, const Stage&, AdvanceReport&);
+  bool solve_jammed_contacts(Problem&, const Stage&, AdvanceReport&);
   bool solve_softer_contacts(Problem&, const Stage&, AdvanceReport&);
   bool is_out_of_budget();
 
