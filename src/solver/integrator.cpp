@@ -628,15 +628,14 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 bool Integrator::solve_jammed_contacts(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const std::span<ContactConstraint> contacts = problem.items_of<ContactConstraint>();
   if (contacts.empty() || may_sweep_ || stage.is_projection() || stage.compliance > exact_rows) return false;
-  constexpr double unbounded = 1e6;
   constexpr int few = 6;  // iterations: where it jams, 2 to 8 do
   problem.set_multipliers(multipliers_saved_);
   make_guess(problem, stage);
-  for (ContactConstraint& c : contacts) c.friction *= unbounded, c.static_friction *= unbounded;
+  for (ContactConstraint& c : contacts) c.never_slips = true;
   Stage brief = stage;
   brief.max_iterations = few;
   const bool is_held = solve(problem, brief, report);
-  for (ContactConstraint& c : contacts) c.friction /= unbounded, c.static_friction /= unbounded;
+  for (ContactConstraint& c : contacts) c.never_slips = false;
   return is_held && solve(problem, brief, report);
 }
 

@@ -27,6 +27,7 @@ constexpr ConeState slips{ConeState::Mode::slips, 1};
 ConeState ContactConstraint::state_of(const double* multipliers) const {
   constexpr double at_edge = 1 - 1e-6;
   if (!(multipliers[0] < 0)) return {ConeState::Mode::open};
+  if (never_slips) return {};
   const double size = std::hypot(multipliers[1], multipliers[2]);
   const double edge = largest_friction(multipliers);
   if (size < at_edge * edge) return {};
@@ -41,6 +42,7 @@ ConeState ContactConstraint::switch_state(ConeState now, const double* multiplie
   if (now.mode == ConeState::Mode::open && !(g[0] < -tolerance)) return now;
   const double push = -multipliers[0];
   if (natural[0] * push - (g[0] + compliance_of(0) * push) < -tolerance) return {ConeState::Mode::open};
+  if (never_slips) return {};
   const TrialFriction trial(*this, multipliers, g, natural);
   // Static friction may hold a place that comes to rest and would turn back. It came to rest within the step before, after which
   // friction and load moved it on: at most by the speed that these give in half a step.

@@ -35,6 +35,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double drag_before[2] = {};                    ///< friction of the step before if it slipped and mu_s is above mu, N
   double normal_compliance = 0, compliance = 0;  ///< c_n, c_t, m/N
   double softening = 1;                          ///< of c_n, while a solution is searched
+  bool never_slips = false;                      ///< while a solution is searched
   double share = 1;                              ///< of the step, for which the compliances are
   double reference = 1;
   double pivots[2] = {};  ///< rates of the tangential rows at the end of a step in which they stick, see rate_of, m/s
