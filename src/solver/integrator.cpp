@@ -622,9 +622,9 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
          solve_softer_contacts(problem, stage, report);
 }
 
-// What slips may press itself so that no force of friction along its slip balances it, as chalk that is pushed over a board
-// (Painleve 1895): it jams. The states that Newton's method passes from slipping do not lead there; those without a bound of
-// friction do. In heaps, which have sweeps, it would only take from their iterations.
+// A contact that slips may press itself so that no friction along its slip balances it, as chalk that is pushed over a board
+// (Painleve 1895): it jams. Newton's method finds no solution from slipping, for any length of the part. It does from
+// sticking. In heaps, which have sweeps, this would only take from their iterations.
 bool Integrator::solve_jammed_contacts(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const std::span<ContactConstraint> contacts = problem.items_of<ContactConstraint>();
   if (contacts.empty() || may_sweep_ || stage.is_projection() || stage.compliance > exact_rows) return false;
