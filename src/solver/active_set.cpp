@@ -80,7 +80,7 @@ void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem
   set_cone(pool, k, state_before);
   for (int r = 0; r < C::rows; ++r) {
     RowStates::Row& state = pool.states.rows_[k * C::rows + r];
-    state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side;
+    state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side, state.slips_on = 0;
     double rate = 0;
     if constexpr (BouncingConstraint<C>) rate = c.rate_of(r, stage.fraction_start);
     state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, rate, stage);
@@ -170,6 +170,7 @@ int ActiveSet::count_met(const Problem& problem) {
 
 bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   constexpr int before_softening = 1, patience = 6;
+  constexpr std::int8_t to_slip = 4;
   const bool one_only = stalled_ > patience;
   int wrong = 0;
   bool changed = false;
@@ -179,6 +180,12 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
       if constexpr (ConeConstraint<C>) {
         const ConeState now = pool.states.cone(k * C::rows), next = choose_state(pool, k, problem, stage, x);
         if (now == next) continue;
+        std::int8_t& slips_on = pool.states.rows_[k * C::rows].slips_on;
+        if (now.mode == ConeState::Mode::sticks && next.mode == ConeState::Mode::open) slips_on = to_slip;
+        if (slips_on > 0 && now.slips() && next.mode == ConeState::Mode::sticks) {
+          --slips_on, changed = true;
+          continue;
+        }
         ++wrong;
         if (one_only && changed) continue;
         set_cone(pool, k, next), changed = true;

@@ -39,6 +39,7 @@ class RowStates {
     std::int8_t side = 0;         // -1, 1: its multiplier is at the lower, upper bound; 0: an equation
     std::int8_t side_before = 0;  // at the start of the (sub-)step
     bool off_speed = false;       // a rate row whose velocity there was not the target
+    std::int8_t slips_on = 0;     // iterations for which a cone does not stick, as its force would pull then
     double start = 0, yield = 0;
     double before =
         0;  // at the start of an explicit sub-step: the speed of a row that slides, the multiplier of an equation

@@ -75,12 +75,21 @@ def test_energy_of_what_hits_each_other_never_rises(seed: int) -> None:
     assert missing < 1e-9
 
 
-@pytest.mark.parametrize("seed", [492, 1960, 2412, 2870, 3017, 4322, 4736, 5250, 5290, 5487])
-def test_the_tip_of_a_whip_that_jams_on_another_link_is_solved(seed: int) -> None:
-    """No friction along the slip balances what presses itself (Painleve 1895); Newton's method from slipping finds no solution."""
+# Jams at 0.6: no friction along the slip balances what presses itself (Painleve 1895). At 1 and 2 most only slip, but would pull if they stuck.
+WHIPS = {
+    0.6: [492, 614, 770, 854, 1002, 1960, 2412, 2870, 3017, 4322, 4736, 5250, 5290, 5487],
+    1.0: [2946, 2998],
+    2.0: [2928, 2942, 2998],
+}
+
+
+@pytest.mark.parametrize(
+    ("friction", "seed"), [(friction, seed) for friction, seeds in WHIPS.items() for seed in seeds]
+)
+def test_the_tip_of_a_whip_that_meets_another_link_is_solved(friction: float, seed: int) -> None:
     dice = random.Random(seed)
     system = iota.System(threads=1)
-    system.usual_material = iota.Material(friction=0.6)
+    system.usual_material = iota.Material(friction=friction)
     count, length, angle = dice.randint(4, 10), dice.uniform(0.1, 0.5), dice.uniform(-0.3, 1.2)
     at, links = iota.Vec3(0, 0, 0), list[iota.Body]()
     for _ in range(count):
