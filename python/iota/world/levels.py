@@ -721,7 +721,7 @@ class Levels(Part):
         here, there = arrays.share_now(rows), arrays.shares[rows, target]
         saved = self._ms_of_work * arrays.full_load[rows] * np.maximum(here - there, 0.0)
         lost = arrays.significance[rows] * (arrays.qualities[rows, arrays.level[rows]] - arrays.qualities[rows, target])
-        worth = saved > 1e-6 * need
+        worth = (target != arrays.level[rows]) & (saved > 1e-6 * need)
         rows, target, saved, lost = rows[worth], target[worth], saved[worth], lost[worth]
         order = np.argsort((lost + 1e-12) / saved, kind="stable")[:most]
         sums = np.cumsum(saved[order])
