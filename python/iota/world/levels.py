@@ -57,7 +57,7 @@ JOINED = "joined"  # the reason of a change: two things have become one
 LEAST_SLACK = 0.25  # m: so far viewers go at least before a thing is looked at again
 # The budget that a world gives itself: when it begins, its share of the time that a step has, and after how many frames without need it ends.
 TOO_SLOW, OWN_SHARE, OWN_REST = 0.95, 0.8, 600
-LEAST_SHARE = 0.5  # of a step's time that it computes at least; less is a measurement that failed
+LEAST_CORES = 0.5  # that a step is taken to have, however busy the machine is
 UNSEEN = 1 / SIGHT  # rad, rad/s: what is smaller, slower and out of sight may stand still without anybody's noticing it
 
 
@@ -308,7 +308,7 @@ class Levels(Part):
         self._may_give = True  # the world may give itself a budget
         self._is_own = False  # it has
         self._rest = 0  # frames in which its own budget reduced nothing
-        self._wall_ms = 0.0
+        self._cores = 1.0  # processor time of a step in its time, smoothed
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
@@ -509,10 +509,8 @@ class Levels(Part):
         a budget of its own if it is too slow, and takes it back when nothing had to be reduced for a while."""
         is_watched = bool(self._clients.by_id)
         if self._is_own:
-            # On several cores a step has more processor time than time.
-            cores = max(self._ms / self._wall_ms, LEAST_SHARE) if self._wall_ms > 0 else 1.0
-            self._budget = OWN_SHARE * ms * cores
-            needs = reached < TOO_SLOW or any(thing.index for thing in self._things)
+            self._budget = OWN_SHARE * ms * max(self._cores, LEAST_CORES)
+            needs = reached < TOO_SLOW or self._arrays.level.any()
             self._rest = 0 if needs else self._rest + 1
             if self._rest > OWN_REST or not is_watched:
                 self._be_full()
@@ -598,8 +596,7 @@ class Levels(Part):
             return self._system.step(dt)
         finally:
             ended = time.process_time()
-            wall_ms = 1e3 * (time.perf_counter() - at)
-            self._wall_ms = wall_ms if self._wall_ms == 0 else self._wall_ms + SMOOTH * (wall_ms - self._wall_ms)
+            self._cores += SMOOTH * ((ended - began) / max(time.perf_counter() - at, 1e-9) - self._cores)
             self._expected_step = self._system.step_count
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
             self._take_ms(1e3 * (ended - began))
