@@ -85,7 +85,7 @@ ELSEWHERE = (
         "start_recording": "world.pages.record(file)",
     }
 )
-TOO_SLOW, PATIENCE = 0.8, 3.0  # of real time; s until users are told
+SLOW_MOTION, PATIENCE = 0.8, 3.0  # of real time; s until users are told
 PAUSED = "The world is paused. A reset begins it anew."
 ENDING_SECONDS = 2.0  # for a world in the background when the process ends
 
@@ -733,7 +733,7 @@ class World:
         reached, now = self.clock.reached_speed, time.monotonic()
         if self.clock.speed > 0:
             self.levels._keep_pace(reached, 1e3 * self.dt / self.clock.speed)
-        self._slow_since = math.inf if reached >= TOO_SLOW else min(self._slow_since, now)
+        self._slow_since = math.inf if reached >= SLOW_MOTION else min(self._slow_since, now)
         if now > self._slow_since + PATIENCE:
             text = "This machine is too slow for this world in real time: it runs in slow motion."
             self._state.notices.warn_once(text)
