@@ -271,6 +271,8 @@ describe.each(["mouse", "keyboard", "touch", "controller", "hand"] as const)("by
   });
 
   beforeEach(async () => {
+    // A test that failed may have left its hand closed.
+    await user.release();
     await tab.page.evaluate(() => iota.select(-1));
     await tab.reset();
     expect(await tab.page.evaluate(() => iota.bodies())).toHaveLength(7);

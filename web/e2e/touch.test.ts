@@ -46,6 +46,18 @@ describe("on a phone", () => {
     await tab.until("it is let go", () => iota.held === -1 && iota.holds().length === 0);
   });
 
+  it("a finger that rests on a link and then drags closes the actions, and sees the force", async () => {
+    const body = 10;
+    const [x, y] = await tab.freezeInView(body);
+    await tab.touch("touchStart", [[x + 6, y]]);
+    await tab.page.locator("#menu").waitFor();
+    await tab.pause(false);
+    for (let step = 1; step <= 3; step++) await tab.touch("touchMove", [await tab.slack([x + 6, y], 0.06 * step)]);
+    expect(await tab.page.locator("#menu").isVisible()).toBe(false);
+    await expect.poll(() => tab.page.locator("#hint").innerText()).toMatch(/ N$/);
+    await tab.lift();
+  });
+
   it("one finger selects several where that is switched on", async () => {
     await tab.freeze();
     await tab.page.evaluate(() => { document.getElementById("select-several")!.click(); });

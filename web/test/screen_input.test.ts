@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taps on the canvas, as events of the browser that are handled late.
+// Taps and long presses on the canvas, as events of the browser that are handled late.
 
 import { PerspectiveCamera } from "three";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
@@ -10,13 +10,15 @@ import { body, bodyEntity, part, visual, TestWorld } from "./test_world.ts";
 
 const [width, height] = [800, 600];
 let menus: number[];
-let send: (type: "pointerdown" | "pointerup", timeStamp: number) => void;
+let timers: (() => void)[];
+let send: (type: "pointerdown" | "pointermove" | "pointerup", timeStamp: number, right?: number) => void;
 
 beforeEach(() => {
   vi.useFakeTimers({ toFake: ["performance"] });
   vi.stubGlobal("innerWidth", width);
   vi.stubGlobal("innerHeight", height);
-  vi.stubGlobal("window", { setTimeout: () => 0, clearTimeout: () => {} });
+  timers = [];
+  vi.stubGlobal("window", { setTimeout: (call: () => void) => timers.push(call), clearTimeout: () => {} });
   const test = new TestWorld();
   test.set("visual", visual(0, "ball", part("sphere", [0.3])));
   test.set("body", bodyEntity(7));
@@ -31,10 +33,10 @@ beforeEach(() => {
   const canvas = { addEventListener: (type: string, listener: (event: object) => void) => listeners.set(type, listener), setPointerCapture: nothing };
   menus = [];
   new ScreenInput(canvas as unknown as HTMLCanvasElement, camera, gestures, new Navigation(camera), {
-    clickNothing: nothing, menu: (hit) => menus.push(hit), active: nothing,
+    clickNothing: nothing, openMenu: (hit) => menus.push(hit), closeMenu: () => menus.splice(0), active: nothing,
   });
-  send = (type, timeStamp) => listeners.get(type)?.({
-    type, timeStamp, pointerType: "touch", pointerId: 1, button: 0, buttons: 0, clientX: width / 2, clientY: height / 2, shiftKey: false,
+  send = (type, timeStamp, right = 0) => listeners.get(type)?.({
+    type, timeStamp, pointerType: "touch", pointerId: 1, button: 0, buttons: 0, clientX: width / 2 + right, clientY: height / 2, shiftKey: false,
     ctrlKey: false, metaKey: false,
   });
 });
@@ -60,5 +62,15 @@ it("two quick taps on a body are a double tap, however late the page handles the
 
 it("two slow taps are none, if the page handles both at once", () => {
   tapTwice(600, 0);
+  expect(menus).toEqual([]);
+});
+
+it("a long press opens the actions, which a drag after it closes", () => {
+  send("pointerdown", 1000);
+  timers[0]();
+  expect(menus).toEqual([7]);
+  send("pointermove", 1600, 5);
+  expect(menus, "a finger trembles").toEqual([7]);
+  send("pointermove", 1620, 30);
   expect(menus).toEqual([]);
 });

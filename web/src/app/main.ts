@@ -132,7 +132,8 @@ function main(): void {
   let band: Promise<Band> | null = null;
   const input = new ScreenInput(canvas, viewer.camera, page.gestures, navigation, {
     clickNothing: () => selection.select(-1),
-    menu: (body, x, y) => overlay.openMenu(body, x, y),
+    openMenu: (body, x, y) => overlay.openMenu(body, x, y),
+    closeMenu: () => overlay.closeMenu(),
     active: () => overlay.showBar(),
     band: (left, top, right, bottom, done) => {
       band ??= import("../ui/band.ts").then(({ Band }) => new Band(page));

@@ -9,7 +9,9 @@ export interface ScreenInputHost {
   /** A click or tap on empty space, without a drag. */
   clickNothing(): void;
   /** Long press, double tap or right click on a body: shows its actions. (css px) */
-  menu(body: number, x: number, y: number): void;
+  openMenu(body: number, x: number, y: number): void;
+  /** A finger drags, maybe after a long press: the actions would cover what it does. */
+  closeMenu(): void;
   /** Any input of the user: hidden controls appear again. */
   active(): void;
   /** A rectangle is being drawn, css px; `done`: and is finished. */
@@ -125,7 +127,7 @@ export class ScreenInput {
     if (touch && pointer.grab !== null) {
       const body = pointer.grab.body;
       finger.longPress = window.setTimeout(() => {
-        if (!finger.moved) this.host_.menu(body, finger.x, finger.y);
+        if (!finger.moved) this.host_.openMenu(body, finger.x, finger.y);
       }, longPressMs);
     }
   }
@@ -145,9 +147,10 @@ export class ScreenInput {
     const apart = pinch === null ? 0 : Math.hypot(finger.x - pinch.x, finger.y - pinch.y);
     finger.x = event.clientX;
     finger.y = event.clientY;
-    if (Math.hypot(finger.x - finger.startX, finger.y - finger.startY) > tapPixels) {
+    if (!finger.moved && Math.hypot(finger.x - finger.startX, finger.y - finger.startY) > tapPixels) {
       finger.moved = true;
       window.clearTimeout(finger.longPress);
+      if (finger.touch) this.host_.closeMenu();
     }
     if (finger.band) {
       if (finger.moved) this.drawBand_(finger, false);
@@ -227,7 +230,7 @@ export class ScreenInput {
 
   private tap_(finger: Finger, body: number, now: number): void {
     if (finger.button === 2) {
-      if (body >= 0) this.host_.menu(body, finger.x, finger.y);
+      if (body >= 0) this.host_.openMenu(body, finger.x, finger.y);
       return;
     }
     if (finger.button !== 0) return;
@@ -242,7 +245,7 @@ export class ScreenInput {
     const near = Math.hypot(finger.x - this.lastTap_.x, finger.y - this.lastTap_.y) < 40;
     const again = now - this.lastTap_.at < doubleTapMs && near;
     this.lastTap_ = { at: again ? -Infinity : now, x: finger.x, y: finger.y };
-    if (again) this.host_.menu(body, finger.x, finger.y);
+    if (again) this.host_.openMenu(body, finger.x, finger.y);
   }
 
   /** Zooms about a place in css px, at the depth of the body there or, without one, of the camera's pivot. */

@@ -96,7 +96,9 @@ async function main(): Promise<void> {
 
   const canvas = byId("view", HTMLCanvasElement);
   const page = makePage(canvas, "ws://recording/", { world: "", role: Role.viewer, name: "" });
-  const input = new ScreenInput(canvas, page.viewer.camera, page.gestures, page.navigation, { clickNothing: () => {}, menu: () => {}, active: () => {} });
+  const input = new ScreenInput(canvas, page.viewer.camera, page.gestures, page.navigation, {
+    clickNothing: () => {}, openMenu: () => {}, closeMenu: () => {}, active: () => {},
+  });
   const theme = matchMedia("(prefers-color-scheme: dark)");
   page.setTheme(theme.matches ? "dark" : "light");
   theme.addEventListener("change", () => page.setTheme(theme.matches ? "dark" : "light"));

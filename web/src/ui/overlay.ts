@@ -120,7 +120,7 @@ export class Overlay implements PageListener, FramePart {
     this.page_.selection.select(body);
     this.menu_.replaceChildren(
       ...actions.map((action) => {
-        const button = makeActionButton(action, () => this.closeMenu_(), body);
+        const button = makeActionButton(action, () => this.closeMenu(), body);
         button.setAttribute("role", "menuitem");
         return button;
       }),
@@ -131,6 +131,12 @@ export class Overlay implements PageListener, FramePart {
     this.menu_.hidden = false;
     placeNear(this.menu_, x, y, 14);
     this.showBar();
+  }
+
+  closeMenu(): void {
+    if (this.menu_.hidden) return;
+    this.menu_.hidden = true;
+    this.canvas_.focus({ preventScroll: true });
   }
 
   // --- PageListener
@@ -150,7 +156,7 @@ export class Overlay implements PageListener, FramePart {
       this.reserve_();
     }
     if (what === "selection") {
-      this.closeMenu_();
+      this.closeMenu();
       this.refreshStrip_();
     }
     if (what === "clients") {
@@ -284,7 +290,7 @@ export class Overlay implements PageListener, FramePart {
     const hints = commands.script.filter((action) => action.onBody && isAllowed(action))
       .flatMap((action) => (action.keys ?? []).map((key) => `${keyName(key)} ${action.title()}`));
     this.bodyHint_ = (this.role_ === Role.viewer ? [] : ["drag", ...hints]).join("; ");
-    this.closeMenu_();
+    this.closeMenu();
     this.refreshStrip_();
     this.reserve_();
   }
@@ -312,20 +318,14 @@ export class Overlay implements PageListener, FramePart {
   private anyPress_(event: PointerEvent): void {
     this.pointerAt_ = { x: event.clientX, y: event.clientY, touch: event.pointerType === "touch" };
     this.showBar();
-    if (!this.menu_.hidden && !(event.target instanceof Node && this.menu_.contains(event.target))) this.closeMenu_();
-  }
-
-  private closeMenu_(): void {
-    if (this.menu_.hidden) return;
-    this.menu_.hidden = true;
-    this.canvas_.focus({ preventScroll: true });
+    if (!this.menu_.hidden && !(event.target instanceof Node && this.menu_.contains(event.target))) this.closeMenu();
   }
 
   /** Escape only closes an open menu. */
   private closeMenuByKey_(event: KeyboardEvent): void {
     if (event.key !== "Escape" || this.menu_.hidden) return;
     event.stopImmediatePropagation();
-    this.closeMenu_();
+    this.closeMenu();
   }
 
   /** Shows the selection and the script's buttons: those for the world always, those for a body while one is selected. */
