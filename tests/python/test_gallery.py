@@ -52,10 +52,11 @@ def test_a_study_runs_from_its_first_visitor_to_some_time_after_its_last(gallery
         assert sorted(gallery.running) == ["chain", "molecule"]
         first.wait_for(lambda: first.last["world_settings"]["title"].startswith("chain: "))
         other.wait_for(lambda: other.last["world_settings"]["title"].startswith("molecule"))
-        first.wait_for(lambda: first.last["poses"]["step"] > 60)
+        # A busy machine may tell of the next run only after a second.
+        first.wait_for(lambda: first.last["poses"]["step"] > 240)
     wait_until(lambda: gallery.running == [])
     with PageClient(gallery.url_of("chain")) as again:
-        assert again.last["poses"]["step"] < 60, "it begins anew"
+        assert again.last["poses"]["step"] < 240, "it begins anew"
         again.wait_for(lambda: again.last["poses"]["step"] > 20)
 
 
