@@ -13,8 +13,8 @@ namespace {
 
 /// Relative to the center of the second outline, so that places far from the origin keep their digits.
 void place_at(const Outline& outline, const Motion& motion, const Vec3& origin, double t, Outline& moved) {
-  const Quaternion turn = turn_by(t * motion.spin);
-  const Vec3 center = motion.center - origin + t * motion.velocity;
+  const Quaternion turn = turn_by((t - motion.at) * motion.spin);
+  const Vec3 center = motion.center - origin + (t - motion.at) * motion.velocity;
   const auto place = [&](const Vec3& x) { return center + rotate(turn, x - motion.center); };
   moved = outline;
   for (Solid& solid : moved.solids) solid.position = place(solid.position), solid.turn = multiply(turn, solid.turn);

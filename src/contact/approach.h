@@ -13,6 +13,7 @@ struct Motion {
   Vec3 center, velocity, spin;  ///< m, m/s, rad/s
   double reach = 0;             ///< all of the outline is at most so far from its center, m
   double more = 0;              ///< a bound of what else its places may go, m/s
+  double at = 0;                ///< when the center and the outline are where they are, s
 };
 
 /// Looks ahead along the ways of two outlines.
@@ -24,6 +25,9 @@ class ApproachFinder {
   /// conservative advancement (B. Mirtich, Impulse-based dynamic simulation, 1996): a little early, never late. A pair whose
   /// approach is too slow to be decided gets the time up to which it is decided.
   double time(const Outline& first, const Motion&, const Outline& second, const Motion&, double close, double latest);
+  /// The touches that the last call of `time` found at the time that it returned, relative to the center of the second
+  /// outline in `Motion`.
+  const std::vector<Touch>& met() const { return found_; }
 
  private:
   TouchFinder& touches_;

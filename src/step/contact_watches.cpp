@@ -177,7 +177,7 @@ void ContactWatches::compare(const model::Model& model, double h) {
     while (known != touching_.end() && known->pair < pair) pass_over(*known++);
     if (known != touching_.end() && known->pair == pair) {
       place(model, near_[first], still_.emplace_back(*known++));
-    } else if (near_[first].sensed && !knows_sensed_) {
+    } else if (near_[first].sensed && !near_[first].sensed->is_passed && !knows_sensed_) {
       still_.push_back(begin(model, first, last, h).touching);
     } else if (has_touched) {
       still_.push_back(changes_.emplace_back(begin(model, first, last, h)).touching);

@@ -32,6 +32,7 @@ constexpr std::size_t most_in_parts = 2400;  ///< bodies in all parts of a step:
 constexpr double near_in_sweeps = 0.1, still = 0.02;
 constexpr double least = 1e-3;             ///< of the rest of a step: no part is shorter
 constexpr std::size_t few_obstacles = 16;  ///< are looked at one by one
+constexpr double touching = 1e-3;          ///< of what passes a sensor
 /// A body whose points have not gone further keeps its contacts. What lies in a heap goes about so far in a step.
 constexpr double standing = 1e-5;
 
@@ -348,7 +349,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   step_ = h, shortest_ = h / Heap::most_sub_steps;
-  pairs_.clear(), sensed_.clear();
+  pairs_.clear(), sensed_.clear(), passing_.clear();
   note_changes(model, outlines);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
@@ -392,12 +393,44 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
   const contact::Outline& outline = outlines.placed(first);
   if (!is_fixed) (void)outlines.placed(second);
   touches_.find(outline, {}, outlines.described(second), {}, close * mover.reach, found_);
-  if (found_.empty()) return;
+  if (found_.empty()) {
+    const Meeting meeting = meeting_of(model, outlines, pair);
+    if (h_ * meeting.speed() > far * meeting.size)
+      passing_.push_back({pair, meeting.size, {center_of(model, first), center_of(model, second)}});
+    return;
+  }
   const contact::Touch& deepest =
       *std::min_element(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.gap < b.gap; });
   const Vec3 normal = (deepest.is_turned ? -1.0 : 1.0) * deepest.normal;
   const double speed = std::max(0.0, -dot(mover.velocity - other_velocity, normal));
   sensed_.push_back({first, second, deepest.place, normal, deepest.gap, speed});
+}
+
+// By the places at both ends of the step: what was met before the sensor has kept it out.
+void ContactFinder::sense_on_the_way(const model::Model& model, contact::Outlines& outlines, double h) {
+  for (const auto& [pair, size, centers] : passing_) {
+    const std::uint32_t bodies[2] = {pair.first, pair.second};
+    contact::Motion motions[2];
+    for (int k = 0; k < 2; ++k) {
+      const contact::Outline& outline = outlines.placed(bodies[k]);
+      contact::Motion& motion = motions[k];
+      motion.center = center_of(model, bodies[k]), motion.at = h;
+      if (model.bodies[bodies[k]].kind == BodyKind::static_) continue;
+      motion.velocity = (1 / h) * (motion.center - centers[k]);
+      motion.spin = model::body_angular_velocity(model, bodies[k]);
+      motion.reach = contact::reach(outline, motion.center);
+    }
+    const double close = touching * size;
+    const double time = approaches_.time(outlines.described(pair.first), motions[0], outlines.described(pair.second),
+                                         motions[1], close, h);
+    const std::vector<contact::Touch>& met = approaches_.met();
+    if (!(time < h) || met.empty()) continue;
+    const contact::Touch& nearest = *std::ranges::min_element(met, {}, &contact::Touch::gap);
+    if (!(nearest.gap <= close)) continue;
+    const Vec3 normal = (nearest.is_turned ? -1.0 : 1.0) * nearest.normal;
+    const double speed = std::max(0.0, -dot(motions[0].velocity - motions[1].velocity, normal));
+    sensed_.push_back({pair.first, pair.second, nearest.place + motions[1].center, normal, 0, speed, true});
+  }
 }
 
 ContactFinder::Meeting ContactFinder::meeting_of(const model::Model& model, contact::Outlines& outlines,
@@ -555,16 +588,21 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   return true;
 }
 
+Vec3 ContactFinder::center_of(const model::Model& model, std::uint32_t slot) const {
+  const model::Body& body = model.bodies[slot];
+  Vec3 center;
+  if (body.kind != BodyKind::static_)
+    for (std::size_t k = 0; k < body.rank; ++k) center += (1.0 / body.rank) * model.position(body.basis[k]);
+  return center;
+}
+
 contact::Motion ContactFinder::motion_of(const model::Model& model, const contact::Outlines& outlines,
                                          std::uint32_t slot) const {
   const model::Body& body = model.bodies[slot];
   contact::Motion motion;
   if (body.kind == BodyKind::static_) return motion;
-  const double share = 1.0 / body.rank;
-  for (std::size_t k = 0; k < body.rank; ++k) {
-    motion.center += share * model.position(body.basis[k]);
-    motion.velocity += share * model.velocity(body.basis[k]);
-  }
+  motion.center = center_of(model, slot);
+  for (std::size_t k = 0; k < body.rank; ++k) motion.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   motion.spin = model::body_angular_velocity(model, slot);
   motion.reach = contact::reach(outlines.described(slot), motion.center);
   motion.more = fall_;

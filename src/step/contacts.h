@@ -19,9 +19,10 @@ namespace iota::step {
 /// Two bodies of which one is a sensor, with the place where the other one is deepest in it.
 struct Sensed {
   std::uint32_t body, other;
-  Vec3 position, normal;  ///< the latter towards the body
-  double gap;             ///< m
-  double speed;           ///< of the approach, m/s
+  Vec3 position, normal;   ///< the latter towards the body
+  double gap;              ///< m
+  double speed;            ///< of the approach, m/s
+  bool is_passed = false;  ///< it came on its way in the step, and was apart at the start
 };
 
 /// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
@@ -43,7 +44,9 @@ class ContactFinder {
   /// short that what meets now moves by a part of its size.
   std::optional<double> find_part(model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies, double left,
                                   const Part&);
-  /// The pairs with a sensor whose gap is small or negative, at the start of the step.
+  /// At the end of a step of h seconds: adds the fast ones of `sensed` that have met on their way, which is taken for straight.
+  void sense_on_the_way(const model::Model&, contact::Outlines&, double h);
+  /// The pairs with a sensor whose gap is small or negative at the start of the step, or was on their way in it.
   const std::vector<Sensed>& sensed() const { return sensed_; }
 
  private:
@@ -104,6 +107,7 @@ class ContactFinder {
   bool has_moved(model::Model&, const contact::Outlines&, std::uint32_t body);
   ingredient::Contacts::Motion motion_in(const model::Model&, const Meeting&) const;
   void sense(const model::Model&, contact::Outlines&, const Pair&);
+  Vec3 center_of(const model::Model&, std::uint32_t body) const;
   double within(const Mover&, const Mover* other, double steps = 1) const;
   /// The box that a body stays in for its stride.
   geometry::Bounds way_of_stride(const model::Model&, contact::Outlines&, const Mover&) const;
@@ -156,6 +160,13 @@ class ContactFinder {
   std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
+  /// What may pass a sensor within the step, and the centers at its start.
+  struct Passing {
+    Pair pair;
+    double size;
+    Vec3 centers[2];
+  };
+  std::vector<Passing> passing_;
   std::vector<contact::Touch> found_;
   std::vector<contact::TouchOfPart> of_parts_;
   std::vector<contact::Seam> seams_;

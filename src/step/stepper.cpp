@@ -36,6 +36,7 @@ StepReport Stepper::step(double dt) {
   advance_in_parts(report);
   advance_islands(report);
   door_.end_step();
+  contacts_.sense_on_the_way(editor_.model, outlines_, dt);
   watches_.end_step(editor_.model, outlines_, contacts_.sensed(), report);
   apply_edits(report);
   fill(report);

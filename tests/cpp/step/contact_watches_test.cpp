@@ -273,6 +273,34 @@ TEST(ContactWatches, tell_what_enters_and_leaves_a_sensor_which_feels_no_force) 
     }
 }
 
+TEST(ContactWatches, tell_what_passes_a_sensor_between_two_steps) {
+  for (const double speed : {3.0, 30.0, 300.0, 3000.0})
+    for (const double phase : {0.0, 0.2, 0.4, 0.6, 0.8})
+      for (const bool has_wall : {false, true}) {
+        Watched world;
+        System& system = world.system;
+        system.set_gravity({});
+        const BodyId gate = system.bodies().create_obstacle(Box{{0.02, 1, 1}}, {0, 5, 0});
+        const BodyId beside = system.bodies().create_obstacle(Box{{0.02, 1, 1}}, {0, 6.06, 0});
+        for (const BodyId sensor : {gate, beside})
+          system.bodies().set_material(sensor, Material{.touches = Touches::sensor});
+        if (has_wall) (void)system.bodies().create_obstacle(Box{{0.02, 4, 4}}, {-0.2, 5, 0});
+        const double way = speed / 60;
+        const BodyId ball = system.bodies().create(Sphere{0.05}, {.position = {-0.3 - phase * way, 5, 0}});
+        system.bodies().set_velocity(ball, {speed, 0, 0});
+        (void)system.contacts().watch({.a = {ContactParty{gate, {}}, ContactParty{beside, {}}}});
+        for (int i = 0; i < 3 + static_cast<int>(0.5 / way); ++i) world.run(1.0 / 60, 1.0 / 60);
+        if (has_wall) {
+          EXPECT_TRUE(world.events.empty()) << "the wall has kept it out";
+          continue;
+        }
+        ASSERT_EQ(world.events.size(), 2u) << speed << " " << phase;
+        EXPECT_TRUE(world.events[0].began && !world.events[1].began && world.events[0].body == gate);
+        EXPECT_NEAR(world.events[0].speed, speed, 1e-9 * speed);
+        EXPECT_NEAR(system.bodies().velocity(ball).x, speed, 1e-9 * speed) << "it flies freely";
+      }
+}
+
 TEST(ContactWatches, know_what_sleeps_in_a_sensor_and_sensors_that_move) {
   Watched world;
   System& system = world.system;
