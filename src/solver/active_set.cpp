@@ -172,6 +172,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   constexpr int before_softening = 1, patience = 6;
   constexpr std::int8_t to_slip = 4;
   const bool one_only = stalled_ > patience;
+  has_changed_cones_ = false;
   int wrong = 0;
   bool changed = false;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -180,6 +181,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
       if constexpr (ConeConstraint<C>) {
         const ConeState now = pool.states.cone(k * C::rows), next = choose_state(pool, k, problem, stage, x);
         if (now == next) continue;
+        has_changed_cones_ = true;
         std::int8_t& slips_on = pool.states.rows_[k * C::rows].slips_on;
         if (now.mode == ConeState::Mode::sticks && next.mode == ConeState::Mode::open) slips_on = to_slip;
         if (slips_on > 0 && now.slips() && next.mode == ConeState::Mode::sticks) {
@@ -239,6 +241,10 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
     return true;
   }
   return changed;
+}
+
+void ActiveSet::soften_cones(Problem& problem, double by) {
+  for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.softening = by;
 }
 
 // Most of 40 hinges with friction stick at the start of a fall: a beam, whose rows switched for hundreds of iterations (590

@@ -20,6 +20,10 @@ class ActiveSet {
   /// Switches rows between bounds and free, by positions x and multipliers; returns whether any changed. Rows within
   /// the tolerance do not change.
   bool choose(Problem&, const Stage&, const Vec3* x);
+  /// Whether the last call of `choose` found a cone in a wrong state.
+  bool has_changed_cones() const { return has_changed_cones_; }
+  /// Gives the normals of contacts so many times their compliances, while a solution is sought.
+  static void soften_cones(Problem&, double by);
   static constexpr int most_softenings = 6;
   /// Gives resistances the bounds of the present reactions; returns whether these differ from the former by more than a thousandth.
   /// Reactions hardly depend on such torques, so that it ends after one or two times; at most a few since `begin`.
@@ -70,7 +74,7 @@ class ActiveSet {
 
   int fewest_wrong_ = 0, stalled_ = 0, followed_ = 0;
   double softening_ = 0;  // of rate rows, in their natural compliances
-  bool has_softened_ = false;
+  bool has_softened_ = false, has_changed_cones_ = false;
 };
 
 }  // namespace iota::solver

@@ -84,7 +84,12 @@ bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessi
 
 NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   NewtonReport report;
-  if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
+  bool are_soft = false;
+  if (has_laws_) {
+    active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
+    are_soft = stage.begins_softly && active_set_.has_changed_cones();
+  }
+  if (are_soft) ActiveSet::soften_cones(problem, Set::softening);
   measure(problem, stage);
   Hessian hessian = Hessian::exact;
   bool stuck = false, are_final = true;
@@ -104,9 +109,17 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
           are_final = !active_set_.choose(problem, stage, x_.data());  // what yields less may need no other motion
           measure(problem, stage);
         }
-        most_iterations =
-            std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
+        const bool may_cycle = stage.begins_softly && stage.is_mid_point() && active_set_.has_changed_cones();
+        const int most = (may_cycle ? Set::more_for_cones : Set::more_for_sides) * stage.max_iterations;
+        most_iterations = std::max(most_iterations, std::min({most_iterations + 1, most, stage.iterations_left}));
       }
+    }
+    if (are_soft && (stuck || report.iterations >= (are_final ? Set::few_soft : Set::most_soft) ||
+                     !(residual_.worst > stage.tolerance))) {
+      ActiveSet::soften_cones(problem, 1);
+      are_soft = stuck = factor_will_do = false;
+      measure(problem, stage);
+      continue;
     }
     if (are_final && !(residual_.worst > stage.tolerance) && !stage.is_projection() &&
         active_set_.follow_reactions(problem, stage)) {
@@ -139,6 +152,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
       if (assembly_.is_round_off_of_laws(problem, stage, x_.data())) {
         residual_.worst = residual_.rows;
         stuck = true;
+        if (are_soft) continue;
         break;
       }
       stuck = !is_clamped && (may_carry || !served_on) && before <= nothing();
@@ -151,13 +165,14 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
         // A small decrease by a full step does not end quadratic convergence; wrong pivots would.
         if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
       }
-      if (stuck) break;
+      if (stuck && !are_soft) break;
     }
     // Near the solution the old factor is reused if a factorization costs much more than an iteration, and once more before
     // the residual counts as round-off: of a net of 100 x 100 a new one for that was a third of a step.
     const double wanted = (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
     factor_will_do = assembly_.is_dear() && residual_.worst <= (may_carry ? std::max(wanted, nothing()) : wanted);
   }
+  if (are_soft) ActiveSet::soften_cones(problem, 1), are_final = false;
   // A problem that stands still keeps its factors: they are half of the time of a step of a tower.
   const bool stands = report.iterations == 0 && has_laws_ && assembly_.is_dear() && assembly_.has_factors_of(stage);
   if (!stuck && !stage.is_projection() && (stage.is_mid_point() || report.iterations == 0))

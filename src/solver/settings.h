@@ -92,6 +92,12 @@ struct NewtonSettings {
   static constexpr double reuse_after = 0.03, reuse_again = 0.1;
   static constexpr int more_for_sides = 4;  ///< times max_iterations, while bounded rows change sides
 
+  /// If a solution is sought softly, contacts have so many times their compliance in so many iterations; in the second number
+  /// while states change.
+  static constexpr double softening = 1e4;
+  static constexpr int few_soft = 2, most_soft = 8;
+  static constexpr int more_for_cones = 2;  ///< then, times max_iterations, while contacts change states
+
   static constexpr int polish_steps = 4;
   static constexpr double polish_clean = 3e-13, polish_noise = 1e-12, polish_fast = 0.3;  ///< see Newton::polish
 };

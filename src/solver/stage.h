@@ -29,6 +29,8 @@ struct Stage {
   /// By more than one pivot, so that no momentum has to be kept: factors of an earlier step leave an error common to all
   /// points, of 1e-5 of the angular momentum of a free body.
   bool is_held = false;
+  /// The states of contacts are sought where these are soft: see Integrator::try_step.
+  bool begins_softly = false;
 
   bool is_mid_point() const { return scheme == Scheme::mid_point; }
   bool is_projection() const { return h == 0; }
