@@ -22,7 +22,7 @@ struct Sensed {
   Vec3 position, normal;   ///< the latter towards the body
   double gap;              ///< m
   double speed;            ///< of the approach, m/s
-  bool is_passed = false;  ///< it came on its way in the step, and was apart at the start
+  bool is_passed = false;  ///< met on the way within the step, apart at its start
 };
 
 /// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
@@ -160,7 +160,7 @@ class ContactFinder {
   std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
-  /// What may pass a sensor within the step, and the centers at its start.
+  /// A pair of which one may pass the other, a sensor, within the step, with the centers at its start.
   struct Passing {
     Pair pair;
     double size;
