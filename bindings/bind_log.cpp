@@ -184,7 +184,7 @@ void bind_log(nb::module_& module) {
           "key"_a, "function"_a, "name"_a)
       .def(
           "id_of",
-          [](const LogObject& self, nb::handle object) {
+          [](const LogObject&, nb::handle object) {
             std::optional<std::tuple<std::string, std::uint32_t, std::uint32_t>> id;
             (void)(tell_id<BodyHandle>(object, id) || tell_id<ParticleHandle>(object, id) ||
                    tell_id<BondHandle>(object, id) || tell_id<ConstraintHandle>(object, id));

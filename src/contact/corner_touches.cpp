@@ -326,7 +326,7 @@ void CornerSearch::add_of_ring(const Ball& ball, double tube, const RingSides& s
   const double gap = dot(normal, place - face.plane.origin), tolerance = vanishing * size_;
   if (!(gap <= within_) || !is_over(face, place, beside * size_)) return;
   if (gap < -tolerance && !is_nearest(face, place, -gap, tolerance)) return;
-  if (sides.is_through(place + tube * normal) == gap < -tube) add(ball, face.plane);
+  if (sides.is_through(place + tube * normal) == (gap < -tube)) add(ball, face.plane);
 }
 
 void CornerSearch::look(const Ball& ball) {

@@ -35,7 +35,7 @@ Nearby rim(double x, double circle, const Vec3& p, double radius) {
   return {Kind::line, Vec3{x, 0, 0} + circle * out, radius, cross({1, 0, 0}, out), (-1 / circle) * out};
 }
 
-Nearby nearby(const Box& box, const Vec3& p, const Vec3& on_surface, const Vec3&) {
+Nearby nearby(const Box& box, const Vec3& p, const Vec3& on_surface) {
   const Vec3 half = 0.5 * box.size - Vec3{box.rounding, box.rounding, box.rounding};
   const Vec3 core{std::clamp(p.x, -half.x, half.x), std::clamp(p.y, -half.y, half.y), std::clamp(p.z, -half.z, half.z)};
   const bool beyond[] = {core.x != p.x, core.y != p.y, core.z != p.z};
@@ -45,7 +45,7 @@ Nearby nearby(const Box& box, const Vec3& p, const Vec3& on_surface, const Vec3&
   return {Kind::line, core, box.rounding, {beyond[0] ? 0.0 : 1.0, beyond[1] ? 0.0 : 1.0, beyond[2] ? 0.0 : 1.0}};
 }
 
-Nearby nearby(const Cylinder& c, const Vec3& p, const Vec3& on_surface, const Vec3&) {
+Nearby nearby(const Cylinder& c, const Vec3& p, const Vec3& on_surface) {
   const double half = 0.5 * c.length - c.rounding, circle = c.radius - c.rounding;
   if (std::abs(p.x) <= half) return {Kind::line, {p.x, 0, 0}, c.radius, {1, 0, 0}};
   if (from_axis(p) <= circle) return {Kind::plane, on_surface};
@@ -53,7 +53,7 @@ Nearby nearby(const Cylinder& c, const Vec3& p, const Vec3& on_surface, const Ve
   return circle > 0 ? rim(end, circle, p, c.rounding) : Nearby{Kind::point, {end, 0, 0}, c.rounding};
 }
 
-Nearby nearby(const Cone& c, const Vec3&, const Vec3& on_surface, const Vec3& normal) {
+Nearby nearby(const Cone& c, const Vec3& on_surface, const Vec3& normal) {
   const double base = -0.5 * c.length, size = c.radius + c.length, slope = std::hypot(c.radius, c.length);
   const double far = from_axis(on_surface);
   if (on_surface.x > -base - on_border * size) return {Kind::point, {-base, 0, 0}};
@@ -116,9 +116,9 @@ void add_touches_of_ring(const Solid& torus, const Solid& solid, const ConvexPar
       distance,
       {.samples = 64, .is_closed = true, .limit = within + ring.tube, .level = lying * ring.tube, .steps = 28}, minima);
   const auto nearby_of = [&](const Vec3& p, const Vec3& on_surface, const Vec3& normal, const Vec3& across) {
-    if (const auto* const box = std::get_if<Box>(&form.shape)) return nearby(*box, p, on_surface, normal);
-    if (const auto* const c = std::get_if<Cylinder>(&form.shape)) return nearby(*c, p, on_surface, normal);
-    if (const auto* const c = std::get_if<Cone>(&form.shape)) return nearby(*c, p, on_surface, normal);
+    if (const auto* const box = std::get_if<Box>(&form.shape)) return nearby(*box, p, on_surface);
+    if (const auto* const c = std::get_if<Cylinder>(&form.shape)) return nearby(*c, p, on_surface);
+    if (const auto* const c = std::get_if<Cone>(&form.shape)) return nearby(*c, on_surface, normal);
     if (const auto* const e = std::get_if<Ellipsoid>(&form.shape)) return nearby(*e, on_surface, normal, across);
     Nearby found_there = nearby(part, to_anchor(on_surface));
     found_there.place = to_solid(found_there.place), found_there.along = rotate(back, found_there.along);

@@ -121,16 +121,15 @@ void TouchFinder::find_on_face(const ConvexPart& first, const ConvexPart& second
 }
 
 template <class Visit>
-void TouchFinder::for_each_near(const Outline& first, const Vec3& spin_of_first, const Outline& second,
-                                const Vec3& spin_of_second, double within, Visit visit) {
-  const Vec3 anchor = anchor_of(second);
+void TouchFinder::for_each_near(const Vec3& anchor, const Vec3& spin_of_first, const Vec3& spin_of_second,
+                                double within, Visit visit) {
   for (std::size_t i = 0; i < first_.count; ++i) {
     if (!first_.parts[i].is_met()) continue;
     const geometry::Bounds box = geometry::grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
       if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box)) {
         place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
-        visit(first_.parts[i], second_.parts[k], anchor);
+        visit(first_.parts[i], second_.parts[k]);
       }
   }
 }
@@ -145,13 +144,13 @@ void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Ou
                        const Vec3& spin_of_second, double within, std::vector<Touch>& found, const Vec3& way) {
   if (is_nothing(first) || is_nothing(second)) return;
   const std::size_t before = found.size();
-  list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
+  const Vec3 anchor = anchor_of(second);
+  list(first, anchor, first_), list(second, anchor, second_);
   const bool has_meshes = (first_.kinds | second_.kinds) >= Part::mesh;
   if (has_meshes) find_corners(spin_of_first, spin_of_second, within, found);
-  for_each_near(first, spin_of_first, second, spin_of_second, within,
-                [&](Part& one, Part& other, const Vec3& anchor) { find(one, other, anchor, within, way, found); });
+  for_each_near(anchor, spin_of_first, spin_of_second, within,
+                [&](Part& one, Part& other) { find(one, other, anchor, within, way, found); });
   if (has_meshes) {
-    const Vec3 anchor = anchor_of(second);
     find_on_edges(first_, spin_of_first, second_, true, anchor, within, found);
     find_on_edges(second_, spin_of_second, first_, false, anchor, within, found);
     find_between_edges(anchor, within, found);
@@ -244,12 +243,12 @@ void TouchFinder::find_on_faces(const Outline& first, const Vec3& spin_of_first,
                                 std::vector<Touch>& found) {
   if (is_nothing(first) || is_nothing(second)) return;
   const std::size_t before = found.size();
-  list(first, anchor_of(second), first_), list(second, anchor_of(second), second_);
-  for_each_near(first, spin_of_first, second, spin_of_second, within,
-                [&](const Part& one, const Part& other, const Vec3& anchor) {
-                  if (one.kind != Part::ring && other.kind != Part::ring)
-                    find_on_face(one.placed, other.placed, normal, anchor, within, found);
-                });
+  const Vec3 anchor = anchor_of(second);
+  list(first, anchor, first_), list(second, anchor, second_);
+  for_each_near(anchor, spin_of_first, spin_of_second, within, [&](const Part& one, const Part& other) {
+    if (one.kind != Part::ring && other.kind != Part::ring)
+      find_on_face(one.placed, other.placed, normal, anchor, within, found);
+  });
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
 }
 

@@ -181,8 +181,13 @@ class HeadsetUser implements User {
   }
 
   async press(body: number): Promise<void> {
-    await this.me_.pointAtBody("right", rightRest, body);
-    await this.tab.until(`the ray is on ${body}`, (id) => iotaXR!.inputs().some((input) => input.name.startsWith("right") && input.hovered === id), body);
+    const isOn = (id: number) => iotaXR!.inputs().some((input) => input.name.startsWith("right") && input.hovered === id);
+    // A busy machine may draw the world as it was before its reset when it is pointed at.
+    for (let trial = 0; trial < 20; trial++) {
+      await this.me_.pointAtBody("right", rightRest, body);
+      if (await this.tab.page.evaluate(isOn, body)) break;
+    }
+    await this.tab.until(`the ray is on ${body}`, isOn, body);
     await this.close_(1);
   }
 
