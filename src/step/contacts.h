@@ -44,7 +44,7 @@ class ContactFinder {
   /// short that what meets now moves by a part of its size.
   std::optional<double> find_part(model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies, double left,
                                   const Part&);
-  /// At the end of a step of h seconds: adds the fast ones of `sensed` that have met on their way, which is taken for straight.
+  /// At the end of a step of h seconds: adds to `sensed` the fast pairs that have met on their ways, which are taken for straight.
   void sense_on_the_way(const model::Model&, contact::Outlines&, double h);
   /// The pairs with a sensor whose gap is small or negative at the start of the step, or was on their way in it.
   const std::vector<Sensed>& sensed() const { return sensed_; }
