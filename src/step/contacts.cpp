@@ -345,11 +345,11 @@ bool touch_each_other(model::Model& model, contact::Outlines& outlines,
 }  // namespace
 
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
-  hasty_.clear();
+  hasty_.clear(), sensed_.clear(), passing_.clear();
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   step_ = h, shortest_ = h / Heap::most_sub_steps;
-  pairs_.clear(), sensed_.clear(), passing_.clear();
+  pairs_.clear();
   note_changes(model, outlines);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
@@ -383,6 +383,27 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     for (const std::uint32_t slot : movers_) ingredient::Contacts::end_old(model, slot);
 }
 
+namespace {
+
+/// The mean of the places that a moving body has as unknowns, m; zero for a static one.
+Vec3 center_of(const model::Model& model, std::uint32_t slot) {
+  const model::Body& body = model.bodies[slot];
+  Vec3 center;
+  if (body.kind != BodyKind::static_)
+    for (std::size_t k = 0; k < body.rank; ++k) center += (1.0 / body.rank) * model.position(body.basis[k]);
+  return center;
+}
+
+/// The deepest touch of two bodies; velocity: of the first relative to the second, m/s.
+Sensed sensed_of(const std::pair<std::uint32_t, std::uint32_t>& pair, const std::vector<contact::Touch>& touches,
+                 const Vec3& velocity) {
+  const contact::Touch& deepest = *std::ranges::min_element(touches, {}, &contact::Touch::gap);
+  const Vec3 normal = (deepest.is_turned ? -1.0 : 1.0) * deepest.normal;
+  return {pair.first, pair.second, deepest.place, normal, deepest.gap, std::max(0.0, -dot(velocity, normal))};
+}
+
+}  // namespace
+
 void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines, const Pair& pair) {
   constexpr double close = 1e-3;  // of the size
   const auto [first, second] = pair;
@@ -399,11 +420,7 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
       passing_.push_back({pair, meeting.size, {center_of(model, first), center_of(model, second)}});
     return;
   }
-  const contact::Touch& deepest =
-      *std::min_element(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.gap < b.gap; });
-  const Vec3 normal = (deepest.is_turned ? -1.0 : 1.0) * deepest.normal;
-  const double speed = std::max(0.0, -dot(mover.velocity - other_velocity, normal));
-  sensed_.push_back({first, second, deepest.place, normal, deepest.gap, speed});
+  sensed_.push_back(sensed_of(pair, found_, mover.velocity - other_velocity));
 }
 
 // By the places at both ends of the step: what was met before the sensor has kept it out.
@@ -412,24 +429,19 @@ void ContactFinder::sense_on_the_way(const model::Model& model, contact::Outline
     const std::uint32_t bodies[2] = {pair.first, pair.second};
     contact::Motion motions[2];
     for (int k = 0; k < 2; ++k) {
-      const contact::Outline& outline = outlines.placed(bodies[k]);
-      contact::Motion& motion = motions[k];
-      motion.center = center_of(model, bodies[k]), motion.at = h;
-      if (model.bodies[bodies[k]].kind == BodyKind::static_) continue;
-      motion.velocity = (1 / h) * (motion.center - centers[k]);
-      motion.spin = model::body_angular_velocity(model, bodies[k]);
-      motion.reach = contact::reach(outline, motion.center);
+      (void)outlines.placed(bodies[k]);
+      motions[k] = motion_of(model, outlines, bodies[k]);
+      motions[k].velocity = (1 / h) * (motions[k].center - centers[k]);
+      motions[k].more = 0, motions[k].at = h;
     }
     const double close = touching * size;
     const double time = approaches_.time(outlines.described(pair.first), motions[0], outlines.described(pair.second),
                                          motions[1], close, h);
-    const std::vector<contact::Touch>& met = approaches_.met();
-    if (!(time < h) || met.empty()) continue;
-    const contact::Touch& nearest = *std::ranges::min_element(met, {}, &contact::Touch::gap);
-    if (!(nearest.gap <= close)) continue;
-    const Vec3 normal = (nearest.is_turned ? -1.0 : 1.0) * nearest.normal;
-    const double speed = std::max(0.0, -dot(motions[0].velocity - motions[1].velocity, normal));
-    sensed_.push_back({pair.first, pair.second, nearest.place + motions[1].center, normal, 0, speed, true});
+    if (!(time < h) || approaches_.met().empty()) continue;
+    Sensed sensed = sensed_of(pair, approaches_.met(), motions[0].velocity - motions[1].velocity);
+    if (!(sensed.gap <= close)) continue;
+    sensed.position += motions[1].center, sensed.gap = 0, sensed.is_passed = true;
+    sensed_.push_back(sensed);
   }
 }
 
@@ -586,14 +598,6 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
   if (found_.empty()) return false;
   ingredient::Contacts::take(model, first, second, former, found_, motion);
   return true;
-}
-
-Vec3 ContactFinder::center_of(const model::Model& model, std::uint32_t slot) const {
-  const model::Body& body = model.bodies[slot];
-  Vec3 center;
-  if (body.kind != BodyKind::static_)
-    for (std::size_t k = 0; k < body.rank; ++k) center += (1.0 / body.rank) * model.position(body.basis[k]);
-  return center;
 }
 
 contact::Motion ContactFinder::motion_of(const model::Model& model, const contact::Outlines& outlines,

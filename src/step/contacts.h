@@ -107,7 +107,6 @@ class ContactFinder {
   bool has_moved(model::Model&, const contact::Outlines&, std::uint32_t body);
   ingredient::Contacts::Motion motion_in(const model::Model&, const Meeting&) const;
   void sense(const model::Model&, contact::Outlines&, const Pair&);
-  Vec3 center_of(const model::Model&, std::uint32_t body) const;
   double within(const Mover&, const Mover* other, double steps = 1) const;
   /// The box that a body stays in for its stride.
   geometry::Bounds way_of_stride(const model::Model&, contact::Outlines&, const Mover&) const;

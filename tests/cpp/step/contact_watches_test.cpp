@@ -301,6 +301,21 @@ TEST(ContactWatches, tell_what_passes_a_sensor_between_two_steps) {
       }
 }
 
+TEST(ContactWatches, forget_what_may_pass_a_sensor_when_nothing_touches_any_more) {
+  System system;
+  system.set_gravity({});
+  const BodyId gate = system.bodies().create_obstacle(Box{{0.02, 1, 1}});
+  system.bodies().set_material(gate, Material{.touches = Touches::sensor});
+  const BodyId ball = system.bodies().create(Sphere{0.05}, {.position = {-1, 0, 0}});
+  system.bodies().set_material(ball, Material{});
+  system.bodies().set_velocity(ball, {100, 0, 0});
+  (void)system.contacts().watch({});
+  EXPECT_EQ(system.step(1.0 / 60).contacts.size(), 1u);
+  system.bodies().destroy(ball), system.bodies().destroy(gate);
+  (void)system.step(1.0 / 60);
+  EXPECT_TRUE(system.step(1.0 / 60).contacts.empty());
+}
+
 TEST(ContactWatches, know_what_sleeps_in_a_sensor_and_sensors_that_move) {
   Watched world;
   System& system = world.system;
