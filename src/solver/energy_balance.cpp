@@ -192,6 +192,7 @@ double Solved::work_of_imbalance() const {
 
 void EnergyBalance::measure(const Problem& problem, double fraction) {
   kinetic = problem.kinetic_energy();
+  terms = problem.potential_size(problem.position.data());
   total = kinetic + problem.potential_energy(problem.position.data()) +
           problem.row_energy(problem.position.data(), fraction);
 }
@@ -214,7 +215,7 @@ void EnergyBalance::measure_kinetic(const Problem& problem) {
 StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newton, const Stage& stage,
                                       bool drives_rows, std::span<const double> multipliers_before) const {
   const Solved step{problem, newton, stage};
-  StepEnergy energy{.kinetic_before = kinetic, .total_before = total};
+  StepEnergy energy{.kinetic_before = kinetic, .total_before = total, .terms = terms};
   energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
   step.add_dissipation(energy, multipliers_before);
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });

@@ -17,6 +17,7 @@ struct StepEnergy {
   double dissipated = 0;          ///< work of dampers, dashpots and friction
   double damped = 0;              ///< of that, by forces: rows also have friction, and the slip of clutches
   double impact = 0;              ///< upper bound of what rows that have just become active dissipate
+  double terms = 0;               ///< size of the terms of the potential energy, whose sum may be none
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
   double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored
@@ -33,12 +34,15 @@ struct StepEnergy {
     return external_work > 0 ? std::clamp(missing() - motion, 0.0, external_work)
                              : std::clamp(missing() + motion, external_work, 0.0);
   }
-  double size() const { return std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated); }
+  double size() const {
+    return terms + std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated);
+  }
 };
 
 /// The energy of a problem from one (sub-)step to the next, and what no law or force explains of its changes.
 struct EnergyBalance {
   double kinetic = 0, total = 0;  ///< of the present state, J
+  double terms = 0;               ///< size of the terms of the potential energy, see Problem::potential_size
   double missing = 0;             ///< unexplained: lost, or made if negative, J
   double slack = 0;               ///< of what is made: within the tolerance of the solves, J
 

@@ -203,6 +203,13 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
   return energy;
 }
 
+double Problem::potential_size(const Vec3* x) const {
+  double moment = 0;
+  for (std::size_t i = 0; i < size(); ++i) moment += mass[i] * norm(x[i]);
+  for (const auto& c : mass_couplings) moment += std::abs(c.mass) * norm(x[c.a] + x[c.b]);
+  return norm(gravity) * moment;
+}
+
 double Problem::row_energy(const Vec3* x, double fraction) const {
   double energy = 0;
   for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {

@@ -391,6 +391,9 @@ struct Problem {
   }
   /// Gravity and implicit forces; external ones (grips) are not in the world's energy, only in Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
+  /// Sum of the weights times the distances to the origin, J: the round-off of the potential energy is a share of it, also where
+  /// the terms cancel. A wheel on its axle has no potential energy.
+  double potential_size(const Vec3* x) const;
   /// Stored in spring rows, with targets as at `fraction` of the step, and in the compliance of cones.
   double row_energy(const Vec3* x, double fraction) const;
   enum class Rows { all, but_contacts };
