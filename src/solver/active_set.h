@@ -47,10 +47,9 @@ class ActiveSet {
   /// @name Sides in an explicit sub-step, which do not change in it (active_set_motion.cpp)
   ///@{
   struct Sides {
-    bool can_follow =
-        true;  ///< not if a stop is met, with a cone, or a drive of unlimited strength that has not its speed
-    bool are_new = false;   ///< other ones than before
-    bool stop_any = false;  ///< a row became an equation
+    bool can_follow = true;  ///< not if a stop is met, or with a cone
+    bool are_new = false;    ///< other ones than before
+    bool stop_any = false;   ///< a row became an equation
   };
   /// By positions and velocities, in a step of h seconds: friction and motors slide or have their speed, stops are open or carry.
   static Sides begin_motion(Problem&, double h);

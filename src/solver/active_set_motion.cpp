@@ -18,12 +18,22 @@ double little(const C& c, double size, double rate, double h) {
   return 1e-6 * (size + std::abs(rate)) + 1e-9 * c.reference_length() / h;
 }
 
+/// The rate of a row by a unit of its multiplier if no other row acted, m/s^2/N.
+template <class C>
+double mobility_of(const RowMotion<C>& motion, const Problem& problem, const C& c, int r) {
+  double mobility = 0;
+  for (int i = 0; i < c.node_count(); ++i)
+    mobility += dot(motion.gradient(i, r), motion.gradient(i, r)) / problem.mass[c.nodes[i]];
+  return mobility;
+}
+
 /// The direction in which a one-sided row opens.
 int opening(const RowLaw& law) { return law.upper == 0 ? 1 : -1; }
 
 }  // namespace
 
 ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
+  constexpr double at_once = 1e-9;  // of the step: a motor or brake that reaches its speed earlier
   Sides sides;
   bool& can_follow = sides.can_follow;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -46,8 +56,12 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           state.side = state.next_side;
         } else if (law.is_rate) {
           const bool is_at_rest = std::abs(speed) <= rest;
-          state.side = static_cast<std::int8_t>(is_at_rest ? 0 : speed > 0 ? 1 : -1);
-          can_follow = can_follow && (is_at_rest || std::isfinite(speed > 0 ? law.upper : law.lower));
+          // Sub-steps cannot follow what takes no time: a motor of unlimited torque turned nothing.
+          const double bound = std::abs(speed > 0 ? law.upper : law.lower);
+          const bool jumps =
+              !is_at_rest && std::abs(speed) < at_once * h * bound * mobility_of(motion, problem, pool.items[k], r);
+          state.side = static_cast<std::int8_t>(is_at_rest || jumps ? 0 : speed > 0 ? 1 : -1);
+          sides.stop_any = sides.stop_any || jumps;
         } else {
           const int open = opening(law);
           const bool touches = open * motion.value[r] <= closed_gap * pool.items[k].reference_length();
@@ -122,9 +136,7 @@ double ActiveSet::longest_step(const Problem& problem) {
       const RowMotion<C> motion(problem, pool.items[k]);
       for (int r = 0; r < C::rows; ++r) {
         if (!law[r].is_compliant() || law[r].is_off()) continue;
-        double mobility = 0;
-        for (int i = 0; i < pool.items[k].node_count(); ++i)
-          mobility += dot(motion.gradient(i, r), motion.gradient(i, r)) / problem.mass[pool.items[k].nodes[i]];
+        const double mobility = mobility_of(motion, problem, pool.items[k], r);
         longest = std::min(
             {longest, of_radian / std::sqrt(mobility / law[r].compliance), of_decay / (mobility * law[r].damping)});
       }

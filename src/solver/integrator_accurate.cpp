@@ -74,7 +74,8 @@ bool Integrator::begin_motion(Problem& problem, bool has_accelerations, AdvanceR
       const double before = energy_.kinetic, missing = energy_.missing;
       if (!newton_.project_state(problem, 0)) return false;
       energy_.measure_kinetic(problem);
-      report.dissipated += before - energy_.kinetic, energy_.missing = missing;
+      const double given = energy_.kinetic - before;  // by a motor that reaches its speed at once, or by brakes
+      (given > 0 ? report.external_work : report.dissipated) += std::abs(given), energy_.missing = missing;
     }
     has_accelerations = has_accelerations && !sides.are_new;
   }

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes as people build them, by neat numbers: balanced on their axles, at rest, in the ground by half, held by a brake of any strength.
+
+Random scenes move from the first step, and their energies are of some size: round-off that is compared with nothing does
+not show in them.
+"""
+
+import math
+import random
+
+import pytest
+
+import iota
+
+MODES = ["energy_keeping", "robust", "accurate"]
+HERTZ = 120
+
+
+def put_on_axle(system: iota.System, dice: random.Random) -> None:
+    """A solid of any size and density, at rest on a joint through its center, with or without what acts in the joint."""
+    size = 10 ** dice.uniform(-2, 1.5)
+    shapes = [
+        iota.Cylinder(0.3 * size, 0.1 * size),
+        iota.Box((0.6 * size, 0.5 * size, 0.1 * size)),
+        iota.Sphere(size / 5),
+    ]
+    at = dice.choice([(0.0, 0.0, 0.0), tuple(dice.uniform(-5, 5) * size for _ in range(3))])
+    body = system.body(shape=dice.choice(shapes), density=10 ** dice.uniform(2, 4), position=at)
+    kind = dice.choice(["revolute", "prismatic", "ball"])
+    if kind == "ball":
+        system.ball(body, at=at)
+        return
+    joint = getattr(system, kind)(body, at=at, axis=dice.choice([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 2, 3)]))
+    freedom = joint.slide if kind == "prismatic" else joint.angle
+    strength = body.mass * (50 if kind == "prismatic" else size**2)  # holds it up
+    what = dice.choice(["nothing", "friction", "motor", "spring", "servo"])
+    if kind == "prismatic" or what == "friction":
+        freedom.friction = strength
+    elif what == "motor":
+        freedom.motor = (dice.choice([0.0, 2.0]), strength)
+    elif what == "spring":
+        freedom.spring = (10 * strength, strength / 10, 0.0)
+    elif what == "servo":
+        freedom.servo = (dice.choice([0.0, 0.5]), strength)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("seed", range(20))
+def test_round_off_of_what_is_balanced_on_its_axle_makes_no_energy(mode: str, seed: int) -> None:
+    dice = random.Random(seed)
+    system = iota.System(mode=mode, gravity=dice.choice([(0, -9.81, 0), (0, 0, 0), (3, -9.81, 2)]))
+    put_on_axle(system, dice)
+    for _ in range(120):
+        report = system.step(1 / dice.choice([30, 60, 240, 1000]))
+        assert (report.warnings, report.fallbacks, report.unconverged) == ([], 0, 0)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("size", [0.04, 0.4, 4.0])
+@pytest.mark.parametrize("form", ["box", "sphere", "box in a box"])
+def test_what_comes_out_of_the_ground_in_space_stays_where_it_came_out(mode: str, size: float, form: str) -> None:
+    system = iota.System(mode=mode, gravity=(0, 0, 0))
+    system.usual_material = iota.Material()
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    shape = iota.Sphere(size / 2) if form == "sphere" else iota.Box((size, size, size))
+    bodies = [system.body(shape=shape, position=(1, 0.3 * size, 0))]
+    if form == "box in a box":
+        bodies.append(system.body(shape=shape, position=(1 + 0.1 * size, 1.1 * size, 0)))
+    for _ in range(3 * HERTZ):
+        assert system.step(1 / HERTZ).warnings == []
+    for k, body in enumerate(bodies):
+        assert body.position.y == pytest.approx((0.5 + k) * size, abs=1e-5 * size)
+        assert body.velocity.length < 1e-5 * size
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("torque", [1e3, 1e9, 1e30, math.inf])
+def test_a_brake_or_a_motor_of_any_strength_has_its_speed_at_once(mode: str, torque: float) -> None:
+    for speed, before in ((0.0, 5.0), (3.0, 0.0), (-2.0, 5.0)):
+        system = iota.System(mode=mode)
+        wheel = system.body(shape=iota.Cylinder(0.1, 0.05), position=(0.5, 0, 0), spin=(0, before, 0))
+        axle = system.revolute(wheel, at=(0.5, 0, 0), axis=(0, 1, 0))
+        axle.angle.motor = (speed, torque)
+        for _ in range(HERTZ):
+            report = system.step(1 / HERTZ)
+            assert (report.unconverged, report.fallbacks, report.warnings) == (0, 0, [])
+        assert wheel.angular_velocity.y == pytest.approx(speed, abs=1e-3)
+        assert axle.angle.value == pytest.approx(speed, abs=5.0 / HERTZ)
