@@ -40,20 +40,20 @@ export interface BrowserOptions {
   readonly trustsAll?: boolean;
   /** Draws shadows, for tests that look at pictures: software takes most of a frame for them. */
   readonly shadows?: boolean;
-  /** Which pictures of the world are drawn: those that the page shows ("always"), those that a test draws and reads ("asked"), or none,
-   * which is usual. All else of a page goes on without them. Software takes most of two cores for them, and some seconds for a frame where
-   * the machine is busy. */
+  /** Which pictures of the world are drawn: those that the page shows ("always"), those that a test draws and reads ("asked"), these and
+   * what frames keep for them ("kept": surroundings that surfaces mirror, and shadows), or none, which is usual. All else of a page goes on
+   * without them. Software takes most of two cores for them, and some seconds for a frame where the machine is busy. */
   readonly draws?: Draws;
 }
 
-type Draws = "always" | "asked" | "never";
+type Draws = "always" | "kept" | "asked" | "never";
 
 /** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
 export const small: BrowserOptions = { width: 640, height: 360 };
 
 /** For a page that draws less than always: leaves out the commands that fill pixels, the blur of what is behind a panel, and two of three
  * frames. What the processor does for a picture stays. */
-const drawLess = (isAsked: boolean) => {
+const drawLess = (draws: Draws) => {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync("* { backdrop-filter: none !important; -webkit-backdrop-filter: none !important; }");
   document.adoptedStyleSheets = [sheet];
@@ -84,8 +84,7 @@ const drawLess = (isAsked: boolean) => {
     isOnScreen = framebuffer === null;
     bind.call(this, target, framebuffer);
   };
-  // What is mirrored, and shadows, are drawn in frames and kept for the pictures that are asked for.
-  const isLeftOut = () => globalThis.drawsFrames !== true && (!isAsked || (inFrame && isOnScreen));
+  const isLeftOut = () => globalThis.drawsFrames !== true && (draws === "never" || (inFrame && (isOnScreen || draws === "asked")));
   for (const name of ["clear", "drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"] as const) {
     const own = context[name] as (...given: number[]) => void;
     context[name] = function (this: WebGL2RenderingContext, ...given: number[]) {
@@ -129,7 +128,7 @@ export class Browser {
       ...(options.touch === true ? { hasTouch: true, isMobile: true } : {}),
     });
     const draws = runsAll || process.env[sharedBrowser] === undefined ? "always" : options.draws ?? "never";
-    if (draws !== "always") await context.addInitScript(drawLess, draws === "asked");
+    if (draws !== "always") await context.addInitScript(drawLess, draws);
     return new Browser(context, draws, options.shadows === true);
   }
 

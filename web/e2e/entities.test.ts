@@ -18,7 +18,7 @@ let passed: Place;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
-  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true, draws: "asked" });
+  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true, draws: "kept" });
   tab = await browser.open(server.url);
   await tab.drawn();
   await tab.until("its images are decoded", () => {

@@ -9,7 +9,7 @@ import { freePort, studyNames, WorldServer } from "./server.ts";
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await Browser.start({ ...small, density: 1, shadows: true, draws: "asked" });
+  browser = await Browser.start({ ...small, density: 1, shadows: true, draws: "kept" });
 });
 
 afterAll(async () => {

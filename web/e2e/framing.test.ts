@@ -14,7 +14,7 @@ const wide = { width: 640, height: 360 };
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await Browser.start({ ...wide, density: 1, draws: "asked" });
+  browser = await Browser.start({ ...wide, density: 1, draws: "kept" });
 });
 
 afterAll(async () => {

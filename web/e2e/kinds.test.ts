@@ -15,7 +15,7 @@ let tab: Tab;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/kinds_probe.py"], await freePort());
-  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true, draws: "asked" });
+  browser = await Browser.start({ width: 960, height: 540, density: 1, shadows: true, draws: "kept" });
   tab = await browser.open(server.url);
   await tab.drawn();
   // Once more, for the paths that the page has seen from their start.

@@ -13,7 +13,7 @@ let tab: Tab;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/matter_probe.py"], await freePort());
-  browser = await Browser.start({ width: 640, height: 360, density: 1, shadows: true, draws: "asked" });
+  browser = await Browser.start({ width: 640, height: 360, density: 1, shadows: true, draws: "kept" });
   tab = await browser.open(server.url, { begun: false });
   await tab.drawn();
 });

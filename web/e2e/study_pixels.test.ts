@@ -10,7 +10,7 @@ import { freePort, WorldServer } from "./server.ts";
 let browser: Browser;
 
 beforeAll(async () => {
-  browser = await Browser.start({ ...small, density: 1, draws: "asked" });
+  browser = await Browser.start({ ...small, density: 1, draws: "kept" });
 });
 
 afterAll(async () => {
