@@ -657,6 +657,16 @@ void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& 
 
 }  // namespace
 
+namespace {
+
+/// Whether round things that are eased out of each other are apart by so much that the way between their middles tells where to. A
+/// ball that was put on the axis of a capsule stayed there.
+bool has_direction(const Model& model, const Contact& c) {
+  return c.depth == 0 || Contacts::gap(model, c) + c.radius > 1e-3 * (c.radius + c.depth);
+}
+
+}  // namespace
+
 void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
   if (!problem.has_used<solver::ContactConstraint>()) return;
   load_resistance(owner, model, nodes, h, problem);
@@ -669,7 +679,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);
     row.constant[1] -= h * c.drift;
-    row.is_round = c.is_round() && c.radius + c.depth > 0;
+    row.is_round = c.is_round() && c.radius + c.depth > 0 && has_direction(model, c);
     row.has_wires = c.form == TouchForm::wires && row.is_round;
     row.bends[0] = row.has_wires ? c.bends[0] : 1, row.bends[1] = row.has_wires ? c.bends[1] : 0;
     const auto constant = [](bool turns, const Vec3& v) { return turns ? Vec3{} : v; };

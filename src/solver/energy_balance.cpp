@@ -13,11 +13,12 @@ namespace {
 constexpr double round_off_of_energy = 1e-14;
 constexpr double of_motion = 1e-9;            // of the kinetic energy: what the tolerance of a solve may make
 constexpr double most_of_held_forces = 0.05;  // of the kinetic energy: the error of a force that is held over a step
-constexpr double finest = 1e-12;              // of a length: motion below it is round-off
+constexpr double finest = 1e-12;              // of a length: motion below it is round-off, of a body at rest
+constexpr double closings = 1e-9;             // of a length: what round-off moves while gaps are closed
 
-/// The energy of motions below the round-off of places, J. A body at rest has this much.
-double jitter_energy(const Problem& problem, double reference_length, double h) {
-  const double jitter = finest * reference_length / h;
+/// The energy of motions by this share of a length in a step, J.
+double jitter_energy(const Problem& problem, double share, double reference_length, double h) {
+  const double jitter = share * reference_length / h;
   return std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
 }
 
@@ -226,7 +227,7 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();
   if (energy.gained() > energy.round_off)
-    energy.round_off += jitter_energy(problem, newton.reference_length(), stage.h);
+    energy.round_off += jitter_energy(problem, finest, newton.reference_length(), stage.h);
   energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
   if (energy.made() > energy.slack) {
     const Strain strain = newton.strain_released(problem, stage, multipliers_before);
@@ -245,7 +246,7 @@ void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
 }
 
 void EnergyBalance::close(const Problem& problem, double reference_length, double h, AdvanceReport& report) {
-  if (missing < -slack) slack += jitter_energy(problem, reference_length, h);
+  if (missing < -slack) slack += jitter_energy(problem, closings, reference_length, h);
   (missing < -slack ? report.made : report.lost) += missing < -slack ? -missing : missing;
   missing = slack = 0;
 }

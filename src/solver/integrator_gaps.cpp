@@ -171,7 +171,9 @@ bool Integrator::try_projection(Problem& problem, int iterations) {
   if (!solved || !problem.has_used<ContactConstraint>()) return solved;
   // Contacts yield a little in Newton's matrix of a projection: what its first iteration leaves open would become motion.
   stage.tolerance = 1e-13, stage.max_iterations = 2;
-  if (try_step(problem, stage, ignored)) move();
+  const double gap = problem.worst_gap(problem.position.data(), 0, true);
+  (void)try_step(problem, stage, ignored);
+  if (problem.worst_gap(newton_.solution().data(), 0, true) < gap) move();
   return solved;
 }
 

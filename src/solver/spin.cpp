@@ -488,7 +488,7 @@ double Spin::restore(Problem& problem) {
   constexpr int passes = 2;  // the second removes the round-off of the first
   constexpr double most_gains[passes] = {
       100, 1e-9};  // of the kinetic energy: points almost in one place would spin extremely
-  constexpr double tolerance = 1e-9;
+  constexpr double tolerance = 1e-9, round_off = 1e-12;
   Parts& parts = noted_;
   double most_lost = 0;
   for (const double most_gain : most_gains) {
@@ -513,7 +513,11 @@ double Spin::restore(Problem& problem) {
       const double first = dot(piece.turn, piece.angular), second = 0.5 * dot(piece.turn, piece.inertia * piece.turn);
       piece.turn *= largest_share(first, second, most_gain * piece.kinetic);
       const double remains = norm(piece.lost - piece.inertia * piece.turn);
-      if (remains > tolerance * norm(piece.wanted_angular)) most_lost = std::max(most_lost, remains);
+      // What does not turn has angular momentum by the round-off of its momentum alone.
+      const double terms =
+          norm(piece.center) * norm(piece.wanted_momentum) + std::sqrt(2 * piece.kinetic * piece.inertia.trace());
+      if (remains > std::max(tolerance * norm(piece.wanted_angular), round_off * terms))
+        most_lost = std::max(most_lost, remains);
     }
     for (std::size_t i = 0; i < problem.size(); ++i) {
       const Part& piece = parts.of(i);

@@ -86,3 +86,34 @@ def test_a_brake_or_a_motor_of_any_strength_has_its_speed_at_once(mode: str, tor
             assert (report.unconverged, report.fallbacks, report.warnings) == (0, 0, [])
         assert wheel.angular_velocity.y == pytest.approx(speed, abs=1e-3)
         assert axle.angle.value == pytest.approx(speed, abs=5.0 / HERTZ)
+
+
+SOLIDS = {
+    "ball": iota.Sphere(0.2),
+    "capsule": iota.Capsule(0.2, 1.0),
+    "box": iota.Box((0.6, 0.4, 0.5)),
+    "cylinder": iota.Cylinder(0.25, 0.6),
+    "cone": iota.Cone(0.3, 0.6),
+    "ellipsoid": iota.Ellipsoid((0.3, 0.2, 0.25)),
+}
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+@pytest.mark.parametrize("turn", [("y", 0), ("y", 90), ("z", 90)])
+@pytest.mark.parametrize("other", SOLIDS)
+@pytest.mark.parametrize("one", SOLIDS)
+def test_what_is_put_into_the_middle_or_the_axis_of_another_comes_out(
+    one: str, other: str, turn: tuple[str, float], gravity: float
+) -> None:
+    for aside in ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0)):
+        system = iota.System(gravity=(0, -gravity, 0))
+        system.usual_material = iota.Material()
+        if gravity:
+            system.obstacle(iota.HalfSpace((0, 1, 0)))
+        place = iota.Vec3(0, 0.6, 0)
+        system.body(shape=SOLIDS[one], position=place)
+        system.body(shape=SOLIDS[other], position=place + iota.Vec3(*aside), orientation=turn)
+        for _ in range(90):
+            report = system.step(1 / 60)
+            assert (report.unconverged, report.warnings) == (0, [])
+        assert report.worst_gap < 1e-8
