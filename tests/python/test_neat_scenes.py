@@ -117,3 +117,17 @@ def test_what_is_put_into_the_middle_or_the_axis_of_another_comes_out(
             report = system.step(1 / 60)
             assert (report.unconverged, report.warnings) == (0, [])
         assert report.worst_gap < 1e-8
+
+
+def test_what_sweeps_push_out_of_each_other_is_lifted_by_the_edit_and_not_by_made_energy() -> None:
+    system = iota.System()
+    system.budget_contacts = 1  # everything by sweeps
+    system.usual_material = iota.Material()
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    for k in range(3):
+        system.body(shape=iota.Box((1, 1, 1)), position=(0, 0.4 + 0.8 * k, 0))
+    for _ in range(120):
+        assert system.step(1 / 60).warnings == []
+    assert system.energy.made < 1e-9
+    standing = 1000 * 9.81 * (0.5 + 1.5 + 2.5)  # three boxes of a tonne
+    assert system.energy.edits == pytest.approx(standing, rel=1e-3), "with what their creation gave"
