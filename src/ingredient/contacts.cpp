@@ -655,10 +655,6 @@ void load_resistance(std::uint8_t owner, const Model& model, const IslandNodes& 
   });
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether round things that are eased out of each other are apart by so much that the way between their middles tells where to. A
 /// ball that was put on the axis of a capsule stayed there.
 bool has_direction(const Model& model, const Contact& c) {

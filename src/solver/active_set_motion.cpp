@@ -58,8 +58,8 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           const bool is_at_rest = std::abs(speed) <= rest;
           // Sub-steps cannot follow what takes no time: a motor of unlimited torque turned nothing.
           const double bound = std::abs(speed > 0 ? law.upper : law.lower);
-          const bool jumps =
-              !is_at_rest && std::abs(speed) < at_once * h * bound * mobility_of(motion, problem, pool.items[k], r);
+          const double soon = at_once * h * bound * mobility_of(motion, problem, pool.items[k], r);
+          const bool jumps = !is_at_rest && !(std::abs(speed) >= soon);  // also where nothing can move
           state.side = static_cast<std::int8_t>(is_at_rest || jumps ? 0 : speed > 0 ? 1 : -1);
           sides.stop_any = sides.stop_any || jumps;
         } else {

@@ -322,7 +322,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   if (made > 0)
     (void)change_kinetic_energy(problem, made, is_alone ? std::optional(rigid_motion_of(problem)) : std::nullopt);
   report.external_work += swept.external_work;
-  // What is left of that is no motion: it lies higher, as after the closing of a gap.
+  // The rest of what they have lifted has been paid by nothing, as where gaps are closed.
   const double raised = std::clamp(-energy_.missing, 0.0, std::max(0.0, lifted));
   report.closing_energy += raised, energy_.missing += raised;
   // Impacts and friction are not told apart from what the sub-steps lose.

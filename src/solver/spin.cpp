@@ -513,7 +513,7 @@ double Spin::restore(Problem& problem) {
       const double first = dot(piece.turn, piece.angular), second = 0.5 * dot(piece.turn, piece.inertia * piece.turn);
       piece.turn *= largest_share(first, second, most_gain * piece.kinetic);
       const double remains = norm(piece.lost - piece.inertia * piece.turn);
-      // What does not turn has angular momentum by the round-off of its momentum alone.
+      // A piece that does not turn has angular momentum by the round-off of its momentum alone.
       const double terms =
           norm(piece.center) * norm(piece.wanted_momentum) + std::sqrt(2 * piece.kinetic * piece.inertia.trace());
       if (remains > std::max(tolerance * norm(piece.wanted_angular), round_off * terms))

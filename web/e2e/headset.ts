@@ -31,7 +31,8 @@ export class HeadsetTab {
     await this.tab.page.mouse.move(200, 120);
     await this.tab.page.mouse.move(210, 120);
     await this.tab.page.click("#enter-xr");
-    await this.tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2);
+    // The button is there before the module that makes iotaXR has come.
+    await this.tab.until("the session runs", () => globalThis.iotaXR?.presenting === true && globalThis.iotaXR.inputs().length === 2);
   }
 
   /** The result of a function of the page, after some frames. */
