@@ -338,7 +338,7 @@ class Meeting {
  private:
   /// The depth of a contact after this step, m. The solver moves places by what closes, but a gap that it takes for closed would
   /// become motion: what would close by so little closes at once, or stays if it is all that there is. A box that came out of
-  /// the ground in space flew away, in `accurate` with five lengths a second.
+  /// the ground in space flew away, in `accurate` by its length in each second.
   double eased(const Contact& c) const {
     const double next = c.depth * std::exp(-motion_.h / easing_time);
     if (c.is_of_sweeps) return next;

