@@ -193,6 +193,7 @@ class Integrator {
   void keep_offsets(Problem&, AdvanceReport&);
   void drop_offsets(Problem&);
   bool share_gaps(Problem&, double fraction, AdvanceReport&);
+  void close_to_round_off(Problem&);
   bool try_projection(Problem&, int iterations);
   bool project_in_one_solve(Problem&);
   bool close_bit_by_bit(Problem&);

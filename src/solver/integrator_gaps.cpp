@@ -165,16 +165,21 @@ bool Integrator::try_projection(Problem& problem, int iterations) {
   Stage stage = Stage::projection(exact_rows);
   stage.fraction = 0;
   stage.max_iterations = iterations;
-  const auto move = [&] { std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin()); };
   const bool solved = try_step(problem, stage, ignored);
-  if (solved) move();
-  if (!solved || !problem.has_used<ContactConstraint>()) return solved;
-  // Contacts yield a little in Newton's matrix of a projection: what its first iteration leaves open would become motion.
-  stage.tolerance = 1e-13, stage.max_iterations = 2;
+  if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
+  return solved;
+}
+
+// Contacts yield a little in Newton's matrix of a projection: what its first iteration leaves open would become motion.
+void Integrator::close_to_round_off(Problem& problem) {
+  if (!problem.has_used<ContactConstraint>()) return;
+  AdvanceReport ignored;
+  Stage stage = Stage::projection(exact_rows);
+  stage.fraction = 0, stage.tolerance = 1e-13, stage.max_iterations = 2;
   const double gap = problem.worst_gap(problem.position.data(), 0, true);
   (void)try_step(problem, stage, ignored);
-  if (problem.worst_gap(newton_.solution().data(), 0, true) < gap) move();
-  return solved;
+  if (problem.worst_gap(newton_.solution().data(), 0, true) < gap)
+    std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
 }
 
 // For an unchanged conflict. More attempts took the time of 20 to 36 frames and left the same gaps.
@@ -182,6 +187,7 @@ bool Integrator::project_in_one_solve(Problem& problem) {
   problem.copy_multipliers_to(multipliers_saved_);
   problem.clear_offsets();
   const bool solved = try_projection(problem, 8);
+  if (solved) close_to_round_off(problem);
   problem.set_multipliers(multipliers_saved_);
   return solved;
 }
@@ -197,6 +203,7 @@ bool Integrator::project_positions(Problem& problem) {
     if (!share_gaps(problem, 0, ignored)) break;
     solved = try_projection(problem, 12);
   }
+  if (solved) close_to_round_off(problem);
   problem.set_multipliers(multipliers_saved_);
   return solved;
 }
