@@ -10,10 +10,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace iota::shape {
 
 namespace {
+
+constexpr std::string_view or_open = "; an obstacle takes an open one (Python: closed=False)";
 
 /// Why it is not closed, empty if it is: every edge must occur once in each direction.
 std::string gap_of(const Mesh& mesh) {
@@ -35,7 +38,7 @@ std::string gap_of(const Mesh& mesh) {
     const auto opposite = std::lower_bound(edges.begin(), edges.end(), Edge{e.to, e.from, 0});
     if (opposite == edges.end() || opposite->from != e.to || opposite->to != e.from)
       return text("the mesh is not closed: triangle ", e.triangle, " has no neighbor at the edge ", e.from, " - ", e.to,
-                  "; close the hole, or join vertices that are at one place");
+                  "; close the hole, or join vertices that are at one place", or_open);
   }
   return {};
 }
@@ -43,7 +46,7 @@ std::string gap_of(const Mesh& mesh) {
 /// Why the triangles enclose no volume, empty if they do: `out` is then what they enclose.
 std::string measure(const Mesh& mesh, MassProperties& out) {
   if (mesh.triangles.size() < 4)
-    return text("a closed mesh has at least 4 triangles, this one has ", mesh.triangles.size());
+    return text("a closed mesh has at least 4 triangles, this one has ", mesh.triangles.size(), or_open);
   if (std::string gap = gap_of(mesh); !gap.empty()) return gap;
   Vec3 mean;
   for (const Vec3& vertex : mesh.vertices) mean += (1.0 / static_cast<double>(mesh.vertices.size())) * vertex;

@@ -103,6 +103,7 @@ TEST(Mesh, that_encloses_nothing_is_refused_with_the_place_and_the_way_out) {
   EXPECT_EQ(why_refused(box), "");
   EXPECT_TRUE(tells(refused([](Mesh& m) { m.triangles.resize(3); }), "at least 4 triangles"));
   EXPECT_TRUE(tells(refused([](Mesh& m) { m.triangles.pop_back(); }), "is not closed"));
+  EXPECT_TRUE(tells(refused([](Mesh& m) { m.triangles.pop_back(); }), "an obstacle takes an open one"));
   EXPECT_TRUE(tells(refused([](Mesh& m) { std::swap(m.triangles[5][0], m.triangles[5][1]); }), "inconsistently"));
   EXPECT_TRUE(tells(refused([](Mesh& m) {
                       for (auto& t : m.triangles) std::swap(t[0], t[1]);
