@@ -22,6 +22,14 @@ double jitter_energy(const Problem& problem, double share, double reference_leng
   return std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
 }
 
+/// Work, and the size of its terms, J. Its round-off is a share of that: a force of 1 N that holds something 1 m from the
+/// origin still has a work of 1e-16 J, by the last bits of the place.
+struct Work {
+  double sum = 0, terms = 0;
+  void add(double work, const Vec3& force, double distance) { sum += work, terms += norm(force) * distance; }
+  void add(const Vec3& force, const Vec3& from, const Vec3& to) { add(dot(force, to - from), force, norm(to)); }
+};
+
 /// One solved (sub-)step.
 struct Solved {
   const Problem& problem;
@@ -48,7 +56,7 @@ struct Solved {
     }
   }
 
-  double external_work() const;
+  Work external_work() const;
   double held_force_error() const;
   double work_of_drives() const;
   void add_dissipation(StepEnergy&, std::span<const double> multipliers_before) const;
@@ -61,27 +69,28 @@ struct Solved {
 };
 
 // The work of grips, forces of velocities, pushes of laws, targets of points and explicit forces.
-double Solved::external_work() const {
-  double work = 0;
+Work Solved::external_work() const {
+  Work work;
   for (const auto& f : problem.items_of<GripForce>()) {
-    const Vec3 e0 = f.arm.value(start()), e1 = f.arm.value(end());
-    work += dot(f.force(e0, e1, force_stage()), e1 - e0);
+    const Vec3 e0 = f.arm.value(start()), e1 = f.arm.value(end()), force = f.force(e0, e1, force_stage());
+    work.add(dot(force, e1 - e0), force, f.arm.size(end()));
   }
-  for (const auto& f : problem.items_of<VelocityForce>())
-    work += f.work(f.arm.value(start()), f.arm.value(end()), force_stage());
+  for (const auto& f : problem.items_of<VelocityForce>()) {
+    const Vec3 e0 = f.arm.value(start()), e1 = f.arm.value(end());
+    work.add(f.work(e0, e1, force_stage()), f.force(e0, e1, force_stage()), f.arm.size(end()));
+  }
   for (const auto& f : problem.items_of<RadialForce>())
-    work += f.push_work(f.arm.value(start()), f.arm.value(end()), force_stage());
+    work.sum += f.push_work(f.arm.value(start()), f.arm.value(end()), force_stage());
   const std::span<const AffineConstraint> affines = problem.items_of<AffineConstraint>();
   for (std::size_t k = 0; k < affines.size(); ++k) {
     const AffineConstraint& c = affines[k];
     if (c.target == c.target_start) continue;
     const double* const l = problem.pool_of<AffineConstraint>().multiplier(k);
-    Vec3 moved;
-    for (std::uint32_t i = 0; i < c.count; ++i) moved += c.weights[i] * (end()[c.nodes[i]] - start()[c.nodes[i]]);
-    work -= dot(Vec3{l[0], l[1], l[2]}, moved);
+    for (std::uint32_t i = 0; i < c.count; ++i)
+      work.add(-c.weights[i] * Vec3{l[0], l[1], l[2]}, start()[c.nodes[i]], end()[c.nodes[i]]);
   }
-  for (std::size_t i = 0; i < problem.force.size(); ++i) work += dot(problem.force[i], end()[i] - start()[i]);
-  for (const BodyTorque& t : problem.torques) work += t.work(start(), end(), stage.is_mid_point());
+  for (std::size_t i = 0; i < problem.force.size(); ++i) work.add(problem.force[i], start()[i], end()[i]);
+  for (const BodyTorque& t : problem.torques) work.sum += t.work(start(), end(), stage.is_mid_point());
   return work;
 }
 
@@ -217,7 +226,8 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
                                       bool drives_rows, std::span<const double> multipliers_before) const {
   const Solved step{problem, newton, stage};
   StepEnergy energy{.kinetic_before = kinetic, .total_before = total, .terms = terms};
-  energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
+  const Work held = step.external_work();
+  energy.external_work = held.sum + (drives_rows ? step.work_of_drives() : 0), energy.terms += held.terms;
   step.add_dissipation(energy, multipliers_before);
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
   if (!stage.is_mid_point()) {  // a larger error is made energy: the step is halved

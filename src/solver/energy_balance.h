@@ -17,7 +17,7 @@ struct StepEnergy {
   double dissipated = 0;          ///< work of dampers, dashpots and friction
   double damped = 0;              ///< of that, by forces: rows also have friction, and the slip of clutches
   double impact = 0;              ///< upper bound of what rows that have just become active dissipate
-  double terms = 0;               ///< size of the terms of the potential energy, whose sum may be none
+  double terms = 0;               ///< size of the terms of the potential energy and of the work, whose sums may be none
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
   double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored

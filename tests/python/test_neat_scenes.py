@@ -131,3 +131,29 @@ def test_what_sweeps_push_out_of_each_other_is_lifted_by_the_edit_and_not_by_mad
     assert system.energy.made < 1e-9
     standing = 1000 * 9.81 * (0.5 + 1.5 + 2.5)  # three boxes of a tonne
     assert system.energy.edits == pytest.approx(standing, rel=1e-3), "with what their creation gave"
+
+
+def test_a_hand_that_pulls_what_cannot_move_makes_no_energy() -> None:
+    """A straight chain along its line; and a door along its axis."""
+    for mode in MODES:
+        for size in (0.1, 1.0, 10.0):
+            system = iota.System(mode=mode, gravity=(0, 0, 0))
+            before: iota.Body | None = None
+            links = []
+            for k in range(5):
+                link = system.body(
+                    shape=iota.Box((0.2 * size, 0.06 * size, 0.06 * size)), position=(0.2 * size * (k + 0.5), size, 0)
+                )
+                system.ball(link, before, at=(0.2 * size * k, size, 0))
+                links.append(before := link)
+            door = system.body(shape=iota.Box((0.8 * size, 1.2 * size, 0.04 * size)), position=(0, size, 3 * size))
+            system.revolute(door, at=(-0.4 * size, size, 3 * size), axis=(0, 1, 0))
+            hands = [
+                (system.grip(links[1], hold=0), links[1].center_of_mass, iota.Vec3(2 * size, 0, 0)),
+                (system.grip(door, hold=1, frequency=12), door.center_of_mass, iota.Vec3(0, -size, 0)),
+            ]
+            for step in range(2 * HERTZ):
+                for hand, start, velocity in hands:
+                    hand.move(start + velocity * (step / HERTZ))
+                assert system.step(1 / HERTZ).warnings == [], (mode, size, step)
+            assert system.energy.made < 1e-12 * size**3

@@ -29,6 +29,12 @@ struct ForceArm {
     for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];
     return e;
   }
+  /// The sum of the sizes of the terms of its value, whose round-off is a share of it.
+  double size(const Vec3* x) const {
+    double sum = norm(origin);
+    for (std::uint32_t i = 0; i < count; ++i) sum += std::abs(weights[i]) * norm(x[nodes[i]]);
+    return sum;
+  }
   /// Its rate for velocities v of the points.
   Vec3 rate(const Vec3* v) const {
     Vec3 sum;
