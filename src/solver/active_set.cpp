@@ -27,11 +27,14 @@ template <class C>
 bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
   constexpr double bent = 1e-3, still = 1e-9;
   const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
+  Vec3 mean;  // which an internal row does not notice
+  for (int i = 0; i < c.node_count() && c.is_internal(); ++i)
+    mean += (1.0 / c.node_count()) * problem.velocity[c.nodes[i]];
   double speed = 0, largest = std::abs(rate);
   for (int i = 0; i < c.node_count(); ++i) {
     Vec3 rows[C::rows];
     gradients.of_node(i, rows);
-    const Vec3& v = problem.velocity[c.nodes[i]];
+    const Vec3 v = problem.velocity[c.nodes[i]] - mean;
     speed += dot(rows[row], v);
     largest += norm(rows[row]) * norm(v);
   }

@@ -222,14 +222,19 @@ void EnergyBalance::measure_kinetic(const Problem& problem) {
   total += kinetic - before, missing += before - kinetic;
 }
 
-StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newton, const Stage& stage,
-                                      bool drives_rows, std::span<const double> multipliers_before) const {
+StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newton, const Stage& stage, Outside outside,
+                                      std::span<const double> multipliers_before) const {
   const Solved step{problem, newton, stage};
   StepEnergy energy{.kinetic_before = kinetic, .total_before = total, .terms = terms};
   const Work held = step.external_work();
-  energy.external_work = held.sum + (drives_rows ? step.work_of_drives() : 0), energy.terms += held.terms;
+  energy.external_work = held.sum + (outside.drives_rows ? step.work_of_drives() : 0), energy.terms += held.terms;
   step.add_dissipation(energy, multipliers_before);
-  energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
+  const auto velocity_at_end = [&](std::size_t i) { return step.velocity_at_end(i); };
+  energy.kinetic = problem.kinetic_energy(velocity_at_end);
+  if (!outside.holds) {
+    energy.flight_before = problem.flight_energy([&](std::size_t i) { return problem.velocity[i]; });
+    energy.flight = problem.flight_energy(velocity_at_end);
+  }
   if (!stage.is_mid_point()) {  // a larger error is made energy: the step is halved
     const double most = most_of_held_forces * std::min(kinetic, energy.kinetic);
     energy.external_work += std::clamp(step.held_force_error(), -most, most);
@@ -238,7 +243,7 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.round_off = round_off_of_energy * energy.size();
   if (energy.gained() > energy.round_off)
     energy.round_off += jitter_energy(problem, finest, newton.reference_length(), stage.h);
-  energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
+  energy.slack = tolerance(energy.motion(), energy.size());
   if (energy.made() > energy.slack) {
     const Strain strain = newton.strain_released(problem, stage, multipliers_before);
     energy.slack += step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, strain.released);

@@ -12,16 +12,20 @@ namespace iota::solver {
 /// The energies of a solved (sub-)step that is not committed, J.
 struct StepEnergy {
   double kinetic_before = 0, total_before = 0;
-  double kinetic = 0, total = 0;  ///< at its end
-  double external_work = 0;       ///< of explicit forces, grips, drives and moving targets
-  double dissipated = 0;          ///< work of dampers, dashpots and friction
-  double damped = 0;              ///< of that, by forces: rows also have friction, and the slip of clutches
-  double impact = 0;              ///< upper bound of what rows that have just become active dissipate
-  double terms = 0;               ///< size of the terms of the potential energy and of the work, whose sums may be none
+  double kinetic = 0, total = 0;         ///< at its end
+  double flight_before = 0, flight = 0;  ///< of both energies, the part of the center of mass of what flies freely
+  double external_work = 0;              ///< of explicit forces, grips, drives and moving targets
+  double dissipated = 0;                 ///< work of dampers, dashpots and friction
+  double damped = 0;                     ///< of that, by forces: rows also have friction, and the slip of clutches
+  double impact = 0;                     ///< upper bound of what rows that have just become active dissipate
+  double terms = 0;  ///< size of the terms of the potential energy and of the work, whose sums may be none
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
   double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored
 
+  /// The kinetic and the total energy that errors are a share of: how fast a thing flies changes nothing within it.
+  double motion() const { return std::max(kinetic_before - flight_before, kinetic - flight); }
+  double whole() const { return std::max(std::abs(total_before - flight_before), std::abs(total - flight)); }
   double missing() const { return total_before + external_work - dissipated - total; }
   double made() const { return -missing(); }
   /// Without what is dissipated, whose round-off is large in stiff dashpots: made for sure.
@@ -37,6 +41,12 @@ struct StepEnergy {
   double size() const {
     return terms + std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated);
   }
+};
+
+/// What the world outside does to a problem in a step.
+struct Outside {
+  bool drives_rows = false;  ///< a target moves, or a row has a rate
+  bool holds = true;         ///< by any row; otherwise it flies freely
 };
 
 /// The energy of a problem from one (sub-)step to the next, and what no law or force explains of its changes.
@@ -55,7 +65,7 @@ struct EnergyBalance {
   /// The energy that the tolerance of a solve may make if energies are of this size, J.
   static double tolerance(double kinetic, double size);
   /// Newton's solution is the end of the step, with the velocities of its scheme; the multipliers are those before it.
-  StepEnergy of_solution(const Problem&, const Newton&, const Stage&, bool drives_rows,
+  StepEnergy of_solution(const Problem&, const Newton&, const Stage&, Outside,
                          std::span<const double> multipliers_before) const;
   /// Continues from the end of a step.
   void take(const StepEnergy&, AdvanceReport&);

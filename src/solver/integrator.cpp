@@ -377,7 +377,10 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   commit(problem, stage, energy, report);
   for (const FreeMotion& free : free_motions_) keep_momenta(problem, free, part.h);
   if (!free_motions_.empty()) energy_.measure_kinetic(problem);
-  if (!is_mid_point) give_spin_back(problem, stage, energy.damped, report);
+  if (!is_mid_point) {
+    book_held_forces_that_press(problem, stage, report);
+    give_spin_back(problem, stage, energy.damped, report);
+  }
   if (has_impacts(problem, stage))
     solve_impacts(problem, stage, energy, report);
   else if (is_mid_point)
@@ -420,7 +423,7 @@ bool Integrator::restore_momenta(Problem& problem) {
 bool Integrator::has_taken_off(const StepEnergy& step) const {
   constexpr double most = 1e-6;  // of the kinetic energy
   const double made = energy_.total - step.total_before - step.external_work;
-  return !drives_rows_ && !(made <= most * step.kinetic_before + energy_.slack);
+  return !drives_rows_ && !(made <= most * step.motion() + energy_.slack);
 }
 
 void Integrator::move_rigidly_instead(Problem& problem, const Part& part, AdvanceReport& report) {
@@ -439,14 +442,15 @@ bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial
   if (mirrors_a_solid(problem, problem.position, newton_.solution())) return false;
   if (stage.is_mid_point() && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
-  energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
+  const Outside outside{.drives_rows = drives_rows_, .holds = !holds_.are_none()};
+  energy = energy_.of_solution(problem, newton_, stage, outside, multipliers_saved_);
   Verdict verdict = judge(trial, energy);
   if (verdict == Verdict::refine) {
     Stage finer = stage;
     finer.tolerance *= 1e-4;
     (void)solve(problem, finer, report);
     trial.is_refined = true;
-    energy = energy_.of_solution(problem, newton_, stage, drives_rows_, multipliers_saved_);
+    energy = energy_.of_solution(problem, newton_, stage, outside, multipliers_saved_);
     verdict = judge(trial, energy);
   }
   return verdict == Verdict::accept;

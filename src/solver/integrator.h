@@ -158,6 +158,7 @@ class Integrator {
     if (!spin_) spin_ = std::make_unique<Spin>();
     return *spin_;
   }
+  void book_held_forces_that_press(const Problem&, const Stage&, AdvanceReport&);
   void give_spin_back(Problem&, const Stage&, double damped, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {
@@ -166,6 +167,7 @@ class Integrator {
   bool change_kinetic_energy(Problem&, double excess, const std::optional<RigidMotion>& shared);
   std::optional<RigidMotion> rigid_motion(const Problem&) const;
   bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
+  double kinetic_energy_of_motion(const Problem&) const;
   bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
   void give_energy_back_by_piece(Problem&, const Stage&, AdvanceReport&);
   static bool may_turn(const Problem&);

@@ -180,7 +180,8 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
   return time < h ? time / h : 1;
 }
 
-// Pieces on which nothing outside acts but gravity.
+// Pieces on which nothing outside acts but gravity, and whose own forces keep angular momentum. Drag between points does not,
+// as it also acts across their line.
 void Integrator::find_free_motions(Problem& problem) {
   free_motions_.clear();
   if (problem.has_laws()) find_holds(problem);
@@ -190,7 +191,7 @@ void Integrator::find_free_motions(Problem& problem) {
   if (!pieces_.empty()) find_holds_of_pieces(problem);
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
-      if (f.arm.is_internal()) continue;
+      if (f.arm.is_internal() && f.is_central()) continue;
       is_free = false;
       for (std::uint32_t i = 0; i < f.arm.count && !pieces_.empty(); ++i)
         ++pieces_[connected_.of[f.arm.nodes[i]]].holds.count;
@@ -216,14 +217,15 @@ void Integrator::keep_momenta(Problem& problem, const FreeMotion& free, double t
 
 // The work of a step is integrated with its weights, so its energy is known: the rest is its error, and is returned.
 void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceReport& report) {
-  constexpr double most = 1e-2;    // of the kinetic energy: the rest waits for the next step
+  constexpr double most = 1e-2;    // of the energy of motion: the rest waits for the next step
   constexpr double drift = 1e-12;  // of the places: what rests drifts by, until its rows are closed
   report.external_work += steps.external_work(), report.dissipated += steps.dissipated();
   const double start = energy_.total, work = steps.external_work() - steps.dissipated();
   energy_.measure_change(problem, 1, work);
-  energy_.slack += EnergyBalance::tolerance(energy_.kinetic, std::abs(start + work) + std::abs(energy_.total)) +
-                   drift * energy_.terms;
-  if (!(std::abs(energy_.missing) <= most * energy_.kinetic)) return;
+  const double motion = kinetic_energy_of_motion(problem);
+  energy_.slack +=
+      EnergyBalance::tolerance(motion, std::abs(start + work) + std::abs(energy_.total)) + drift * energy_.terms;
+  if (!(std::abs(energy_.missing) <= most * motion)) return;
   if (pieces_.empty())
     (void)give_energy_back(problem, Stage::projection(), energy_.missing, report);
   else

@@ -3,6 +3,7 @@
 #include "solver/integrator.h"
 
 #include "solver/pieces.h"
+#include "solver/row_masses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,6 +89,32 @@ struct WorkOfTorques {
 
 }  // namespace
 
+// The end-point rule takes the work of a held force along the chord of a step. Forces that press on what turns, as two hands that
+// push a rod from both ends, seem to take energy by that, and the rows that resist seem to make it: 12 J of 16 by hands that
+// turn a ball about its joint. What moves a body is the part of a force that rows do not resist: its work is that of the whole.
+// Up to what would be made otherwise.
+void Integrator::book_held_forces_that_press(const Problem& problem, const Stage& stage, AdvanceReport& report) {
+  const double made = -energy_.missing - energy_.slack;
+  if (!(made > 0) || drives_rows_ || !problem.has_used_constraints()) return;
+  const std::span<const GripForce> grips = problem.items_of<GripForce>();
+  if (grips.empty() && problem.force.empty()) return;
+  std::vector<Vec3> impulses(problem.size()), change(problem.size());
+  for (std::size_t i = 0; i < problem.force.size(); ++i) impulses[i] = stage.h * problem.force[i];
+  for (const GripForce& f : grips) {
+    const Vec3 e1 = f.arm.value(problem.position.data()), e0 = e1 - stage.h * f.arm.rate(problem.velocity.data());
+    const Vec3 impulse = stage.h * f.force(e0, e1, {.h = stage.h});
+    for (std::uint32_t i = 0; i < f.arm.count; ++i) impulses[f.arm.nodes[i]] += f.arm.weights[i] * impulse;
+  }
+  newton_.find_response(problem, impulses, stage.fraction, change);
+  double resisted = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i) resisted += dot(impulses[i], problem.velocity[i]);
+  for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
+    resisted -= mass * dot(change[a], problem.velocity[b]);
+  });
+  const double work = std::clamp(-resisted, 0.0, made);
+  report.external_work += work, energy_.missing += work;
+}
+
 // Returns the angular momentum that the end-point rule has lost, with at most the energy that the step has lost and that
 // torques have still to give. Dashpots act along the line at the start of the step and so slow the rotation: their energy may
 // be returned, too. What rows dissipate may not: a motor that slips at 1e7 rad/s allowed any gain.
@@ -161,13 +188,19 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
   return excess < rest;
 }
 
+/// Of what flies freely, about its center of mass, J.
+double Integrator::kinetic_energy_of_motion(const Problem& problem) const {
+  if (!holds_.are_none()) return energy_.kinetic;
+  return energy_.kinetic - problem.flight_energy([&](std::size_t i) { return problem.velocity[i]; });
+}
+
 // Returns to the motion the energy that a projection of velocities has taken. Curves, surfaces and angles have no exact
 // discrete gradient: the error of the mean of two gradients is returned as well, limited if the motion reverses and has
 // little kinetic energy.
 bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double taken, AdvanceReport& report) {
   constexpr double most = 0.1;  // of the kinetic energy: limit of the returned error on curves
   const bool is_made = has_curved_rows_ && std::abs(energy_.missing) > energy_.slack;
-  const double limit = most * energy_.kinetic;
+  const double limit = most * kinetic_energy_of_motion(problem);
   const double missing = taken + (is_made ? std::clamp(energy_.missing - taken, -limit, limit) : 0);
   if (missing == 0) return false;
   find_pieces_if_due(problem);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/judge.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace iota::solver {
@@ -13,9 +12,7 @@ struct Limit {
   double of_kinetic = 0, of_total = 0, of_work = 0;
 
   double of(const StepEnergy& step) const {
-    return of_kinetic * std::max(step.kinetic_before, step.kinetic) +
-           of_total * std::max(std::abs(step.total_before), std::abs(step.total)) +
-           of_work * std::abs(step.external_work);
+    return of_kinetic * step.motion() + of_total * step.whole() + of_work * std::abs(step.external_work);
   }
 };
 

@@ -91,6 +91,8 @@ class Newton {
   /// The least change of velocities, in the mass norm, that removes the given rates (of the rows, in the order of the
   /// pools).
   void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
+  /// What impulses on the nodes, kg m/s, make of velocities where rows that are equations resist, at this fraction of the step.
+  void find_response(const Problem& problem, std::span<const Vec3> impulses, double fraction, std::span<Vec3> change);
 
   /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities. Rows at a bound
   /// push with their multipliers, compliant ones with their force.
@@ -140,6 +142,9 @@ class Newton {
   double rate_in_the_middle(const ContactConstraint&, std::span<const Vec3> velocity) const;
   void give_back_momenta(Problem&) const;
   double find_rates(const Problem&, const Wanted&);
+  void find_velocity_change(const Problem&, std::span<const double> rates, std::span<const Vec3> impulses,
+                            double fraction, std::span<Vec3> change);
+  void set_residuals(std::span<const Vec3> impulses);
   double find_gaps(const Problem&, double time);
   template <class C>
   void add_mean_rates(const C&, double* row) const;

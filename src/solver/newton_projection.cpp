@@ -91,26 +91,39 @@ void Newton::add_impulses(Problem& problem) const {
 }
 
 void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change) {
+  find_velocity_change(problem, rates, {}, 0, change);
+}
+
+void Newton::find_response(const Problem& problem, std::span<const Vec3> impulses, double fraction,
+                           std::span<Vec3> change) {
+  find_velocity_change(problem, {}, impulses, fraction, change);
+}
+
+void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<const Vec3> impulses,
+                                  double fraction, std::span<Vec3> change) {
   constexpr int passes = 3;  // the later ones remove errors of compliance and round-off
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
   std::fill(change.begin(), change.end(), Vec3{});
   Stage stage = Stage::projection();
-  stage.fraction = 0;
+  stage.fraction = fraction;
   for (int pass = 0; pass < passes; ++pass) {
     const std::span<double> residuals = assembly_.residuals();
     std::fill(residuals.begin(), residuals.end(), 0.0);
+    if (pass == 0) set_residuals(impulses);
     auto rate = rates.begin();
     problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
       for (std::size_t k = 0; k < pool.items.size(); ++k) {
         const C& c = pool.items[k];
         double* const row = residuals.data() + pool.slots[k].unknown;
-        for (int r = 0; r < C::rows; ++r) row[r] = *rate++;
-        const Gradients<C> gradients(c, x_.data(), 0);
+        for (int r = 0; r < C::rows && !rates.empty(); ++r) row[r] = *rate++;
+        const Gradients<C> gradients(c, x_.data(), fraction);
         for (int i = 0; i < c.node_count(); ++i) {
           Vec3 rows[C::rows];
           gradients.of_node(i, rows);
           for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], change[c.nodes[i]]);
         }
+        for (int r = 0; r < C::rows; ++r)
+          if (!pool.is_equation(k, r)) row[r] = 0;
       }
     });
     if (pass == 0)
@@ -118,6 +131,14 @@ void Newton::find_velocity_change(const Problem& problem, std::span<const double
     else
       assembly_.solve();
     for (std::size_t i = 0; i < change.size(); ++i) change[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
+  }
+}
+
+/// Of the nodes: minus these impulses.
+void Newton::set_residuals(std::span<const Vec3> impulses) {
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    double* const r = assembly_.residuals().data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
+    r[0] = -impulses[i].x, r[1] = -impulses[i].y, r[2] = -impulses[i].z;
   }
 }
 
@@ -155,11 +176,7 @@ std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted&
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     double drive = find_rates(problem, wanted);
     if (wanted.is_after_step && !wanted.has_impacts && drive == 0) return {};
-    for (std::size_t i = 0; i < wanted.impulses.size(); ++i) {
-      const Vec3& impulse = wanted.impulses[i];
-      double* const r = assembly_.residuals().data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
-      r[0] = -impulse.x, r[1] = -impulse.y, r[2] = -impulse.z;
-    }
+    set_residuals(wanted.impulses);
     if (wanted.h > 0) {  // energy may be added
       for (const Vec3& v : problem.velocity) drive = std::max(drive, norm(v));
       const double mass = std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0);

@@ -389,6 +389,16 @@ struct Problem {
   double kinetic_energy() const {
     return kinetic_energy([&](std::size_t i) -> const Vec3& { return velocity[i]; });
   }
+  /// Of that, the part of the center of mass.
+  template <class Velocity>
+  double flight_energy(Velocity v) const {
+    double total = 0;
+    Vec3 momentum;
+    const auto add = [&](double m, const Vec3& velocity) { total += m, momentum += m * velocity; };
+    for (std::size_t i = 0; i < size(); ++i) add(mass[i], v(i));
+    for (const auto& c : mass_couplings) add(c.mass, v(c.a)), add(c.mass, v(c.b));
+    return total > 0 ? 0.5 / total * dot(momentum, momentum) : 0;
+  }
   /// Gravity and implicit forces; external ones (grips) are not in the world's energy, only in Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Sum of the weights times the distances to the origin, J: the round-off of the potential energy is a share of it, also where

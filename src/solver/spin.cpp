@@ -387,20 +387,29 @@ double Spin::turn_members(Problem& problem, double most_gain) {
     first += dot(part.velocity_change, part.momentum) + dot(part.turn, part.angular);
     second += 0.5 * (dot(part.velocity_change, impulse.force) + dot(part.turn, part.inertia * part.turn));
   }
-  const double share = largest_share(first, second, most_gain);
   for (Part& piece : pieces_.parts) piece.velocity_change = {};
   for (std::size_t k = 0; k < members_.parts.size(); ++k) {
-    Part& part = members_.parts[k];
+    const Part& part = members_.parts[k];
+    Part& piece = pieces_.parts[piece_of_[k]];
+    if (part.is_due && piece.is_kept && piece.holds.count == 0)
+      piece.velocity_change -= (part.mass / piece.mass) * part.velocity_change;
+  }
+  for (const Part& piece : pieces_.parts) {
+    first += dot(piece.velocity_change, piece.momentum);
+    second -= 0.5 * piece.mass * dot(piece.velocity_change, piece.velocity_change);
+  }
+  const double share = largest_share(first, second, most_gain);
+  for (std::size_t k = 0; k < members_.parts.size(); ++k) {
+    const Part& part = members_.parts[k];
     if (!part.is_due) continue;
     Part& piece = pieces_.parts[piece_of_[k]];
     const Vec3 push = (share * part.mass) * part.velocity_change;
     const Vec3 given = share * (part.inertia * part.turn) + cross(part.center - piece.center, push);
     piece.lost += given, piece.given += given;
-    if (piece.is_kept && piece.holds.count == 0) piece.velocity_change -= (1 / piece.mass) * push;
   }
   for (std::uint32_t i = 0; i < problem.size(); ++i) {
     const Part& part = members_.of(i);
-    problem.velocity[i] += pieces_.of(i).velocity_change;
+    problem.velocity[i] += share * pieces_.of(i).velocity_change;
     if (part.is_due)
       problem.velocity[i] += share * (part.velocity_change + cross(part.turn, problem.position[i] - part.center));
   }
@@ -463,11 +472,19 @@ void Spin::add_momenta(const Problem& problem, Parts& parts) {
     parts.of(f.arm.nodes[0]).angular += f.spin * f.arm.value(problem.position.data());
 }
 
+/// Drag between points turns what it connects: it also acts across their line.
+void Spin::drop_turned(const Problem& problem, Parts& clusters) {
+  problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
+    for (const F& f : pool.items)
+      if (!std::is_same_v<F, GyroscopicForce> && !f.is_central()) clusters.of(f.arm.nodes[0]).is_kept = false;
+  });
+}
+
 void Spin::note(const Problem& problem, const Holds& all, Connection connection) {
   begin(problem);
   if (std::exchange(noted_connection_, connection) != connection) noted_.connected.of.clear();
   if (connection == Connection::rows_and_forces)
-    find_free_clusters(problem, all, noted_);
+    find_free_clusters(problem, all, noted_), drop_turned(problem, noted_);
   else
     find_parts(problem, connection, all, noted_);
   add_momenta(problem, noted_);

@@ -109,6 +109,7 @@ class Spin {
   static void add_given(const Parts& finer, Parts& coarser);
   bool find_clusters(const Problem&, const Holds& all);
   void find_free_clusters(const Problem&, const Holds& all, Parts&);
+  static void drop_turned(const Problem&, Parts&);
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
                           double h, Parts&);
   static void find_motions(const Problem&, Parts&);

@@ -157,3 +157,33 @@ def test_a_hand_that_pulls_what_cannot_move_makes_no_energy() -> None:
                     hand.move(start + velocity * (step / HERTZ))
                 assert system.step(1 / HERTZ).warnings == [], (mode, size, step)
             assert system.energy.made < 1e-12 * size**3
+
+
+def test_hands_that_press_a_body_while_it_turns_make_no_energy() -> None:
+    """Their force along the chord of a step seems to take what the links between the hands seem to make."""
+
+    def kinetic(kind: str, mode: str, hertz: int) -> float:
+        system = iota.System(mode=mode, gravity=(0, 0, 0))
+        if kind == "ball on a joint":
+            body = system.body(shape=iota.Sphere(0.2), mass=8)
+            system.ball(body, at=(0, 0, 0))
+            pulls = [((0.2, 0.2, 0.2), (-3, 0, 0.5)), ((0, 0.2, 0), (2, 0, 0))]
+        else:
+            body = system.body(shape=iota.Box((0.8, 0.1, 0.1)), mass=8)
+            pulls = [((0.4, 0, 0), (-3, 0, 0.5)), ((-0.4, 0, 0), (3, 0.3, 0))]
+        hands = [
+            (system.grip(body, local_point=at, hold=k, frequency=12, max_acceleration=2000), at, velocity)
+            for k, (at, velocity) in enumerate(pulls)
+        ]
+        for step in range(hertz // 10):
+            for hand, at, velocity in hands:
+                hand.move(tuple(x + v * (step + 1) / hertz for x, v in zip(at, velocity, strict=True)))
+            assert system.step(1 / hertz).warnings == [], (kind, mode, hertz, step)
+        assert system.energy.made <= 1e-3 * system.energy.kinetic
+        return system.energy.kinetic
+
+    for kind in ("ball on a joint", "free bar"):
+        truth = kinetic(kind, "energy_keeping", 3840)
+        for mode in ("robust", "energy_keeping"):
+            assert kinetic(kind, mode, 240) == pytest.approx(truth, rel=0.1)
+            assert kinetic(kind, mode, 960) == pytest.approx(truth, rel=0.04)

@@ -26,7 +26,7 @@ struct Throw {
     std::fill(newton.displacement().begin(), newton.displacement().end(), Vec3{});
     EXPECT_TRUE(newton.solve(problem, stage).converged);
     balance.measure(problem, 0);
-    return balance.of_solution(problem, newton, stage, false, std::vector<double>(problem.multiplier_count()));
+    return balance.of_solution(problem, newton, stage, {}, std::vector<double>(problem.multiplier_count()));
   }
 };
 
@@ -75,7 +75,7 @@ TEST(EnergyBalance, lets_rows_return_their_stored_energy_and_no_more) {
   balance.measure(problem, 0);
   const auto energy_after_tension = [&](double tension) {
     const std::vector<double> multipliers_before(problem.multiplier_count(), tension);
-    return balance.of_solution(problem, newton, stage, false, multipliers_before);
+    return balance.of_solution(problem, newton, stage, {}, multipliers_before);
   };
   const StepEnergy of_slack_rod = energy_after_tension(0);
   EXPECT_NEAR(of_slack_rod.made(), 0.5 * mass * (gap / h) * (gap / h), 1e-6 * mass * (gap / h) * (gap / h));
