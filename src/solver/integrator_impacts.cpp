@@ -92,11 +92,13 @@ void Integrator::solve_impacts(Problem& problem, const Stage& stage, const StepE
   has_corrected_ = has_corrected_ || kinetic.has_value();
   if (!kinetic) return;
   double taken = note_projection(problem, *kinetic, drives, report);
-  const auto& pool = problem.pool_of<ContactConstraint>();
+  auto& pool = problem.pool_of<ContactConstraint>();
   for (std::size_t k = 0; k < pool.items.size(); ++k)
     if (pool.items[k].leaves) {
       const double stored = strain_energy(pool.items[k], pool.multiplier(k));
       energy_.total -= stored, taken += stored;
+      std::fill_n(pool.multiplier(k), ContactConstraint::rows,
+                  0.0);  // or the next part of the step would release it again
     }
   if (const double made = energy_.total - allowed, before = energy_.kinetic; made > 0 && any_bounces && !drives) {
     const double missing = energy_.missing;
