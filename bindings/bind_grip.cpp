@@ -8,10 +8,11 @@ namespace {
 constexpr const char* grip_doc = "A user's grip on a body; made by `System.grip`.";
 
 constexpr const char* make_grip_doc =
-    "Grips a body: a critically damped spring of limited force from a point of the body to a target.\n\n"
+    "Grips a body: a critically damped spring of limited pull from a point of the body to a target.\n\n"
     "local_point: in the body's drawn frame, m; it is moved to the nearest place that the body's particles span.\n"
     "target: world, m, None: the center of mass. client, hold: whose grip; carried to the viewers. frequency: Hz.\n"
-    "max_acceleration: m/s^2, limits the force to this times the effective mass. Forces of several grips are added.";
+    "max_acceleration: m/s^2, limits the pull of the spring to this times the effective mass; the damping comes on top.\n"
+    "Forces of several grips are added.";
 
 }  // namespace
 
