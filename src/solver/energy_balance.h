@@ -43,7 +43,7 @@ struct StepEnergy {
   }
 };
 
-/// What the world outside does to a problem in a step.
+/// The world outside acts on a problem in a step by these.
 struct Outside {
   bool drives_rows = false;  ///< a target moves, or a row has a rate
   bool holds = true;         ///< by any row; otherwise it flies freely

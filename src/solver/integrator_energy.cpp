@@ -188,7 +188,7 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
   return excess < rest;
 }
 
-/// Of what flies freely, about its center of mass, J.
+/// The kinetic energy, about the center of mass of a problem that nothing holds, J.
 double Integrator::kinetic_energy_of_motion(const Problem& problem) const {
   if (!holds_.are_none()) return energy_.kinetic;
   return energy_.kinetic - problem.flight_energy([&](std::size_t i) { return problem.velocity[i]; });

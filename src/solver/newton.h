@@ -91,7 +91,7 @@ class Newton {
   /// The least change of velocities, in the mass norm, that removes the given rates (of the rows, in the order of the
   /// pools).
   void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
-  /// What impulses on the nodes, kg m/s, make of velocities where rows that are equations resist, at this fraction of the step.
+  /// The change of velocities by impulses on the nodes, kg m/s, that rows resist as equations, at this fraction of the step.
   void find_response(const Problem& problem, std::span<const Vec3> impulses, double fraction, std::span<Vec3> change);
 
   /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities. Rows at a bound

@@ -134,7 +134,7 @@ void Newton::find_velocity_change(const Problem& problem, std::span<const double
   }
 }
 
-/// Of the nodes: minus these impulses.
+/// Sets the residuals of the nodes to minus these impulses.
 void Newton::set_residuals(std::span<const Vec3> impulses) {
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     double* const r = assembly_.residuals().data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));

@@ -389,7 +389,7 @@ struct Problem {
   double kinetic_energy() const {
     return kinetic_energy([&](std::size_t i) -> const Vec3& { return velocity[i]; });
   }
-  /// Of that, the part of the center of mass.
+  /// The part of it that is the motion of the center of mass.
   template <class Velocity>
   double flight_energy(Velocity v) const {
     double total = 0;
