@@ -97,8 +97,8 @@ void Integrator::solve_impacts(Problem& problem, const Stage& stage, const StepE
     if (pool.items[k].leaves) {
       const double stored = strain_energy(pool.items[k], pool.multiplier(k));
       energy_.total -= stored, taken += stored;
-      std::fill_n(pool.multiplier(k), ContactConstraint::rows,
-                  0.0);  // or the next part of the step would release it again
+      // Or the next part of the step would release it again.
+      std::fill_n(pool.multiplier(k), ContactConstraint::rows, 0.0);
     }
   if (const double made = energy_.total - allowed, before = energy_.kinetic; made > 0 && any_bounces && !drives) {
     const double missing = energy_.missing;
