@@ -191,7 +191,7 @@ void Integrator::find_free_motions(Problem& problem) {
   if (!pieces_.empty()) find_holds_of_pieces(problem);
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
-      if (f.arm.is_internal() && f.is_central()) continue;
+      if (f.arm.is_internal() && f.keeps_angular_momentum()) continue;
       is_free = false;
       for (std::uint32_t i = 0; i < f.arm.count && !pieces_.empty(); ++i)
         ++pieces_[connected_.of[f.arm.nodes[i]]].holds.count;

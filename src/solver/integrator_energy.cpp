@@ -105,7 +105,7 @@ void Integrator::book_held_forces_that_press(const Problem& problem, const Stage
     const Vec3 impulse = stage.h * f.force(e0, e1, {.h = stage.h});
     for (std::uint32_t i = 0; i < f.arm.count; ++i) impulses[f.arm.nodes[i]] += f.arm.weights[i] * impulse;
   }
-  newton_.find_response(problem, impulses, stage.fraction, change);
+  newton_.find_velocity_change(problem, impulses, {}, stage.fraction, change);
   double resisted = 0;
   for (std::size_t i = 0; i < problem.size(); ++i) resisted += dot(impulses[i], problem.velocity[i]);
   for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
@@ -199,9 +199,11 @@ double Integrator::kinetic_energy_of_motion(const Problem& problem) const {
 // little kinetic energy.
 bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double taken, AdvanceReport& report) {
   constexpr double most = 0.1;  // of the kinetic energy: limit of the returned error on curves
-  const bool is_made = has_curved_rows_ && std::abs(energy_.missing) > energy_.slack;
-  const double limit = most * kinetic_energy_of_motion(problem);
-  const double missing = taken + (is_made ? std::clamp(energy_.missing - taken, -limit, limit) : 0);
+  double missing = taken;
+  if (has_curved_rows_ && std::abs(energy_.missing) > energy_.slack) {
+    const double limit = most * kinetic_energy_of_motion(problem);
+    missing += std::clamp(energy_.missing - taken, -limit, limit);
+  }
   if (missing == 0) return false;
   find_pieces_if_due(problem);
   if (!pieces_.empty()) {

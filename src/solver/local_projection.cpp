@@ -177,7 +177,7 @@ LocalProjection::Outcome LocalProjection::solve_positions() {
 
 LocalProjection::Outcome LocalProjection::solve_velocities(std::span<const double> rates) {
   change_.resize(nodes_.size());
-  newton_.find_velocity_change(part_, rates, change_);
+  newton_.find_velocity_change(part_, {}, rates, 0, change_);
   Largest speed, largest_change;
   for (const Vec3& v : part_.velocity) speed.add(largest_component(v));
   for (const Vec3& v : change_) largest_change.add(largest_component(v));

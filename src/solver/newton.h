@@ -88,11 +88,11 @@ class Newton {
   std::span<Vec3> velocities_before() { return u_saved_; }
   std::span<const Vec3> velocities_before() const { return u_saved_; }
 
-  /// The least change of velocities, in the mass norm, that removes the given rates (of the rows, in the order of the
-  /// pools).
-  void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
-  /// The change of velocities by impulses on the nodes, kg m/s, that rows resist as equations, at this fraction of the step.
-  void find_response(const Problem& problem, std::span<const Vec3> impulses, double fraction, std::span<Vec3> change);
+  /// The change of velocities by impulses on the nodes, kg m/s, which rows that are equations resist, and the least one besides, in
+  /// the mass norm, that removes the given rates (of the rows, in the order of the pools). Either may be empty. Targets are as at
+  /// `fraction` of the step.
+  void find_velocity_change(const Problem& problem, std::span<const Vec3> impulses, std::span<const double> rates,
+                            double fraction, std::span<Vec3> change);
 
   /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities. Rows at a bound
   /// push with their multipliers, compliant ones with their force.
@@ -142,8 +142,6 @@ class Newton {
   double rate_in_the_middle(const ContactConstraint&, std::span<const Vec3> velocity) const;
   void give_back_momenta(Problem&) const;
   double find_rates(const Problem&, const Wanted&);
-  void find_velocity_change(const Problem&, std::span<const double> rates, std::span<const Vec3> impulses,
-                            double fraction, std::span<Vec3> change);
   void set_residuals(std::span<const Vec3> impulses);
   double find_gaps(const Problem&, double time);
   template <class C>

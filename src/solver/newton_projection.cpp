@@ -90,16 +90,7 @@ void Newton::add_impulses(Problem& problem) const {
       pool.items[k].impulse[r] += impulses_[pool.slots[k].unknown + r];
 }
 
-void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change) {
-  find_velocity_change(problem, rates, {}, 0, change);
-}
-
-void Newton::find_response(const Problem& problem, std::span<const Vec3> impulses, double fraction,
-                           std::span<Vec3> change) {
-  find_velocity_change(problem, {}, impulses, fraction, change);
-}
-
-void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<const Vec3> impulses,
+void Newton::find_velocity_change(const Problem& problem, std::span<const Vec3> impulses, std::span<const double> rates,
                                   double fraction, std::span<Vec3> change) {
   constexpr int passes = 3;  // the later ones remove errors of compliance and round-off
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());

@@ -474,9 +474,9 @@ void Spin::add_momenta(const Problem& problem, Parts& parts) {
 
 /// Drag between points turns what it connects: it also acts across their line.
 void Spin::drop_turned(const Problem& problem, Parts& clusters) {
-  problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
-    for (const F& f : pool.items)
-      if (!std::is_same_v<F, GyroscopicForce> && !f.is_central()) clusters.of(f.arm.nodes[0]).is_kept = false;
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items)
+      if (!f.keeps_angular_momentum()) clusters.of(f.arm.nodes[0]).is_kept = false;
   });
 }
 

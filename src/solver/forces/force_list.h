@@ -22,7 +22,7 @@ struct SpringForce {
   ForceArm arm;
   double stiffness = 0, damping = 0, length = 0;
 
-  static constexpr bool is_central() { return true; }
+  static constexpr bool keeps_angular_momentum() { return true; }
   static Vec3 direction(const Vec3& e) { return (1 / (norm(e) + 1e-300)) * e; }
   double energy(const Vec3& e) const {
     const double stretch = norm(e) - length;
@@ -79,7 +79,7 @@ struct DragForce {
   ForceArm arm;
   double damping = 0;
 
-  static constexpr bool is_central() { return false; }
+  static constexpr bool keeps_angular_momentum() { return false; }
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return (-damping / s.h) * (e1 - e0); }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
@@ -94,7 +94,7 @@ struct GripForce {
   ForceArm arm;
   double stiffness = 0, damping = 0;
 
-  static constexpr bool is_central() { return false; }
+  static constexpr bool keeps_angular_momentum() { return false; }
   double energy(const Vec3& e) const { return 0.5 * stiffness * dot(e, e); }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     return -stiffness * (s.midpoint ? 0.5 * (e0 + e1) : e1) - (damping / s.h) * (e1 - e0);
@@ -109,7 +109,7 @@ template <class F>
 concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& stage) {
   { F::is_external } -> std::convertible_to<bool>;
   { f.arm } -> std::convertible_to<ForceArm>;
-  { f.is_central() } -> std::convertible_to<bool>;  ///< acts along its arm: between points it keeps angular momentum
+  { f.keeps_angular_momentum() } -> std::convertible_to<bool>;  ///< of its points, if it is between them
   { f.energy(e) } -> std::convertible_to<double>;
   { f.force(e, e, stage) } -> std::convertible_to<Vec3>;
   { f.dissipation(e, e, stage) } -> std::convertible_to<double>;  // between e0 and e1, J

@@ -17,7 +17,7 @@ struct GyroscopicForce {
   ForceArm arm;
   double spin = 0;  ///< s, kg m/s
 
-  static constexpr bool is_central() { return false; }
+  static constexpr bool keeps_angular_momentum() { return true; }  // with the spin
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Vec3 em = s.instant ? e1 : 0.5 * (e0 + e1);

@@ -24,7 +24,7 @@ struct RadialForce {
   std::array<double, laws::max_parameters> parameters{};
   double time = 0, m_p = 1, m_q = 1;
 
-  bool is_central() const { return !law->has_drag(); }
+  bool keeps_angular_momentum() const { return !law->has_drag(); }
   double energy(const Vec3& e) const { return law->elastic(at(norm(e)), parameters.data()).energy; }
 
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {

@@ -18,7 +18,7 @@ struct VelocityForce {
   void begin(const Vec3* velocities, double h) { begin(arm.rate(velocities), h); }
   void begin(const Vec3& rate, double h) { start = rate, part.begin(h); }
 
-  static constexpr bool is_central() { return false; }
+  static constexpr bool keeps_angular_momentum() { return false; }
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     return s.instant ? part.at_an_instant(e1 - e0) : part.force(start, at_end(e0, e1, s));
