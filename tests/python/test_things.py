@@ -650,6 +650,36 @@ def test_frames_carry_hide_and_remove_their_drawings(rod: iota.Body, run_world: 
         page.wait_for(lambda: not page.entities["marker"] and not page.entities["line"])
 
 
+def test_a_frame_that_moves_is_sent_alone(rod: iota.Body, run_world: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages move what is on it: a script may move frames in each step beside many things."""
+    world = iota.World(rod.system)
+    frame = world.drawings.frame((0, 0, 0))
+    line = world.drawings.line(frame.point((1, 0, 0)), rod)
+    sent: list[None] = []
+    record = type(line)._record
+    with PageClient(run_world(world)) as page:
+        entity(page, "line")
+        monkeypatch.setattr(type(line), "_record", lambda self: (sent.append(None), record(self))[1])
+        for x in (1.0, 2.0, 3.0):
+            world.call(lambda x=x: setattr(frame, "at", (x, 0, 0)))
+            page.wait_for(lambda x=x: entity(page, "frame")["at"]["point"] == (x, 0, 0))
+        assert sent == []
+
+
+def test_what_is_on_a_frame_comes_back_with_its_next_place(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    lost = world.system.body()
+    lost.particle((0, 9, 0))
+    frame = world.drawings.frame(lost)
+    world.drawings.line(frame.point((1, 0, 0)), rod)
+    with PageClient(run_world(world)) as page:
+        entity(page, "line")
+        world.call(lost.destroy)
+        page.wait_for(lambda: not page.entities["line"])
+        world.call(lambda: setattr(frame, "at", (0, 3, 0)))
+        page.wait_for(lambda: page.entities["line"])
+
+
 def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
     slot = rod.slot
     world = iota.World(rod.system)

@@ -151,11 +151,6 @@ class Frame(Thing):
         """A place in it, m, for things."""
         return FramePoint(self, vector(position))
 
-    def _changed(self) -> None:
-        super()._changed()
-        if self._things is not None:
-            self._things.mark_attached()
-
     def _record(self) -> dict[str, Any] | None:
         at = anchor(self.at)
         return None if at is None else {"at": at, "rotation": self.rotation}
@@ -186,6 +181,9 @@ class Things:
         self._gone: list[tuple[str, int, int]] = []
         self._told: dict[Thing, bytes] = {}
         self._structure = -1
+        self._frames: dict[Frame, None] = {}
+        self._frames_changed = False
+        self._frames_told: set[Frame] = set()  # those that were there
         self.changes: Counter[str] = Counter()  # of each kind: rises when one comes, changes or goes
         self.effect: Callable[[str, Vec3, float], object] | None = None  # while the world is served
 
@@ -205,6 +203,8 @@ class Things:
             slot, generation = self._counts.get(thing.kind, 0), 0
             self._counts[thing.kind] = slot + 1
         self._ids[thing] = (slot, generation + 1)
+        if isinstance(thing, Frame):
+            self._frames[thing] = None
         self.mark(thing)
 
     def remove(self, thing: Thing) -> None:
@@ -216,7 +216,8 @@ class Things:
             self._gone.append((thing.kind, slot, generation))
         self._free.setdefault(thing.kind, []).append((slot, generation))
         if isinstance(thing, Frame):
-            self.mark_attached()
+            del self._frames[thing]
+            self._frames_changed = True
 
     def slot_of(self, thing: Thing) -> int:
         """Its number on pages."""
@@ -226,9 +227,10 @@ class Things:
         """Marks it to be sent again."""
         self.changes[thing.kind] += 1
         self._dirty[thing] = None
+        self._frames_changed |= isinstance(thing, Frame)
 
     def mark_attached(self) -> None:
-        """Marks things on bodies to be sent again, as edits may have moved or removed them."""
+        """Marks things on bodies and frames to be sent again, as edits may have moved or removed them."""
         self._dirty |= dict.fromkeys(thing for thing in self._ids if thing._is_attached())
 
     def find(self, kind: str, id: tuple[int, int]) -> Thing | None:
@@ -257,7 +259,15 @@ class Things:
         an inconsistent thing, which keeps its former look."""
         if structure != self._structure:
             self._structure = structure
+            self._frames_changed = True
             self.mark_attached()
+        if self._frames_changed:
+            # What is on a frame moves with it on pages: it is sent again only if a frame has come, gone, or is hidden.
+            self._frames_changed = False
+            there = {frame for frame in self._frames if _on_frame(frame, Vec3()) is not None}
+            if there != self._frames_told:
+                self._frames_told = there
+                self.mark_attached()
         for kind, slot, generation in self._gone:
             room.destroy_entity(kind, slot, generation)
         self._gone.clear()
