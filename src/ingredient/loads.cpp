@@ -85,24 +85,36 @@ solver::ForceStage stage_of(const model::Model& model, std::uint32_t particle) {
 LastStep::LastStep(const model::Model& model, std::uint32_t particle)
     : model(model), stage(stage_of(model, particle)), structure_(model) {}
 
-Vec3 LastStep::damping(std::uint32_t particle) const {
-  if (!(h() > 0)) return {};
-  const auto of_ring = [&](std::uint32_t slot) {
-    const double rate = Masses::damping_rate(model, slot);
-    return rate > 0 ? (std::expm1(rate * h()) / h()) * model.rings[slot].velocity : Vec3{};
-  };
-  Vec3 sum;  // a carried particle has the velocity of its basis, whose points have different damping
-  for (const auto& [ring, weight] : rings_that_carry(model, particle))
-    if (weight != 0) sum += weight * of_ring(ring);
+LastStep::Slowed LastStep::slowed(std::uint32_t particle) const {
+  Slowed sum;
+  // A carried particle has the velocity of its basis, whose points have different damping.
+  for (const auto& [slot, weight] : rings_that_carry(model, particle)) {
+    const double rate = weight == 0 ? 0 : Masses::damping_rate(model, slot);
+    if (!(rate > 0)) continue;
+    const model::Ring& ring = model.rings[slot];
+    if (stage.instant) {
+      sum.at_end += (weight * rate * h()) * ring.velocity;
+      continue;
+    }
+    const Vec3 start = ring.velocity - structure_.corrections[slot] - h() * ring.acceleration;
+    sum.at_start -= (weight * std::expm1(-rate * h() / 2)) * start;
+    sum.at_end += (weight * std::expm1(rate * h() / 2)) * ring.velocity;
+  }
   return sum;
 }
 
+Vec3 LastStep::damping(std::uint32_t particle) const {
+  if (!(h() > 0)) return {};
+  const Slowed by = slowed(particle);
+  return (1 / h()) * (by.at_start + by.at_end);
+}
+
 Vec3 LastStep::moved(std::uint32_t particle) const {
-  const Vec3 undamped = ring(particle).velocity - structure_.corrections[structure_.particles[particle].ring],
-             at_end = undamped + h() * damping(particle);
+  const Slowed by = stage.instant ? Slowed{} : slowed(particle);
+  const Vec3 damped = ring(particle).velocity - structure_.corrections[structure_.particles[particle].ring];
+  const Vec3 at_end = damped + by.at_end;
   if (!stage.midpoint) return h() * at_end;
-  const Vec3 at_start = undamped - h() * acceleration(particle);
-  return (0.5 * h()) * (at_start + at_end);
+  return (0.5 * h()) * (damped - h() * acceleration(particle) - by.at_start + at_end);
 }
 
 void read_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {

@@ -28,12 +28,17 @@ class LastStep {
   Vec3 place(std::uint32_t particle) const {
     return stage.midpoint ? end(particle) - 0.5 * moved(particle) : end(particle);
   }
-  /// By forces and damping, (v1 + correction) exp(-c h) - correction - v0, divided by h.
+  /// By forces and damping, v1 - correction - v0, divided by h.
   const Vec3& acceleration(std::uint32_t particle) const { return ring(particle).acceleration; }
-  /// The share of damping in that, (v1 + correction) (1 - exp(-c h)) / h.
+  /// The share of damping in that: (1 - exp(-c h/2)) v0 and (exp(c h/2) - 1) v1, divided by h.
   Vec3 damping(std::uint32_t particle) const;
 
  private:
+  /// Damping took this from a velocity before the solver's step and after it, m/s.
+  struct Slowed {
+    Vec3 at_start, at_end;
+  };
+  Slowed slowed(std::uint32_t particle) const;
   Vec3 moved(std::uint32_t particle) const;
   const model::Ring& ring(std::uint32_t particle) const {
     return structure_.rings[structure_.particles[particle].ring];

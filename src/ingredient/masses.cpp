@@ -143,13 +143,8 @@ double Masses::virtual_energy(const Model& model) const {
   return twice / 2;
 }
 
-double Masses::after_step(Model& model, double h, Problem& problem) {
-  const auto& damping = problem.damping;
-  if (damping.empty() && !(model.damping > 0)) return 0;
-  const double before = problem.kinetic_energy();
-  for (std::size_t i = 0; i < problem.size(); ++i)
-    problem.velocity[i] *= std::exp(-(model.damping + (damping.empty() ? 0 : damping[i])) * h);
-  return before - problem.kinetic_energy();
+void Masses::load(const Model& model, const IslandNodes&, double /*h*/, Problem& problem) {
+  problem.usual_damping = model.damping;
 }
 
 void Masses::validate(const Model& model, model::Audit& audit) {

@@ -17,7 +17,7 @@ class Masses : public NoAnswers {
   static double damping_rate(const Model&, std::uint32_t ring);
 
   void build(const IslandMap&, Problem&);
-  double after_step(Model&, double h, Problem&);
+  void load(const Model&, const IslandNodes&, double h, Problem&);
   double virtual_energy(const Model&) const;
   void leave(const IslandMap&);
   void clear() { virtual_.clear(); }

@@ -31,6 +31,14 @@ void turn(Model& model, model::Attributes& a, double h) {
   const model::Particle& p = model.particles[a.particle];
   if (model.bodies[p.body].kind == BodyKind::inactive) return;
   const auto energy = [&] { return 0.5 * a.moment * dot(a.spin, a.spin); };
+  const double damping = model.damping + a.damping;
+  const auto damp = [&](double time) {
+    if (!(damping > 0)) return;
+    const double start = energy();
+    a.spin *= std::exp(-damping * time);
+    model.dissipated += start - energy();
+  };
+  damp(h / 2);
   const double before = energy();
   const Vec3 old = a.spin;
   Vec3 impulse = h * a.torque;
@@ -44,12 +52,7 @@ void turn(Model& model, model::Attributes& a, double h) {
   a.orientation = normalized(multiply(turn_by((h / 2) * (old + a.spin)), a.orientation));
   a.torque = {};
   model.external_work += energy() - before;
-  const double lost = model.damping + a.damping;
-  if (lost > 0) {
-    const double start = energy();
-    a.spin *= std::exp(-lost * h);
-    model.dissipated += start - energy();
-  }
+  damp(h / 2);
 }
 
 }  // namespace

@@ -14,7 +14,10 @@ namespace {
 double spin_of(const Model& model, std::uint32_t body) {
   return model.spins.at(body).momentum / model.bodies[body].first_row.length;
 }
-double damping_rate(const Model& model, std::uint32_t body) { return model.damping + model.body_damping[body]; }
+/// The share of a momentum that half of the damping of a step leaves: the solver's step is between the two halves.
+double left_of_half(const Model& model, std::uint32_t body, double h) {
+  return std::exp(-(model.damping + model.body_damping[body]) * h / 2);
+}
 
 }  // namespace
 
@@ -32,20 +35,23 @@ void RodSpins::build(const IslandMap& map, Problem& problem) {
   }
 }
 
-void RodSpins::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+void RodSpins::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   const std::span forces = problem.items_of<solver::GyroscopicForce>();
-  for_each_item_of<solver::GyroscopicForce>(
-      owner, problem, [&](std::size_t i, solver::ItemKey key) { forces[i].spin = spin_of(model, key.slot); });
+  for_each_item_of<solver::GyroscopicForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    forces[i].spin = left_of_half(model, key.slot, h) * spin_of(model, key.slot);
+  });
 }
 
 double RodSpins::after_step(Model& model, double h, Problem& problem) {
   double lost = 0;
   for_each_item_of<solver::GyroscopicForce>(owner, problem, [&](std::size_t, solver::ItemKey key) {
     RodSpin& spin = model.spins.at(key.slot);
+    const double left = left_of_half(model, key.slot, h);
     lost += energy(model, key.slot);
-    spin.momentum *= std::exp(-damping_rate(model, key.slot) * h);
-    lost -= energy(model, key.slot);
+    spin.momentum *= left;
     spin.angle += h * spin.momentum / model.axial_inertia(key.slot);
+    spin.momentum *= left;
+    lost -= energy(model, key.slot);
   });
   return lost;
 }
@@ -83,8 +89,7 @@ void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
   const Model& model = step.model;
   if (!model.spins.has(body) || !(step.h() > 0)) return;
   const model::InertiaPair& pair = model.inertia_pairs[model.bodies[body].first_inertia];
-  const double before_damping = std::exp(damping_rate(model, body) * step.h());
-  const solver::GyroscopicForce gyroscopic{.spin = spin_of(model, body) * before_damping};
+  const solver::GyroscopicForce gyroscopic{.spin = spin_of(model, body) / left_of_half(model, body, step.h())};
   const Vec3 on_q =
       gyroscopic.force(step.start(pair.q) - step.start(pair.p), step.end(pair.q) - step.end(pair.p), step.stage);
   const BodyId part = model.particles[pair.p].part;

@@ -100,16 +100,30 @@ bool FreeBodies::Loose::goes_on_by_itself(Model& model, double h) {
 
 namespace {
 
-/// Renews what a particle gains of a force that depends on its velocity. Returns the part of the force that does no work.
+/// Renews what a particle gains of a force that depends on its velocity, which is known for the one at the start of the step. `before`:
+/// after half of the damping. Returns the part of the force that does no work.
 /// Apart from the loop over particles, few of which have such a force: within it, it took a third of the time of the others.
-[[gnu::noinline]] Vec3 push_by_velocity(Model& model, std::uint32_t ring, double mass, double h, const Vec3& before,
-                                        Vec3& gained) {
-  laws::VelocityPart part(model.pushes_by_velocity.find(ring)->rate, mass);
+[[gnu::noinline]] Vec3 push_by_velocity(Model& model, std::uint32_t ring, double mass, double h, const Vec3& start,
+                                        const Vec3& before, Vec3& gained) {
+  const Mat3& rate = model.pushes_by_velocity.find(ring)->rate;
+  laws::VelocityPart part(rate, mass);
   part.begin(h);
+  gained += (h / mass) * (rate * (before - start));
   gained = solve(Mat3::diagonal(1) + (-h / mass) * part.rate(), gained);
   model.pushes.find(ring)->before = (mass / h) * gained - mass * model.acting_gravity();
   return part.turn(before + 0.5 * gained);
 }
+
+/// The flight of a particle with a damping k, 1/s, by a constant acceleration: v' = a - k v. Exact.
+struct DampedFlight {
+  Vec3 after, moved;  ///< velocity at the end, m/s, and way, m
+  DampedFlight(const Vec3& before, const Vec3& acceleration, double k, double h) {
+    const double rate = k * h, way = -std::expm1(-rate) / k;
+    const double rest = rate < 1e-3 ? h * h * (0.5 - rate / 6 + rate * rate / 24) : (h - way) / k;
+    after = std::exp(-rate) * before + way * acceleration;
+    moved = way * before + rest * acceleration;
+  }
+};
 
 }  // namespace
 
@@ -118,7 +132,8 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
   const std::size_t chunks = (awake_.size() + chunk - 1) / chunk;
   shares_.assign(chunks, {});
-  const bool robust = model.steps_to_end_point(), has_strides = ingredient::Strides::any(model);
+  const bool robust = model.steps_to_end_point(), is_accurate = model.mode == IntegrationMode::accurate;
+  const bool has_strides = ingredient::Strides::any(model);
   const Vec3 gravity = model.acting_gravity();
   parallel.for_each(chunks, 1, [&](std::size_t c) {
     Share share;
@@ -134,29 +149,36 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
       const Vec3 force = push ? push->before : Vec3{};
       const double mass = model.particles[free.particle].mass;
       const double damping = model.damping + model.body_damping[free.body];
-      const Vec3 before = ring.velocity;
-      Vec3 gained = h * ((1 / mass) * force + gravity);
-      Vec3 turning;
-      if (push && model.pushes_by_velocity.has(free.ring)) [[unlikely]]
-        turning = push_by_velocity(model, free.ring, mass, h, before, gained);
-      const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
+      const Vec3 start = ring.velocity, acceleration = (1 / mass) * force + gravity;
+      const bool is_held_by_velocity = push && model.pushes_by_velocity.has(free.ring);
+      // Else half of the damping before the rest and half after it, as Integrator::damp.
+      const bool is_exact = damping > 0 && is_accurate && !is_held_by_velocity;
+      const double left = damping > 0 && !is_exact ? std::exp(-damping * h / 2) : 1;
+      const Vec3 before = left * start;
+      Vec3 gained = h * acceleration, turning;
+      if (is_held_by_velocity) [[unlikely]]
+        turning = push_by_velocity(model, free.ring, mass, h, start, before, gained);
+      Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
+      if (is_exact) {
+        const DampedFlight flight(start, acceleration, damping, h);
+        after = flight.after, moved = flight.moved;
+      }
       constexpr double absurd = 1e12;  // m/s: the energy of a higher speed would overflow
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
           [[unlikely]] {  // an extreme force: the particle keeps its place, and the report says so
         share.is_stuck = true;
         continue;
       }
-      ring.velocity = after;
+      ring.velocity = left * after;
       ring.position += moved;
       if (push) share.work += dot(push->before - turning, moved);
       if (robust) share.lost += 0.5 * mass * dot(gained, gained) - dot(turning, moved);
       const bool pushed = !ingredient::is_noise(model, force, mass);
-      if (damping > 0) {
-        const double left = std::exp(-damping * h);
-        share.dissipated += 0.5 * mass * dot(ring.velocity, ring.velocity) * (1 - left * left);
-        ring.velocity *= left;
-      }
-      ring.acceleration = (1 / h) * (ring.velocity - before);
+      if (is_exact)
+        share.dissipated += mass * dot(acceleration, moved) - 0.5 * mass * (dot(after, after) - dot(start, start));
+      else if (damping > 0)
+        share.dissipated += 0.5 * mass * (1 - left * left) * (dot(start, start) + dot(after, after));
+      ring.acceleration = (1 / h) * (ring.velocity - start);
       model.corrections.set(free.ring, {}), ring.is_instant = 0;
       if (model.rest_after > 0) {
         const double speed2 = dot(ring.velocity, ring.velocity);

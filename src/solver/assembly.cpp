@@ -265,6 +265,7 @@ void Assembly::load_rates(const Problem& problem) {
   }
   for (const auto& c : problem.mass_couplings)
     add_force(c.a, -c.mass * problem.gravity), add_force(c.b, -c.mass * problem.gravity);
+  problem.for_each_drag_of_damping([&](std::uint32_t node, const Vec3& drag) { add_force(node, drag); });
   for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
   for (const BodyTorque& t : problem.torques) add_torque(t, t.forces([&](std::uint32_t node) { return x[node]; }));
   problem.for_each_force_pool([&](const auto& pool) {

@@ -108,6 +108,7 @@ class Integrator {
   void analyze(Problem&, const KnownOrder& order = {});
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
+  void damp(Problem&, double time, AdvanceReport&);
   void stay(Problem&, double h, bool is_alone);
   void look_at(Problem&);
   void begin_like_the_latest();

@@ -142,6 +142,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
     if (!(part >= shortest * h) || is_out_of_budget() || iterations_left_ < RungeKutta::solves) break;
     const double length = until_change > 0 ? until_change : part;
     if (time == 0 || has_laws) find_free_motions(problem), since = time;
+    if (problem.is_damped()) free_motions_.clear();
     if (!pieces_.empty() && has_one_sided_springs(problem)) break;
     const AdvanceReport before = report;
     const EnergyBalance energy = energy_;

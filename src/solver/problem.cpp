@@ -188,6 +188,12 @@ void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
   });
 }
 
+void Problem::damp_velocities(double time) {
+  for (std::size_t i = 0; i < size(); ++i) velocity[i] *= std::exp(-damping_of(i) * time);
+  for (const AffineConstraint& c : items_of<AffineConstraint>())
+    if (c.is_nail()) velocity[c.nodes[0]] *= std::exp(damping_of(c.nodes[0]) * time);
+}
+
 double Problem::potential_energy(const Vec3* x, bool with_external) const {
   double energy = 0;
   for (std::size_t i = 0; i < size(); ++i) energy -= mass[i] * dot(gravity, x[i]);

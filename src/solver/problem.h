@@ -180,7 +180,8 @@ struct Problem {
   std::vector<Vec3> force;               ///< explicit, held over the step, N; or empty: none
   std::vector<BodyTorque> torques;       ///< from outside, in the step
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
-  std::vector<double> damping;           ///< of velocities, 1/s, for the caller of the integrator; or empty: none
+  double usual_damping = 0;              ///< of all velocities, 1/s
+  std::vector<double> damping;           ///< of each velocity, 1/s, beside the usual one; or empty: none
   std::vector<MassCoupling> mass_couplings;
   /// Angles without a force, which are followed in each sub-step: so turns are counted above half of one in a step.
   struct CountedAngle {
@@ -368,6 +369,19 @@ struct Problem {
   void clear_offsets() {
     for_each_constraint_pool([](auto& pool) { pool.offsets.clear(); });
   }
+
+  bool is_damped() const { return usual_damping > 0 || !damping.empty(); }
+  double damping_of(std::size_t node) const { return usual_damping + (damping.empty() ? 0 : damping[node]); }
+  /// visit(node, force): the momentum that damping takes from a node, N.
+  template <class Visit>
+  void for_each_drag_of_damping(Visit visit) const {
+    if (!is_damped()) return;
+    const auto slowed = [&](std::uint32_t node) { return damping_of(node) * velocity[node]; };
+    for (std::uint32_t i = 0; i < size(); ++i) visit(i, mass[i] * slowed(i));
+    for (const auto& c : mass_couplings) visit(c.a, c.mass * slowed(c.b)), visit(c.b, c.mass * slowed(c.a));
+  }
+  /// Velocities fall by exp(-damping time), but for those of nailed points, which are prescribed.
+  void damp_velocities(double time);
 
   /// Whether no constraint that takes impulses is connected to the world, so that a projection keeps momentum.
   bool is_isolated() const {

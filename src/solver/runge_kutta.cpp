@@ -54,6 +54,8 @@ struct Power {
 Power calc_power(const Problem& problem) {
   const Vec3 *const x = problem.position.data(), *const v = problem.velocity.data();
   Power power;
+  problem.for_each_drag_of_damping(
+      [&](std::uint32_t node, const Vec3& drag) { power.dissipated += dot(drag, v[node]); });
   for (std::size_t i = 0; i < problem.force.size(); ++i) power.external += dot(problem.force[i], v[i]);
   for (const BodyTorque& t : problem.torques) {
     const BodyTorque::Forces forces = t.forces([&](std::uint32_t node) { return x[node]; });
