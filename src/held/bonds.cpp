@@ -231,7 +231,7 @@ std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
     else if (law == ingredient::drag_law)
       rehearse_implicit(solver::DragForce{{}, p[0]}, e, h);
     else
-      rehearse_implicit(solver::RadialForce{{}, &model_.compiled(law), p, model_.time}, e, h);
+      rehearse_implicit(solver::RadialForce{{}, &model_.compiled(law), p, model_.time, model_.time}, e, h);
     ++count;
   });
   return count;

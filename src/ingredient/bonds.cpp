@@ -21,15 +21,18 @@ struct SpringParameters {
 };
 SpringParameters spring_of(const Bond& bond) { return {bond.parameters[0], bond.parameters[1], bond.parameters[2]}; }
 
-/// `time`: at the end of the step, for laws that depend on time.
-void set_parameters(solver::SpringForce& spring, const Bond& bond, double /*time*/) {
+/// Times at the start and at the end of a step, s, for laws that depend on it.
+struct Times {
+  double before, at_end;
+};
+void set_parameters(solver::SpringForce& spring, const Bond& bond, Times) {
   const auto& [stiffness, damping, length] = spring_of(bond);
   spring.stiffness = stiffness, spring.damping = damping, spring.length = length;
 }
-void set_parameters(solver::DragForce& drag, const Bond& bond, double /*time*/) { drag.damping = bond.parameters[0]; }
-void set_parameters(solver::RadialForce& radial, const Bond& bond, double time) {
+void set_parameters(solver::DragForce& drag, const Bond& bond, Times) { drag.damping = bond.parameters[0]; }
+void set_parameters(solver::RadialForce& radial, const Bond& bond, Times times) {
   radial.parameters = bond.parameters;
-  radial.time = time;
+  radial.time_before = times.before, radial.time = times.at_end;
 }
 
 /// visit(force): with the solver's force for a bond, without its arm and parameters.
@@ -106,7 +109,7 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
   const auto load_all = [&]<class Force>() {
     const std::span forces = problem.items_of<Force>();
     for_each_item_of<Force>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-      set_parameters(forces[i], model.bonds[key.slot], model.time + h);
+      set_parameters(forces[i], model.bonds[key.slot], {model.time, model.time + h});
     });
   };
   load_all.operator()<solver::SpringForce>();
@@ -213,7 +216,7 @@ void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
       }
       Vec3 on_q;
       visit_force_of(model, bond, [&](auto force) {
-        set_parameters(force, bond, model.time);
+        set_parameters(force, bond, {step.stage.instant ? model.time : model.time - step.h(), model.time});
         on_q = force.force(step.start(bond.q) - step.start(bond.p), step.end(bond.q) - step.end(bond.p), step.stage);
       });
       reader.take({.particle = p, .force = bond.p == p ? -on_q : on_q, .part = model.particles[p].part});

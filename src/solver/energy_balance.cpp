@@ -80,7 +80,7 @@ Work Solved::external_work() const {
     work.add(f.work(e0, e1, force_stage()), f.force(e0, e1, force_stage()), f.arm.size(end()));
   }
   for (const auto& f : problem.items_of<RadialForce>())
-    work.sum += f.push_work(f.arm.value(start()), f.arm.value(end()), force_stage());
+    work.sum += f.external_work(f.arm.value(start()), f.arm.value(end()), force_stage());
   const std::span<const AffineConstraint> affines = problem.items_of<AffineConstraint>();
   for (std::size_t k = 0; k < affines.size(); ++k) {
     const AffineConstraint& c = affines[k];

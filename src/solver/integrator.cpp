@@ -205,8 +205,8 @@ void Integrator::look_at(Problem& problem) {
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   // The push of a law has no energy: its work is not a gain.
   for (const auto& f : problem.items_of<RadialForce>())
-    is_conservative_ =
-        is_conservative_ && !f.law->has_push() && !f.attracts_more_nearby(norm(f.arm.value(problem.position.data())));
+    is_conservative_ = is_conservative_ && !f.does_external_work() &&
+                       !f.attracts_more_nearby(norm(f.arm.value(problem.position.data())));
 }
 
 // By the rows that act: in the last step, as long as this one is not solved, then in this one. See Problem::note_acting.

@@ -180,6 +180,8 @@ class Integrator {
   void keep_correction(const Problem&);
 
   double advance_explicitly(Problem&, double h, AdvanceReport&);
+  double take_explicit_steps(Problem&, double h, double start, AdvanceReport&);
+  void set_times_of_laws(Problem&, double before, double at_end, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   bool is_smooth(Problem&, double h);
   bool begin_motion(Problem&, bool has_accelerations, AdvanceReport&);

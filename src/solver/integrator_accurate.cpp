@@ -121,13 +121,30 @@ double time_scale(const Problem& problem, std::span<const Vec3> accelerations) {
 
 }  // namespace
 
-// Returns the fraction of the step that was taken: less than all if a row closes, or if steps become too short, as they
-// do for stiff springs. A sub-step ends where friction stops or begins to slide, or a motor reaches its speed.
+// Returns the fraction of the step that was taken.
 double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport& report) {
-  constexpr double shortest = 1.0 / 4096, safety = 0.9, least = 0.2, most = 5, first = 0.5;
-  constexpr int most_changes = 60;  // of sides: then rows switch all the time
   if (!is_smooth(problem, h)) return 0;
   if (!runge_kutta_) runge_kutta_ = std::make_unique<RungeKutta>();
+  const std::optional<double> start = problem.time_of_laws();
+  if (start) set_times_of_laws(problem, *start, *start, report);
+  const double time = take_explicit_steps(problem, h, start.value_or(0), report);
+  if (start) set_times_of_laws(problem, *start, *start + h, report);
+  return time < h ? time / h : 1;
+}
+
+// The change of energy is external work; for the whole step it has been booked before.
+void Integrator::set_times_of_laws(Problem& problem, double before, double at_end, AdvanceReport& report) {
+  problem.set_times_of_laws(before, at_end);
+  const double total = energy_.total;
+  energy_.measure(problem, 1);
+  report.external_work += energy_.total - total;
+}
+
+// Returns the time until which it went, s: less than h if a row closes, or if steps become too short, as they do for stiff
+// springs. A sub-step ends where friction stops or begins to slide, or a motor reaches its speed. start: the time of laws, s.
+double Integrator::take_explicit_steps(Problem& problem, double h, double start, AdvanceReport& report) {
+  constexpr double shortest = 1.0 / 4096, safety = 0.9, least = 0.2, most = 5, first = 0.5;
+  constexpr int most_changes = 60;  // of sides: then rows switch all the time
   RungeKutta& steps = *runge_kutta_;
   if (!begin_motion(problem, false, report)) return 0;
   const bool has_laws = problem.has_laws();
@@ -148,7 +165,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
     const EnergyBalance energy = energy_;
     const bool is_last = length == h - time;
     report.iterations += RungeKutta::solves, ++report.solves, iterations_left_ -= RungeKutta::solves;
-    bool good = steps.step(newton_, problem, length);
+    bool good = steps.step(newton_, problem, length, start + time);
     for (const FreeMotion& free : free_motions_) keep_momenta(problem, free, time + length - since);
     keep_energy(problem, steps, report);
     steps.end(newton_, problem);
@@ -166,6 +183,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
     } else {
       const int iterations = report.iterations, solves = report.solves;
       steps.reject(problem);
+      problem.set_times_of_laws(start + time, start + time);
       report = before, report.iterations = iterations, report.solves = solves, energy_ = energy;
       if (closes) break;
       if (change < 1 && ++changes > most_changes) break;
@@ -178,7 +196,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
       part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
   }
   if (time > 0) energy_.close(problem, reference_length(), time, report), is_instant_ = true;
-  return time < h ? time / h : 1;
+  return time;
 }
 
 // Pieces on which nothing outside acts but gravity, and whose own forces keep angular momentum. Drag between points does not,

@@ -345,6 +345,15 @@ struct Problem {
   void begin_forces(double h) {
     for (VelocityForce& f : items_of<VelocityForce>()) f.begin(velocity.data(), h);
   }
+  /// The time at the start of the step, s, if a law depends on it.
+  std::optional<double> time_of_laws() const {
+    for (const RadialForce& f : items_of<RadialForce>())
+      if (f.law->depends_on_time()) return f.time_before;
+    return std::nullopt;
+  }
+  void set_times_of_laws(double before, double at_end) {
+    for (RadialForce& f : items_of<RadialForce>()) f.time_before = before, f.time = at_end;
+  }
   std::size_t multiplier_count() const {
     std::size_t count = 0;
     for_each_constraint_pool([&](const auto& pool) { count += pool.multipliers.size(); });

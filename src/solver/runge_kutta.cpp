@@ -51,7 +51,7 @@ constexpr double sum_of(const Row& row) {
 struct Power {
   double external = 0, dissipated = 0;
 };
-Power calc_power(const Problem& problem) {
+Power calc_power(const Problem& problem, double h) {
   const Vec3 *const x = problem.position.data(), *const v = problem.velocity.data();
   Power power;
   problem.for_each_drag_of_damping(
@@ -66,7 +66,7 @@ Power calc_power(const Problem& problem) {
       const Vec3 e = f.arm.value(x), before = e - f.arm.rate(v);
       power.dissipated += f.dissipation(before, e, ForceStage::at_an_instant());
       if constexpr (std::is_same_v<F, RadialForce>)
-        power.external += f.push_work(before, e, ForceStage::at_an_instant());
+        power.external += f.external_work(before, e, ForceStage::at_an_instant()) + f.power_of_time(e, h / 64);
       if constexpr (std::is_same_v<F, VelocityForce>) power.external += f.work(before, e, ForceStage::at_an_instant());
     }
   });
@@ -95,17 +95,18 @@ void RungeKutta::begin(Newton& newton, Problem& problem) {
   velocity_.assign(problem.velocity.begin(), problem.velocity.end());
 }
 
-bool RungeKutta::step(Newton& newton, Problem& problem, double h) {
+bool RungeKutta::step(Newton& newton, Problem& problem, double h, double start) {
   external_work_ = dissipated_ = 0;
   const auto add_work = [&](double weight) {
     if (weight == 0) return;
-    const Power power = calc_power(problem);
+    const Power power = calc_power(problem, h);
     external_work_ += weight * h * power.external, dissipated_ += weight * h * power.dissipated;
   };
   const Row& weights = for_velocity[stages - 1];
   add_work(weights[0]);
   for (int stage = 1; stage < stages; ++stage) {
     const double time = sum_of(for_velocity[stage]) * h;
+    problem.set_times_of_laws(start + time, start + time);
     for (std::size_t i = 0; i < problem.size(); ++i) {
       Vec3 kick, moved;
       for (int j = 0; j < stage; ++j)

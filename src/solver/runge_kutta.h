@@ -15,8 +15,9 @@ class RungeKutta {
  public:
   /// Saves the state as the start of a step, with its accelerations.
   void begin(Newton&, Problem&);
-  /// Takes a step of h seconds from there. False if its end cannot be projected on the constraints.
-  bool step(Newton&, Problem&, double h);
+  /// Takes a step of h seconds from there, which laws that depend on the time know as `start`, s. False if its end cannot be
+  /// projected on the constraints.
+  bool step(Newton&, Problem&, double h, double start = 0);
   /// The accelerations at the end; they must be known before `estimate_error` and `accept`.
   void end(Newton&, Problem&);
   /// Largest difference of the fourth-order and fifth-order positions, m, and velocities, m/s.

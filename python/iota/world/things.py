@@ -262,7 +262,7 @@ class Things:
             self._frames_changed = True
             self.mark_attached()
         if self._frames_changed:
-            # What is on a frame moves with it on pages: it is sent again only if a frame has come, gone, or is hidden.
+            # Pages move things with their frames: these are sent again only if a frame has come, gone, or is hidden.
             self._frames_changed = False
             there = {frame for frame in self._frames if _on_frame(frame, Vec3()) is not None}
             if there != self._frames_told:

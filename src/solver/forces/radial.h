@@ -15,14 +15,16 @@ namespace iota::solver {
 ///   that attracts and U''(r0) < 0. At the end of a step an attracting pole has a second root beside the pole, in which Newton's
 ///   method caught two bodies for good.
 ///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
-///   of the elastic part is exactly minus the change of energy (Gonzalez 1996).
+///   of the elastic part is exactly minus the change of energy (Gonzalez 1996). Of a law that depends on the time T* is the mean
+///   for both times, and the others are taken in the middle; the energy is that at the end, so that the difference is external work.
 /// If r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
 struct RadialForce {
   static constexpr bool is_external = false;
   ForceArm arm;
   const laws::PairLaw* law = nullptr;
   std::array<double, laws::max_parameters> parameters{};
-  double time = 0, m_p = 1, m_q = 1;
+  double time = 0, time_before = 0;  ///< at the end of the step and at its start, s; the same at an instant
+  double m_p = 1, m_q = 1;           ///< kg
 
   bool keeps_angular_momentum() const { return !law->has_drag(); }
   double energy(const Vec3& e) const { return law->elastic(at(norm(e)), parameters.data()).energy; }
@@ -31,19 +33,20 @@ struct RadialForce {
     const double r1 = norm(e1), r0 = s.instant ? r1 : norm(e0);
     Vec3 f;
     if (s.midpoint)
-      f = (-pull_between(r0, r1).value / (r0 + r1 + tiny)) * (e0 + e1);
+      f = (-pull_between(r0, r1, s).value / (r0 + r1 + tiny)) * (e0 + e1);
     else
       f = !s.instant && attracts_more_nearby(r0) ? (-pull(r0).value / (r0 + tiny)) * e0
                                                  : (-pull(r1).value / (r1 + tiny)) * e1;
     if (has_dashpot()) f += dashpot_force(e0, e1, s);
-    if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
+    if (law->has_drag()) f -= (law->drag(acting(r0, s), parameters.data()) / s.h) * (e1 - e0);
     return f;
   }
 
   bool has_dashpot() const { return law->has_damping(); }
   Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Dashpot dashpot(e0, e1, s);
-    return law->damping(at(norm(s.instant ? e1 : e0), dashpot.along / s.h), parameters.data()).value * dashpot.n;
+    const laws::PairState state = acting(norm(s.instant ? e1 : e0), s, dashpot.along / s.h);
+    return law->damping(state, parameters.data()).value * dashpot.n;
   }
 
   /// See SpringForce.
@@ -58,15 +61,15 @@ struct RadialForce {
     if (!law->has_damping() && !law->has_drag()) return 0;
     const double r0 = norm(s.instant ? e1 : e0), along = Dashpot(e0, e1, s).along;
     double taken = 0;
-    if (law->has_damping()) taken -= law->damping(at(r0, along / s.h), parameters.data()).value * along;
-    if (law->has_drag()) taken += law->drag(at(r0), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
+    if (law->has_damping()) taken -= law->damping(acting(r0, s, along / s.h), parameters.data()).value * along;
+    if (law->has_drag()) taken += law->drag(acting(r0, s), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
     return taken;
   }
 
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0), r1 = norm(e1);
     const Vec3 n1 = (1 / (r1 + tiny)) * e1;
-    const Slope p = s.midpoint ? pull_between(r0, r1) : attracts_more_nearby(r0) ? Slope{} : pull(r1);
+    const Slope p = s.midpoint ? pull_between(r0, r1, s) : attracts_more_nearby(r0) ? Slope{} : pull(r1);
     const double length = s.midpoint ? r0 + r1 + tiny : r1 + tiny;
     double along = p.slope, across = p.value / length;
     if (s.clamp) along = std::max(along, 0.0), across = std::max(across, 0.0);
@@ -74,11 +77,11 @@ struct RadialForce {
     k += (along - across) * Mat3::outer(s.midpoint ? (1 / length) * (e0 + e1) : n1, n1);
     if (law->has_damping()) {
       const Dashpot dashpot(e0, e1, s);
-      const Slope damping = law->damping(at(r0, dashpot.along / s.h), parameters.data());
+      const Slope damping = law->damping(acting(r0, s, dashpot.along / s.h), parameters.data());
       const double rate = -damping.slope / s.h;
       k += dashpot.stiffness_matrix(e1, s.clamp ? std::max(rate, 0.0) : rate, -damping.value, s);
     }
-    if (law->has_drag()) k += Mat3::diagonal(law->drag(at(r0), parameters.data()) / s.h);
+    if (law->has_drag()) k += Mat3::diagonal(law->drag(acting(r0, s), parameters.data()) / s.h);
     return k;
   }
 
@@ -93,11 +96,27 @@ struct RadialForce {
     return energy(e1) - energy(e0) - law->elastic(at(r0), parameters.data()).slope / (r0 + tiny) * dot(e0, e1 - e0);
   }
 
-  /// Work by the part of the force without an energy, J.
-  double push_work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    if (!law->has_push()) return 0;
+  /// By which its energy changes in time, W, from the energies up to 2 dt seconds before and after.
+  double power_of_time(const Vec3& e, double dt) const {
+    if (!law->depends_on_time() || !law->has_energy()) return 0;
+    const double r = norm(e);
+    const auto energy_after = [&](double t) {
+      return law->elastic({r, 0, time + t, m_p, m_q}, parameters.data()).energy;
+    };
+    return (8 * (energy_after(dt) - energy_after(-dt)) - (energy_after(2 * dt) - energy_after(-2 * dt))) / (12 * dt);
+  }
+  /// Whether it may do work that its energy does not tell.
+  bool does_external_work() const { return law->has_push() || law->depends_on_time(); }
+  /// The work that its energy does not tell, J.
+  double external_work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    if (!does_external_work()) return 0;
     const double r0 = norm(e0), r1 = norm(e1);
-    if (s.midpoint) return law->push(at((r0 + r1) / 2), parameters.data()).value * (r1 - r0);
+    if (s.midpoint) {
+      const double by_push = law->push(acting((r0 + r1) / 2, s), parameters.data()).value * (r1 - r0);
+      return law->depends_on_time()
+                 ? by_push + (elastic_between(r0, r1, time).value - elastic_between(r0, r1).value) * (r1 - r0)
+                 : by_push;
+    }
     if (!s.instant && attracts_more_nearby(r0))
       return law->push(at(r0), parameters.data()).value / (r0 + tiny) * dot(e0, e1 - e0);
     return law->push(at(r1), parameters.data()).value / (r1 + tiny) * dot(e1, e1 - e0);
@@ -108,6 +127,10 @@ struct RadialForce {
   using Slope = laws::PairLaw::Slope;
 
   laws::PairState at(double r, double v = 0) const { return {r, v, time, m_p, m_q}; }
+  /// The state for the parts without an energy.
+  laws::PairState acting(double r, const ForceStage& s, double v = 0) const {
+    return {r, v, s.midpoint ? 0.5 * (time_before + time) : time, m_p, m_q};
+  }
 
   Slope pull(double r) const {
     const laws::Elastic u = law->elastic(at(r), parameters.data());
@@ -115,23 +138,28 @@ struct RadialForce {
     return {u.slope - push.value, u.curvature - push.slope};
   }
 
-  /// T* and its derivative by r1.
-  Slope pull_between(double r0, double r1) const {
-    Slope t;
+  /// T* and its derivative by r1, without the push.
+  Slope elastic_between(double r0, double r1) const {
+    if (!law->has_energy()) return {};
+    const Slope at_end = elastic_between(r0, r1, time);
+    if (time_before == time || !law->depends_on_time()) return at_end;
+    const Slope before = elastic_between(r0, r1, time_before);
+    return {0.5 * (before.value + at_end.value), 0.5 * (before.slope + at_end.slope)};
+  }
+  Slope elastic_between(double r0, double r1, double t) const {
     const double change = r1 - r0;
-    if (!law->has_energy()) {
-    } else if (std::abs(change) > 3e-4 * (r0 + r1)) {
-      const laws::Elastic a = law->elastic(at(r0), parameters.data()), b = law->elastic(at(r1), parameters.data());
-      t.value = (b.energy - a.energy) / change;
-      t.slope = (b.slope - t.value) / change;
-    } else {
-      constexpr double low = 0.21132486540518713, high = 1 - low;
-      const laws::Elastic a = law->elastic(at(r0 + low * change), parameters.data());
-      const laws::Elastic b = law->elastic(at(r0 + high * change), parameters.data());
-      t.value = 0.5 * (a.slope + b.slope);
-      t.slope = 0.5 * (low * a.curvature + high * b.curvature);
+    const auto elastic = [&](double r) { return law->elastic({r, 0, t, m_p, m_q}, parameters.data()); };
+    if (std::abs(change) > 3e-4 * (r0 + r1)) {
+      const laws::Elastic a = elastic(r0), b = elastic(r1);
+      const double pull = (b.energy - a.energy) / change;
+      return {pull, (b.slope - pull) / change};
     }
-    const Slope push = law->push(at((r0 + r1) / 2), parameters.data());
+    constexpr double low = 0.21132486540518713, high = 1 - low;
+    const laws::Elastic a = elastic(r0 + low * change), b = elastic(r0 + high * change);
+    return {0.5 * (a.slope + b.slope), 0.5 * (low * a.curvature + high * b.curvature)};
+  }
+  Slope pull_between(double r0, double r1, const ForceStage& s) const {
+    const Slope t = elastic_between(r0, r1), push = law->push(acting((r0 + r1) / 2, s), parameters.data());
     return {t.value - push.value, t.slope - 0.5 * push.slope};
   }
 };
