@@ -159,7 +159,7 @@ class Integrator {
     if (!spin_) spin_ = std::make_unique<Spin>();
     return *spin_;
   }
-  void book_held_forces_that_press(const Problem&, const Stage&, AdvanceReport&);
+  void book_held_forces_that_press(Problem&, const Stage&, AdvanceReport&);
   void give_spin_back(Problem&, const Stage&, double damped, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Corrections of velocities at the end of a (sub-)step, and the energy that they take from the motion or return to it.
+#include "solver/active_set.h"
 #include "solver/integrator.h"
 
 #include "solver/pieces.h"
@@ -92,8 +93,8 @@ struct WorkOfTorques {
 // The end-point rule takes the work of a held force along the chord of a step. Forces that press on what turns, as two hands that
 // push a rod from both ends, seem to take energy by that, and the rows that resist seem to make it: 12 J of 16 by hands that
 // turn a ball about its joint. What moves a body is the part of a force that rows do not resist: its work is that of the whole.
-// Up to what would be made otherwise.
-void Integrator::book_held_forces_that_press(const Problem& problem, const Stage& stage, AdvanceReport& report) {
+// Up to what would be made otherwise. Springs of rows resist by where they are, not by what presses.
+void Integrator::book_held_forces_that_press(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const double made = -energy_.missing - energy_.slack;
   if (!(made > 0) || drives_rows_ || !problem.has_used_constraints()) return;
   const std::span<const GripForce> grips = problem.items_of<GripForce>();
@@ -105,6 +106,7 @@ void Integrator::book_held_forces_that_press(const Problem& problem, const Stage
     const Vec3 impulse = stage.h * f.force(e0, e1, {.h = stage.h});
     for (std::uint32_t i = 0; i < f.arm.count; ++i) impulses[f.arm.nodes[i]] += f.arm.weights[i] * impulse;
   }
+  ActiveSet::begin_impulses_after_step(problem);
   newton_.find_velocity_change(problem, impulses, {}, stage.fraction, change);
   double resisted = 0;
   for (std::size_t i = 0; i < problem.size(); ++i) resisted += dot(impulses[i], problem.velocity[i]);

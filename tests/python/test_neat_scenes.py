@@ -8,6 +8,7 @@ not show in them.
 import math
 import random
 
+import numpy as np
 import pytest
 
 import iota
@@ -187,3 +188,18 @@ def test_hands_that_press_a_body_while_it_turns_make_no_energy() -> None:
         for mode in ("robust", "energy_keeping"):
             assert kinetic(kind, mode, 240) == pytest.approx(truth, rel=0.1)
             assert kinetic(kind, mode, 960) == pytest.approx(truth, rel=0.04)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_hands_that_press_on_what_springs_hold_stop_nothing(seed: int) -> None:
+    """A spring of a joint without a damper has no equation in a projection of velocities: a not-a-number stopped all bodies."""
+    random = np.random.default_rng(seed)
+    system = iota.System(mode="robust")
+    first = system.body(shape=iota.Box((0.6, 0.1, 0.1)), position=(0.3, 1, 0))
+    second = system.body(shape=iota.Box((0.6, 0.1, 0.1)), position=(0.9, 1, 0))
+    system.revolute(first, at=(0, 1, 0), axis=(0, 0, 1))
+    system.revolute(first, second, at=(0.6, 1, 0), axis=(0, 0, 1), spring=(random.choice((3.0, 30.0)), 0, 0))
+    for hold, (body, at) in enumerate(((second, (0.2, 0, 0)), (first, (0.1, 0, 0)))):
+        target = (*random.uniform((-1, 0), (1, 2)), 0)
+        system.grip(body, at, target, hold=hold, frequency=5, max_acceleration=500)
+    assert [step for step in range(120) if system.step(1 / 60).unconverged] == []
