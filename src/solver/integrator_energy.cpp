@@ -142,7 +142,13 @@ void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dam
 void Integrator::remove_made_energy(Problem& problem, double energy_before) {
   double made = drives_rows_ || -energy_.missing <= energy_.slack ? 0 : -energy_.missing - 0.5 * energy_.slack;
   if (is_conservative_) made = std::max(made, energy_.total - energy_before);
-  if (made > 0) (void)change_kinetic_energy(problem, made);
+  if (!(made > 0) || change_kinetic_energy(problem, made) || !problem.has_pushes()) return;
+  // The bodies move as one. Forces from outside change their angular momentum, so that it need not be kept.
+  const double rest = -energy_.missing - 0.5 * energy_.slack;
+  if (!(rest > 0)) return;
+  std::optional<RigidMotion> flight;
+  if (holds_.are_none()) flight = rigid_motion_of(problem), flight->turning = {};
+  (void)change_kinetic_energy(problem, rest, flight);
 }
 
 // Removes `excess` from the kinetic energy, or adds it if negative: scales all velocities, in an isolated problem
