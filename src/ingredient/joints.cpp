@@ -30,11 +30,14 @@ void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw
   (at_lower ? law.upper : law.lower) = 0;
 }
 
-/// The speed of a motor, or the one that brings a servo to its target.
+/// The speed of a motor, or the mean one in a step of h seconds of a servo, whose distance to the target falls by exp(-t/servo_time):
+/// its way depends neither on the step nor ends beyond the target.
 double motor_rate(const CoordinateOptions& o, double now, double h) {
   if (std::isnan(o.servo)) return o.motor_speed;
-  const double time = std::max(h, o.servo_time), most = std::abs(o.motor_speed);
-  return time > 0 ? std::clamp((o.servo - now) / time, -most, most) : 0;
+  const double most = std::abs(o.motor_speed), distance = o.servo - now;
+  if (!(std::max(h, o.servo_time) > 0)) return 0;
+  const double speed = h > 0 ? -std::expm1(-h / o.servo_time) * distance / h : distance / o.servo_time;
+  return std::clamp(speed, -most, most);
 }
 
 /// Each once, in the order of slots. The list is this thread's, until the next call.
