@@ -71,7 +71,8 @@ void bind_particle_batch(nb::module_& module) {
           },
           nb::sig("def mass(self) -> numpy.typing.NDArray[numpy.float64]"), "(n,), kg.")
       .def_prop_ro(
-          "time", [](const ParticlesView& self) { return self.use().time; }, "At the start of the step, s.")
+          "time", [](const ParticlesView& self) { return self.use().time; },
+          "Of the positions, s: at the start of the step in the robust mode, else in its middle.")
       .def_prop_ro(
           "dt", [](const ParticlesView& self) { return self.use().dt; }, "Length of the step, s.")
       .def_prop_ro(

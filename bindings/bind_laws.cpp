@@ -55,7 +55,8 @@ void bind_bond_batch(nb::module_& module) {
   def_rows("velocity_q", &BondBatch::velocity_q, "(n, 3), m/s.");
   type.def("__len__", [](const BondsView& self) { return self.use().count; })
       .def_prop_ro(
-          "time", [](const BondsView& self) { return self.use().time; }, "At the start of the step, s.")
+          "time", [](const BondsView& self) { return self.use().time; },
+          "Of the positions, s: at the start of the step in the robust mode, else in its middle.")
       .def_prop_ro(
           "distance",
           [](const BondsView& self) {

@@ -31,7 +31,7 @@ using RadialFunction = double (*)(double r, double v, double t, const double* pa
 /// All bonds of one law at once, arrays of `count` rows in C order.
 struct BondBatch {
   std::size_t count;
-  double time;                            ///< at the start of the step, s
+  double time;                            ///< of the positions, s
   const double *position_p, *position_q;  ///< (count, 3), m
   const double *velocity_p, *velocity_q;  ///< (count, 3), m/s
   const double* parameters;               ///< (count, number of parameters)
@@ -69,7 +69,7 @@ struct BondState {
   BondId bond;
   Vec3 position_p, position_q;  ///< m
   Vec3 velocity_p, velocity_q;  ///< m/s, at the start of the step
-  double time;                  ///< s, at the start of the step
+  double time;                  ///< s, of the positions
 };
 
 /// Any function of the script: returns the force on p in N (q gets the opposite), evaluated once a step and held.
@@ -95,7 +95,7 @@ inline constexpr int max_groups = 32;
 /// All particles of a field at once, arrays of `count` rows in C order. Particles that are hinged together are one row.
 struct ParticleBatch {
   std::size_t count;
-  double time, dt;              ///< at the start of the step; its length, s
+  double time, dt;              ///< of the positions; length of the step, s
   const double* position;       ///< (count, 3), m
   const double* velocity;       ///< (count, 3), m/s
   const double* mass;           ///< (count), kg

@@ -70,7 +70,7 @@ std::string not_finite(const BondBatch& batch, std::size_t i) {
 void HeldForces::take_law(BondBatch& batch, StepReport& report) {
   if (!require_function(batch, report)) return;
   batch.load(model_, look_ahead(report.dt));
-  evaluate(batch, model_.time);
+  evaluate(batch, time_of_places(report.dt));
   const bool has_drag = model_.laws[batch.law].has_derivative() && model_.compiled(batch.law).has_drag();
   for (std::size_t i = 0; i < batch.bonds.size(); ++i) {
     Vec3 on_p = -batch.force[i] * batch.direction[i];
@@ -114,9 +114,9 @@ bool HeldForces::require_function(const BondBatch& batch, StepReport& report) {
   return false;
 }
 
-void HeldForces::call(BondBatch& batch) const {
+void HeldForces::call(BondBatch& batch, double h) const {
   functions.of_laws.at(model_.laws[batch.law].function)
-      .batch({batch.bonds.size(), model_.time, batch.position_p.data(), batch.position_q.data(),
+      .batch({batch.bonds.size(), time_of_places(h), batch.position_p.data(), batch.position_q.data(),
               batch.velocity_p.data(), batch.velocity_q.data(), batch.parameter_rows.data(), batch.ids.data(),
               batch.force_rows.data()});
 }
@@ -134,7 +134,7 @@ void HeldForces::take_batch_function(BondBatch& batch, StepReport& report) {
                                    batch.bonds.size() == 1 ? " bond is" : " bonds are", " switched off"));
   };
   try {
-    call(batch);
+    call(batch, report.dt);
   } catch (const std::exception& error) {
     return fail(std::string(": ") + error.what());
   } catch (...) {
@@ -166,8 +166,9 @@ void HeldForces::take_scripts(StepReport& report) {
     try {
       const model::Ring &p = model_.rings[model_.particles[bond.p].ring],
                         &q = model_.rings[model_.particles[bond.q].ring];
-      const Vec3 force = script->second.force({model_.bonds.id(slot), p.position + ahead * p.velocity,
-                                               q.position + ahead * q.velocity, p.velocity, q.velocity, model_.time});
+      const Vec3 force =
+          script->second.force({model_.bonds.id(slot), p.position + ahead * p.velocity, q.position + ahead * q.velocity,
+                                p.velocity, q.velocity, model_.time + ahead});
       if (laws::is_force(force))
         add_force(slot, force);
       else
@@ -216,7 +217,7 @@ std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
     count += batch.bonds.size();
     if (model_.laws[law].kind == ingredient::LawKind::batch) {
       batch.load_rows(model_, 0);
-      call(batch);
+      call(batch, h);
     } else {
       batch.load(model_, 0);
       evaluate(batch, model_.time);

@@ -53,7 +53,7 @@ void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& re
     if (!call_field(slot, set, report)) return;
   } else {
     const laws::FieldLaw& law = model_.compiled_field(slot);
-    const double time = model_.time + look_ahead(report.dt);
+    const double time = time_of_places(report.dt);
     for (const std::size_t row : set.waiting) std::fill_n(set.force_rows.begin() + 3 * row, 3, 0.0);
     set.for_each_acting(parallel_, [&](std::size_t first, std::size_t last) {
       law.evaluate(set.arrays, first, last - first, time, field.parameters.data(), set.force_rows.data() + 3 * first);
@@ -98,7 +98,7 @@ void HeldForces::add_missed(StepReport& report) {
     for (const std::uint32_t row : set->waiting) {
       const std::uint32_t ring = set->rings[row];
       if (ingredient::Strides::waits(model_, set->family[row], ring, report.dt)) continue;
-      const double time = model_.time + look_ahead(report.dt);
+      const double time = time_of_places(report.dt);
       const Vec3 v{set->arrays.vx[row], set->arrays.vy[row], set->arrays.vz[row]};
       model_.fields.for_each([&](std::uint32_t slot, const ingredient::Field& field) {
         if (!field.active || field.kind == ingredient::FieldKind::function || field.group != set->group) return;
@@ -136,7 +136,7 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
     v[0] = set.arrays.vx[i], v[1] = set.arrays.vy[i], v[2] = set.arrays.vz[i];
   }
   try {
-    function->second({n, model_.time, report.dt, set.position_rows.data(), set.velocity_rows.data(),
+    function->second({n, time_of_places(report.dt), report.dt, set.position_rows.data(), set.velocity_rows.data(),
                       set.arrays.m.data(), set.ids.data(), set.force_rows.data()});
     return true;
   } catch (const std::exception& error) {
@@ -148,9 +148,9 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
 
 void HeldForces::take_pairs(std::uint32_t slot, ParticleSet& set, StepReport& report) {
   const ingredient::PairForce& pairs = model_.pairs[slot];
-  const auto bad =
-      sets_.sum(slot).add_forces(set.arrays, {set.family, set.sides}, model_.compiled(pairs.law),
-                                 pairs.parameters.data(), {pairs.cutoff, pairs.shifted != 0}, model_.time, parallel_);
+  const auto bad = sets_.sum(slot).add_forces(set.arrays, {set.family, set.sides}, model_.compiled(pairs.law),
+                                              pairs.parameters.data(), {pairs.cutoff, pairs.shifted != 0},
+                                              time_of_places(report.dt), parallel_);
   if (bad.count > 0)
     report.warnings.push_back(text("pairwise force ", slot, " gives no finite force between particles ",
                                    set.ids[bad.i].slot, " and ", set.ids[bad.j].slot,

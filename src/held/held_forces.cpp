@@ -31,6 +31,8 @@ void HeldForces::end_step() {
 // step this is the leapfrog scheme, whose energy does not drift; forces at the start of the step would add energy.
 double HeldForces::look_ahead(double h) const { return model_.steps_to_end_point() ? 0 : h / 2; }
 
+double HeldForces::time_of_places(double h) const { return model_.time + look_ahead(h); }
+
 void HeldForces::forget() {
   batches_.forget(), sets_.forget(), error_.forget();
   energy_is_known_ = false;

@@ -54,6 +54,7 @@ class HeldForces {
 
  private:
   double look_ahead(double h) const;
+  double time_of_places(double h) const;
   void take_laws(StepReport&);
   void take_law(BondBatch&, StepReport&);
   void take_batch_function(BondBatch&, StepReport&);
@@ -62,7 +63,7 @@ class HeldForces {
   bool has_function(const ingredient::Law&) const;
   bool require_function(const BondBatch&, StepReport&);  ///< switches off the bonds of a law without its function
   void evaluate(BondBatch&, double time) const;
-  void call(BondBatch&) const;  ///< the function of a law for all its bonds; it may throw
+  void call(BondBatch&, double h) const;  ///< the function of a law for all its bonds; it may throw
   void add_force(std::uint32_t bond, const Vec3& on_p);
   void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
 

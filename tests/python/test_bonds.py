@@ -84,7 +84,7 @@ def test_a_function_gives_the_force_on_the_first_and_its_opposite_to_the_second(
 
     bond = space.bond(p, q, force)
     space.step(0.5)
-    assert seen[0] == ((0, 0, 0), (1, 0, 0), (0, 0, 0), (0, 0, 0), 0.0)
+    assert seen[0] == ((0, 0, 0), (1, 0, 0), (0, 0, 0), (0, 0, 0), 0.25)
     assert seen[1] == (p, q, bond, 1.0, (1, 0, 0))
     assert p.velocity == pytest.approx((0, 3, 0)) and q.velocity == pytest.approx((0, -3, 0))
     assert abs(space.momentum) < 1e-12

@@ -45,6 +45,23 @@ def hand(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
     return system.grip(p.body, target=(0.2, 0.2, 0), frequency=2, max_acceleration=20)
 
 
+def function(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    return system.bond(p, q, lambda bond: 3 * math.sin(9 * bond.time) * bond.direction)
+
+
+def functions(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    law = system.law(lambda bonds: 3 * np.sin(9 * bonds.time) * bonds.direction)
+    return system.bond(p, q, law)
+
+
+def field(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    return system.field(lambda particles: np.tile([0, 0, 0.5 * math.sin(9 * particles.time)], (len(particles), 1)))
+
+
+def pairs(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    return system.pair_force("force = k*sin(9*t)", k=0.2, cutoff=5)
+
+
 Act = Callable[[iota.System, iota.Particle, iota.Particle], Any]
 
 
@@ -87,6 +104,16 @@ def test_motions_tend_to_one_limit_by_the_order_of_the_mode(act: Act, jointed: b
     assert fine < (5e-4 if order == 1 else 2e-4)
     coarse, fine = error("robust", 480), error("robust", 1920)
     assert fine < coarse / 4 * 1.2
+
+
+@pytest.mark.parametrize("act", [function, functions, field, pairs])
+def test_held_forces_of_the_time_are_of_second_order(act: Act) -> None:
+    """They are given the time of the positions that they are given. `accurate` holds them, too, and tells the error of that."""
+    limit = end("accurate", act, False, FINE)
+    for mode in ("energy_keeping", "accurate"):
+        errors = [float(np.abs(end(mode, act, False, per_second) - limit).max()) for per_second in (60, 240)]
+        assert errors[1] < 5e-5
+        assert errors[1] < errors[0] / 16 * 1.2
 
 
 @pytest.mark.parametrize("mode", ["robust", "energy_keeping", "accurate"])

@@ -100,7 +100,7 @@ def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System
 
     space.field(push, group=group)
     space.step(0.5)
-    assert seen[0] == 3 and seen[1] == particles[1:4] and seen[2].tolist() == [1, 1, 1] and seen[3:5] == [0, 0.5]
+    assert seen[0] == 3 and seen[1] == particles[1:4] and seen[2].tolist() == [1, 1, 1] and seen[3:5] == [0.25, 0.5]
     assert [p.velocity.x for p in particles] == pytest.approx([0, 0, 0.5, 1, 0])
     with pytest.raises(RuntimeError, match="valid only until"):
         len(seen[5])

@@ -273,7 +273,7 @@ def test_a_batch_is_good_only_during_its_call_but_its_arrays_may_be_kept(space: 
     space.bond(*pair, space.law(keep))
     space.step(0.1)
     space.step(0.1)
-    assert kept[1].tolist() == [1] and kept[2].tolist() == [[1, 0, 0]] and kept[9] == pytest.approx(0.1)
+    assert kept[1].tolist() == [1] and kept[2].tolist() == [[1, 0, 0]] and kept[9] == pytest.approx(0.15)
     with pytest.raises(RuntimeError, match="valid only until"):
         len(kept[0])
 
