@@ -4,6 +4,7 @@
 #include "ingredient/ingredient_list.h"
 #include "ingredient/model.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace iota::ingredient {
@@ -86,6 +87,7 @@ LastStep::LastStep(const model::Model& model, std::uint32_t particle)
     : model(model), stage(stage_of(model, particle)), structure_(model) {}
 
 LastStep::Slowed LastStep::slowed(std::uint32_t particle) const {
+  constexpr double most_of_half = 300;  // of more nothing is left
   Slowed sum;
   // A carried particle has the velocity of its basis, whose points have different damping.
   for (const auto& [slot, weight] : rings_that_carry(model, particle)) {
@@ -97,8 +99,9 @@ LastStep::Slowed LastStep::slowed(std::uint32_t particle) const {
       continue;
     }
     const Vec3 start = ring.velocity - structure_.corrections[slot] - h() * ring.acceleration;
-    sum.at_start -= (weight * std::expm1(-rate * h() / 2)) * start;
-    sum.at_end += (weight * std::expm1(rate * h() / 2)) * ring.velocity;
+    const double half = std::min(rate * h() / 2, most_of_half);
+    sum.at_start -= (weight * std::expm1(-half)) * start;
+    sum.at_end += (weight * std::expm1(half)) * ring.velocity;
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 
 #include "ingredient/model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -16,7 +17,8 @@ double spin_of(const Model& model, std::uint32_t body) {
 }
 /// The share of a momentum that half of the damping of a step leaves: the solver's step is between the two halves.
 double left_of_half(const Model& model, std::uint32_t body, double h) {
-  return std::exp(-(model.damping + model.body_damping[body]) * h / 2);
+  constexpr double most = 300;  // of more nothing is left, and readings divide by it
+  return std::exp(-std::min((model.damping + model.body_damping[body]) * h / 2, most));
 }
 
 }  // namespace

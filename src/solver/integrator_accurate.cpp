@@ -9,10 +9,12 @@ namespace iota::solver {
 
 namespace {
 
-/// Whether a force oscillates or decays within a step of h seconds. Explicit steps that are shorter only where their error
+/// Whether a force or damping oscillates or decays within a step of h seconds. Explicit steps that are shorter only where their error
 /// shows it let a spring at rest oscillate up to the tolerance: one of 1e6 N/m pulled a gram at rest with 22 N.
 bool has_stiff_forces(const Problem& problem, double h) {
   bool stiff = false;
+  for (std::size_t i = 0; problem.is_damped() && i < problem.size(); ++i)
+    stiff = stiff || !(problem.damping_of(i) * h < 4);
   const ForceStage stage{.h = h};
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {

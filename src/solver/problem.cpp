@@ -189,9 +189,15 @@ void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
 }
 
 void Problem::damp_velocities(double time) {
+  thread_local std::vector<Vec3> prescribed;
+  prescribed.clear();
+  const std::span<const AffineConstraint> affines = items_of<AffineConstraint>();
+  for (const AffineConstraint& c : affines)
+    if (c.is_nail()) prescribed.push_back(velocity[c.nodes[0]]);
   for (std::size_t i = 0; i < size(); ++i) velocity[i] *= std::exp(-damping_of(i) * time);
-  for (const AffineConstraint& c : items_of<AffineConstraint>())
-    if (c.is_nail()) velocity[c.nodes[0]] *= std::exp(damping_of(c.nodes[0]) * time);
+  auto own = prescribed.begin();
+  for (const AffineConstraint& c : affines)
+    if (c.is_nail()) velocity[c.nodes[0]] = *own++;
 }
 
 double Problem::potential_energy(const Vec3* x, bool with_external) const {

@@ -179,3 +179,25 @@ def test_the_way_of_a_servo_does_not_depend_on_the_step(mode: Any) -> None:
         # By a torque of 1e4 N m it reaches its first speed in 1e-4 s, which only `accurate` shows.
         far = 1e-4 if mode == "accurate" else 1e-9
         assert joint.angle.value == pytest.approx(0.5 * (1 - math.exp(-0.1 / 0.05)), abs=far)
+
+
+@pytest.mark.parametrize("mode", ["robust", "energy_keeping", "accurate"])
+@pytest.mark.parametrize("rate", [1e3, 1e6, 1e12])
+def test_damping_of_any_size_lets_things_stand_still(mode: Any, rate: float) -> None:
+    system = iota.System(mode=mode, damping=rate)
+    arm = system.body(shape=iota.Box((0.6, 0.1, 0.1)), position=(0.3, 0, 0))
+    system.revolute(arm, at=(0, 0, 0), axis=(0, 0, 1))
+    rod = system.body(shape=iota.Cylinder(0.02, 1), position=(2, 0, 0))
+    rod.attachment((2, 0, 0.5)).nail()
+    rod.angular_velocity = (0, 0, 9)
+    loose = system.body(shape=iota.Box((0.1, 0.2, 0.3)), position=(4, 0, 0))
+    point = system.body().particle((5, 0, 0))
+    loose.velocity = point.velocity = (3, 0, 0)
+    starts = [body.position for body in system.bodies]
+    for _ in range(30):
+        report = system.step(1 / 60)
+        assert report.unconverged == 0 and report.warnings == []
+    for body, start in zip(system.bodies, starts, strict=True):
+        assert abs(body.velocity) < 9.81 / min(rate, 60)
+        assert np.isfinite([*body.velocity, *body.net_force]).all()
+        assert abs(body.position - start) < 1.01 * 30 * 9.81 / 60**2  # in each step gravity still moves it
