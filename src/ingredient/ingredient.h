@@ -169,7 +169,7 @@ struct NoAnswers {
   /// Loads parameters and warm multipliers into the problem, for a step of h seconds (0: a projection), after positions
   /// and velocities. The same model loads the same problem, as a step may be tried several times.
   void load(const Model&, const IslandNodes&, double /*h*/, Problem&) {}
-  /// Changes by a step of h seconds that is being stored: damping, angles. Returns the dissipated energy, J.
+  /// Changes by a step of h seconds that is being stored: spins, strains. Returns the dissipated energy, J.
   double after_step(Model&, double /*h*/, Problem&) { return 0; }
   /// Stores multipliers and readings of a step of h seconds, after the model's positions and velocities.
   void store(Model&, const IslandNodes&, double /*h*/, const Problem&) const {}
