@@ -198,7 +198,9 @@ void bind_bond_state(nb::module_& module) {
             return length > 0 ? line * (1 / length) : Vec3{};
           },
           "Unit vector from p to q; zero if they coincide.")
-      .def_prop_ro("time", [](const BondView& self) { return self.state.time; }, "s");
+      .def_prop_ro(
+          "time", [](const BondView& self) { return self.state.time; },
+          "Of the positions, s: at the start of the step in the robust mode, else in its middle.");
 }
 
 void bind_cosmetic_bond(nb::module_& module) {

@@ -114,16 +114,22 @@ namespace {
   return part.turn(before + 0.5 * gained);
 }
 
-/// The flight of a particle with a damping k, 1/s, by a constant acceleration: v' = a - k v. Exact.
 struct DampedFlight {
   Vec3 after, moved;  ///< velocity at the end, m/s, and way, m
-  DampedFlight(const Vec3& before, const Vec3& acceleration, double k, double h) {
-    const double rate = k * h, way = -std::expm1(-rate) / k;
-    const double rest = rate < 1e-3 ? h * h * (0.5 - rate / 6 + rate * rate / 24) : (h - way) / k;
-    after = std::exp(-rate) * before + way * acceleration;
-    moved = way * before + rest * acceleration;
-  }
+  double taken = 0;   ///< energy that damping takes of a kilogram, J
 };
+/// After a flight that began with half of the damping: `left` is the share of a velocity that a half leaves.
+DampedFlight damp_flight(const Vec3& start, const DampedFlight& flight, double left) {
+  const Vec3& after = flight.after;
+  return {left * after, flight.moved, 0.5 * (1 - left * left) * (dot(start, start) + dot(after, after))};
+}
+/// By a damping k, 1/s, and a constant acceleration, v' = a - k v. Exact. Apart from the loop, as the one above.
+[[gnu::noinline]] DampedFlight fly_damped(const Vec3& before, const Vec3& acceleration, double k, double h) {
+  const double rate = k * h, way = -std::expm1(-rate) / k;
+  const double rest = rate < 1e-3 ? h * h * (0.5 - rate / 6 + rate * rate / 24) : (h - way) / k;
+  const Vec3 after = std::exp(-rate) * before + way * acceleration, moved = way * before + rest * acceleration;
+  return {after, moved, dot(acceleration, moved) - 0.5 * (dot(after, after) - dot(before, before))};
+}
 
 }  // namespace
 
@@ -149,35 +155,33 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
       const Vec3 force = push ? push->before : Vec3{};
       const double mass = model.particles[free.particle].mass;
       const double damping = model.damping + model.body_damping[free.body];
-      const Vec3 start = ring.velocity, acceleration = (1 / mass) * force + gravity;
-      const bool is_held_by_velocity = push && model.pushes_by_velocity.has(free.ring);
-      // Else half of the damping before the rest and half after it, as Integrator::damp.
-      const bool is_exact = damping > 0 && is_accurate && !is_held_by_velocity;
-      const double left = damping > 0 && !is_exact ? std::exp(-damping * h / 2) : 1;
-      const Vec3 before = left * start;
-      Vec3 gained = h * acceleration, turning;
-      if (is_held_by_velocity) [[unlikely]]
+      const Vec3 start = ring.velocity;
+      Vec3 before = start;
+      double left = 1;  // by half of the damping, which acts before the rest and after it, as Integrator::damp
+      if (damping > 0) [[unlikely]]
+        left = std::exp(-0.5 * damping * h), before *= left;
+      Vec3 gained = h * ((1 / mass) * force + gravity);
+      Vec3 turning;
+      if (push && model.pushes_by_velocity.has(free.ring)) [[unlikely]]
         turning = push_by_velocity(model, free.ring, mass, h, start, before, gained);
       Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
-      if (is_exact) {
-        const DampedFlight flight(start, acceleration, damping, h);
-        after = flight.after, moved = flight.moved;
-      }
       constexpr double absurd = 1e12;  // m/s: the energy of a higher speed would overflow
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
           [[unlikely]] {  // an extreme force: the particle keeps its place, and the report says so
         share.is_stuck = true;
         continue;
       }
-      ring.velocity = left * after;
+      if (damping > 0) [[unlikely]] {
+        const bool is_exact = is_accurate && !(push && model.pushes_by_velocity.has(free.ring));
+        const DampedFlight flight =
+            is_exact ? fly_damped(start, (1 / h) * gained, damping, h) : damp_flight(start, {after, moved}, left);
+        after = flight.after, moved = flight.moved, share.dissipated += mass * flight.taken;
+      }
+      ring.velocity = after;
       ring.position += moved;
       if (push) share.work += dot(push->before - turning, moved);
       if (robust) share.lost += 0.5 * mass * dot(gained, gained) - dot(turning, moved);
       const bool pushed = !ingredient::is_noise(model, force, mass);
-      if (is_exact)
-        share.dissipated += mass * dot(acceleration, moved) - 0.5 * mass * (dot(after, after) - dot(start, start));
-      else if (damping > 0)
-        share.dissipated += 0.5 * mass * (1 - left * left) * (dot(start, start) + dot(after, after));
       ring.acceleration = (1 / h) * (ring.velocity - start);
       model.corrections.set(free.ring, {}), ring.is_instant = 0;
       if (model.rest_after > 0) {

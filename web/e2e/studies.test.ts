@@ -652,7 +652,7 @@ describe("the study", () => {
       await study.changed();
       await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
       await study.isFramed(windows.filter((_, place) => runsAll || place === index % windows.length));
-      // Where the camera has its place. A headset may draw 750 000 for both eyes. The museum has fifty exhibits, and two hundred people leave a house or twelve dolls fall.
+      // The detail depends on the place of the camera, so it is counted after that has framed the study. A headset may draw 750 000 for both eyes. The museum has fifty exhibits, and two hundred people leave a house or twelve dolls fall.
       const most = { museum: 300_000, evacuation: 250_000, ragdolls: 250_000 }[name] ?? 200_000;
       expect(await study.triangles(), "triangles of a picture, with shadows").toBeLessThan(most);
       await studies[name](study);

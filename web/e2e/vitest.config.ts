@@ -3,7 +3,7 @@ import path from "node:path";
 import { defineConfig } from "vitest/config";
 
 // Two files at a time, in one browser: while one waits for its world, the other computes. Files of a worker share its modules, as loading
-// them anew for each file takes two seconds of processor time.
+// them anew for each file takes two thirds of a second of processor time.
 export default defineConfig({
   root: path.resolve(import.meta.dirname, ".."),
   test: {
