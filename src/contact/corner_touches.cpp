@@ -159,6 +159,15 @@ bool is_through(const Solid& solid, const Vec3& place, const Vec3& middle) {
                                        : is_between(*solid.form->mesh, rotate(back, middle - solid.position), local);
 }
 
+/// Whether a place is in front of a face, over it, with no other face between both.
+bool is_in_front(const Face& face, const Vec3& place, double tolerance) {
+  const double height = dot(face.plane.normal, place - face.plane.origin);
+  if (!(height > tolerance)) return false;
+  const Quaternion back = conjugate(face.solid.turn);
+  const Vec3 local = rotate(back, place - face.solid.position), down = rotate(back, -face.plane.normal);
+  return !face.solid.form->mesh->ray(local, down, height - tolerance);
+}
+
 /// Touches of one feature with faces of one side are numbered in the same order when the body moves along them.
 void number_touches(std::span<Touch> touches) {
   constexpr std::uint32_t sides = 8;
@@ -276,7 +285,11 @@ class CornerSearch {
   void start(const Solid& solid) {
     const geometry::Bounds& box = solid.form->box;
     middle_ = solid.position + rotate(solid.turn, 0.5 * (box.low + box.high)), size_ = size_of(*solid.form);
+    const Vec3 half = 0.5 * (box.high - box.low);
+    thickness_ = std::min({half.x, half.y, half.z});
   }
+  /// How far the part goes on behind the place with which its ball touches.
+  double inside(const Ball& ball) const { return std::min(ball.radius, thickness_); }
   /// If its gap is small enough, and it is not known.
   void add(const Ball&, const Plane&);
   /// In a corner of a room a feature touches three faces: all count, not only the nearest one.
@@ -292,7 +305,7 @@ class CornerSearch {
   std::vector<Touch>& found_;
   std::size_t before_;
   Vec3 middle_;  ///< of the part
-  double size_ = 0;
+  double size_ = 0, thickness_ = 0;  ///< thickness: half of the least, m
 };
 
 void CornerSearch::add(const Ball& ball, const Plane& plane) {
@@ -317,7 +330,11 @@ void CornerSearch::add_on_face(const Ball& ball, const Face& face) {
   const double gap = dot(normal, ball.center - face.plane.origin) - ball.radius, tolerance = vanishing * size_;
   const Vec3 place = ball.center - ball.radius * normal;
   if (!(gap <= within_) || !is_over(face, place, beside * size_)) return;
-  if (gap < -tolerance && !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle_))) return;
+  // A corner is in the face that is nearest to it. A ball near a ridge is on the face beneath it, though its lowest place may be nearer
+  // to the next face, which the ball does not meet: balls sank in at the rim of a hole.
+  if (gap < -tolerance && !is_in_front(face, place + inside(ball) * normal, tolerance) &&
+      !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle_)))
+    return;
   add(ball, face.plane);
 }
 
@@ -389,7 +406,7 @@ void CornerSearch::find_of_lines(const std::vector<const Line*>& lines) {
     if (!is_known) look({particle, 0, place, radius});
   };
   for (const Line* const line : lines) {
-    size_ = line->radius;
+    size_ = thickness_ = line->radius;
     look_once(line->p, line->a, line->radius), look_once(line->q, line->b, line->radius);
   }
 }

@@ -62,6 +62,20 @@ TEST(CornerTouches, of_what_lies_in_a_hollow_are_those_with_both_faces) {
     }
 }
 
+TEST(CornerTouches, of_what_is_round_are_with_the_face_beneath_it_where_another_is_nearer_to_its_lowest_point) {
+  const Outline step = placed(step_mesh(), {});
+  Outline open = step;
+  open.solids[0].form = make_open_form(step_mesh());
+  const double to_edge = 0.02, depth = 0.04;
+  for (const Shape& shape : {Shape(Sphere{0.2}), Shape(Ellipsoid{{0.4, 0.4, 0.4}}), Shape(Cylinder{0.2, 0.4})})
+    for (const Outline& mesh : {step, open}) {
+      const auto found = touches_of(placed(shape, {1 - to_edge, 1.2 - depth, 0}), mesh, 0.01);
+      ASSERT_FALSE(found.empty()) << shape.index();
+      EXPECT_NEAR(least_gap_of(found), -depth, 1e-9) << shape.index();
+      for (const Touch& touch : found) EXPECT_NEAR(norm(touch.normal - Vec3{0, 1, 0}), 0, 1e-9) << shape.index();
+    }
+}
+
 TEST(CornerTouches, of_a_body_keep_their_names_on_all_triangles_of_a_floor) {
   const Outline step = placed(step_mesh(), {});
   std::uint32_t name = 0;
