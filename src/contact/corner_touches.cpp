@@ -292,8 +292,13 @@ class CornerSearch {
   double inside(const Ball& ball) const { return std::min(ball.radius, thickness_); }
   /// If its gap is small enough, and it is not known.
   void add(const Ball&, const Plane&);
+  /// Whether the middle of the part, which is convex, is behind a face and outside of its mesh: the part is beyond an edge of
+  /// the face, and would be pulled through the edge.
+  bool is_behind(const Face&) const;
   /// In a corner of a room a feature touches three faces: all count, not only the nearest one.
   void add_on_face(const Ball&, const Face&);
+  /// The lowest place of a rim above a face may be beneath the next one, where both are in a valley.
+  void add_beneath_valley(const Ball& lowest, const Face&);
   /// A ring has its wire on both sides of an open mesh.
   void add_of_ring(const Ball&, double tube, const RingSides&, const Face&);
   /// With the nearest place, all half-spaces and all near faces.
@@ -304,7 +309,7 @@ class CornerSearch {
   const CornerFinder::Names& names_;
   std::vector<Touch>& found_;
   std::size_t before_;
-  Vec3 middle_;  ///< of the part
+  Vec3 middle_;                      ///< of the part
   double size_ = 0, thickness_ = 0;  ///< thickness: half of the least, m
 };
 
@@ -325,6 +330,11 @@ void CornerSearch::add(const Ball& ball, const Plane& plane) {
   if (!is_known) found_.push_back(touch);
 }
 
+bool CornerSearch::is_behind(const Face& face) const {
+  if (!(dot(face.plane.normal, middle_ - face.plane.origin) < 0)) return false;
+  return !is_within(*face.solid.form, rotate(conjugate(face.solid.turn), middle_ - face.solid.position));
+}
+
 void CornerSearch::add_on_face(const Ball& ball, const Face& face) {
   const Vec3& normal = face.plane.normal;
   const double gap = dot(normal, ball.center - face.plane.origin) - ball.radius, tolerance = vanishing * size_;
@@ -336,6 +346,16 @@ void CornerSearch::add_on_face(const Ball& ball, const Face& face) {
       !(is_nearest(face, place, -gap, tolerance) && is_through(face.solid, place, middle_)))
     return;
   add(ball, face.plane);
+}
+
+void CornerSearch::add_beneath_valley(const Ball& lowest, const Face& face) {
+  const Vec3 &normal = face.plane.normal, place = lowest.center - lowest.radius * normal;
+  if (!(dot(normal, place - face.plane.origin) < 0) || is_over(face, place, 0)) return;
+  const std::optional<Plane> next = plane_of(other_, place, middle_);
+  if (!next || !(dot(next->normal, place - next->origin) < 0)) return;
+  const Vec3 middle_of_face = (1.0 / 3) * (face.corners[0] + face.corners[1] + face.corners[2]);
+  if (dot(next->normal, middle_of_face - next->origin) > vanishing * size_)
+    add({lowest.part, lowest.feature, place, 0}, *next);
 }
 
 void CornerSearch::add_of_ring(const Ball& ball, double tube, const RingSides& sides, const Face& face) {
@@ -378,6 +398,7 @@ void CornerSearch::find_of_shape(const Solid& solid, const Vec3& spin) {
   std::optional<RingSides> sides;
   const Solid* sides_of = nullptr;
   const auto* const torus = std::get_if<Torus>(&shape);
+  const bool has_rim = std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape);
   visit_faces(other_, middle_, 0.5 * size_ + within_, middle_, [&](const Face& face) {
     if (torus && !face.solid.form->mesh->is_closed()) {
       if (sides_of != &face.solid) sides.emplace(solid, face.solid), sides_of = &face.solid;
@@ -385,10 +406,12 @@ void CornerSearch::find_of_shape(const Solid& solid, const Vec3& spin) {
         visit_lowest_above(one.plane, [&](const Ball& ball, bool) { add_of_ring(ball, torus->tube, *sides, one); });
       return;
     }
+    if (!torus && is_behind(face)) return;
     visit_lowest_above(face.plane, [&](const Ball& ball, bool is_lowest) {
       add_on_face(ball, face);
+      if (is_lowest) return has_rim ? add_beneath_valley(ball, face) : void();
       // Beneath the bottom of a valley a corner is over none of its faces.
-      const bool may_be_in = !is_lowest && dot(face.plane.normal, ball.center - face.plane.origin) < 0;
+      const bool may_be_in = dot(face.plane.normal, ball.center - face.plane.origin) < 0;
       if (!may_be_in || (looked >> ball.feature & 1)) return;
       looked |= 1u << ball.feature;
       const std::optional<Plane> plane = plane_of(other_, ball.center, middle_);

@@ -24,6 +24,11 @@ class MeshEdges {
     bool has_two() const { return dot(into[1], into[1]) > 0; }
     /// Away from both faces where they bend, or the normal of one.
     Vec3 outwards() const { return has_two() ? unit_or(-(into[0] + into[1]), normal) : normal; }
+    /// Outward normal of a face, where there are two.
+    Vec3 normal_of_face(std::size_t face) const {
+      const Vec3 away = outwards();
+      return unit_or(away - dot(away, into[face]) * into[face], normal);
+    }
     /// Whether a body may be pushed away in this direction, and not by one of the faces. An edge where a face ends pushes about
     /// along the normal alone: its neighbor may only not fit, and would stop what slides.
     bool may_push(const Vec3& away) const;

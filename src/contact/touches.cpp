@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/touches.h"
 
+#include "contact/gap.h"
 #include "contact/ring_parts.h"
 #include "geometry/box_tree.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 namespace iota::contact {
@@ -174,6 +176,7 @@ bool TouchFinder::may_meet(const MeshEdges::Edge& edge, const Vec3& a, const Vec
 
 void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& meshes, bool are_meshes_second,
                                 const Vec3& anchor, double within, std::vector<Touch>& found) {
+  constexpr double deep = 1e-4;  // of the size
   for (std::size_t m = 0; m < meshes.count; ++m) {
     const Part& mesh = meshes.parts[m];
     if (mesh.is_met() || !mesh.solid->form->mesh) continue;
@@ -199,9 +202,14 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
               find(body, edge_, anchor, within, {}, on_edge_);
             else
               find(edge_, body, anchor, within, {}, on_edge_);
+            const auto may_push = [&](const Touch& touch) {
+              return edge.may_push(rotate(back, touch.is_turned == are_meshes_second ? -touch.normal : touch.normal));
+            };
+            const auto is_deep = [&](const Touch& touch) { return touch.gap < -deep * reach; };
+            if (std::ranges::any_of(on_edge_, is_deep) && std::ranges::none_of(on_edge_, may_push))
+              add_out_of_edge(edge, a, b, solid, body, are_meshes_second, anchor, within, found);
             for (Touch& touch : on_edge_) {
-              if (!edge.may_push(rotate(back, touch.is_turned == are_meshes_second ? -touch.normal : touch.normal)))
-                continue;
+              if (!may_push(touch)) continue;
               std::uint32_t& feature = are_meshes_second ? touch.other_feature : touch.feature;
               if (feature < of_edges) feature = edge_.placed.line.feature;  // a round body names corners of a rod
               add_unless_known(touch, reach, found);
@@ -209,6 +217,34 @@ void TouchFinder::find_on_edges(Parts& bodies, const Vec3& spin, const Parts& me
           });
     }
   }
+}
+
+// The shortest way out of a box that has an edge in it near its own corner leads through the mesh: the box sank into the face.
+void TouchFinder::add_out_of_edge(const MeshEdges::Edge& edge, const Vec3& a, const Vec3& b, const Solid& mesh,
+                                  const Part& body, bool is_mesh_second, const Vec3& anchor, double within,
+                                  std::vector<Touch>& found) {
+  if (!body.solid || body.kind == Part::ring || !edge.has_two()) return;
+  const Outline line{.lines = {{.a = a, .b = b}}};
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 out, on_edge;
+  for (std::size_t face = 0; face < 2; ++face) {
+    const Vec3 normal = rotate(mesh.turn, edge.normal_of_face(face));
+    if (!(dot(normal, body.placed.middle - a) > 0)) continue;  // it is behind the face
+    const double above = std::max(dot(normal, a), dot(normal, b)) + reach(body, -normal, anchor);
+    Solid lifted = *body.solid;
+    lifted.position += above * normal - anchor;
+    const std::optional<Cast> met = cast(line, lifted, -normal, above);
+    if (met && above - met->distance < least) least = above - met->distance, out = normal, on_edge = met->point;
+  }
+  if (!(least < std::numeric_limits<double>::infinity())) return;
+  const ConvexPart thin;
+  const FeatureName of_body{body.placed.number, 0};
+  const Vec3 on_body = on_edge - least * out;
+  TouchWriter writer(thin, thin, anchor, within, found);
+  if (is_mesh_second)
+    writer.add_edges(on_body, on_edge, out, of_body, edge_.placed.line);
+  else
+    writer.add_edges(on_edge, on_body, -out, edge_.placed.line, of_body);
 }
 
 void TouchFinder::prepare(const Outline& outline) {

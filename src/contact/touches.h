@@ -71,6 +71,9 @@ class TouchFinder {
   /// Whether a body may touch an edge from a to b on its outer side. What is on the other side of one in a hollow meets its faces.
   static bool may_meet(const MeshEdges::Edge&, const Vec3& a, const Vec3& b, const Vec3& outwards, const Part& body,
                        const Vec3& anchor, double within);
+  /// A touch of a body with an edge that is in it, pushed out along the normal of a face: the shorter way of both.
+  void add_out_of_edge(const MeshEdges::Edge&, const Vec3& a, const Vec3& b, const Solid& mesh, const Part& body,
+                       bool is_mesh_second, const Vec3& anchor, double within, std::vector<Touch>& found);
   /// How far it reaches along a unit vector, m.
   static double reach(const Part&, const Vec3& direction, const Vec3& anchor);
   void set_edge(const Solid&, std::uint32_t number, const Vec3& a, const Vec3& b);

@@ -11,6 +11,17 @@
 namespace iota::contact {
 namespace {
 
+/// Two faces that meet at right angles along the axis z.
+Outline open_valley() {
+  Mesh valley;
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double z : {-1.0, 1.0}) valley.vertices.push_back({x, std::abs(x), z});
+  valley.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}};
+  Outline open = placed(Box{{1, 1, 1}}, {});
+  open.solids[0].form = make_open_form(valley);
+  return open;
+}
+
 TEST(CornerTouches, of_a_box_on_a_step_are_its_corners) {
   const auto found = touches_of(placed(Box{{0.2, 0.2, 0.2}}, {0.5, 1.1, 0}), placed(step_mesh(), {}), 0.01);
   ASSERT_EQ(found.size(), 4u);
@@ -89,17 +100,28 @@ TEST(CornerTouches, of_a_body_keep_their_names_on_all_triangles_of_a_floor) {
 }
 
 TEST(CornerTouches, push_a_corner_out_of_the_bottom_of_a_valley) {
-  Mesh valley;
-  for (const double x : {-1.0, 0.0, 1.0})
-    for (const double z : {-1.0, 1.0}) valley.vertices.push_back({x, std::abs(x), z});
-  valley.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}};
-  Outline open = placed(Box{{1, 1, 1}}, {});
-  open.solids[0].form = make_open_form(valley);
+  const Outline open = open_valley();
   const Quaternion tip_down{0, 0, -std::sqrt(0.5), std::sqrt(0.5)};
   const auto found = touches_of(placed(Cone{0.1, 0.8}, {0, 0.35, 0}, tip_down), open, 0.01);
   ASSERT_FALSE(found.empty());
   EXPECT_NEAR(least_gap_of(found), -0.05, 1e-9);
   for (const Touch& touch : found) EXPECT_GT(touch.normal.y, 0);
+}
+
+TEST(CornerTouches, push_a_disk_out_of_the_bottom_of_a_valley) {
+  const double radius = 0.3, depth = 0.02;  // beneath the bottom line, which is nearest
+  const auto found = touches_of(placed(Cylinder{radius, 0.002}, {0, radius - depth, 0}), open_valley(), 0.01);
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(least_gap_of(found), -depth, 1e-4);
+  for (const Touch& touch : found) EXPECT_GT(touch.normal.y, 0);
+}
+
+TEST(CornerTouches, of_a_tip_that_leaves_a_table_are_none_with_its_side) {
+  const double tilt = std::atan(0.25), beyond = 1e-4;  // the side of the cone lies on the table
+  const Quaternion turn{0, 0, -std::sin(tilt / 2), std::cos(tilt / 2)};
+  const Vec3 tip{1 + beyond, 1 - beyond, 0}, middle = tip - 0.2 * Vec3{std::cos(tilt), -std::sin(tilt), 0};
+  for (const Touch& touch : touches_of(placed(Cone{0.1, 0.4}, middle, turn), placed(step_mesh(), {}), 0.01))
+    EXPECT_LT(touch.normal.x, 0.9);
 }
 
 }  // namespace

@@ -251,5 +251,16 @@ TEST(Touches, do_not_depend_on_which_body_comes_first) {
   EXPECT_GT(found_any, 500);
 }
 
+TEST(Touches, hold_a_box_at_an_edge_of_a_mesh_that_is_nearer_to_a_side_of_the_box) {
+  const double overhang = 0.005, depth = 0.01;
+  const auto found =
+      touches_of(placed(Box{{0.2, 0.2, 0.2}}, {0.9 + overhang, 1.1 - depth, 0}), placed(step_mesh(), {}), 0.01);
+  const auto is_at_edge = [](const Touch& touch) { return touch.place.x > 1 - 1e-9; };
+  const auto touch = std::ranges::find_if(found, is_at_edge);
+  ASSERT_NE(touch, found.end());
+  EXPECT_NEAR(norm(touch->normal - Vec3{0, 1, 0}), 0, 1e-9);
+  EXPECT_NEAR(touch->gap, -depth, 1e-9);
+}
+
 }  // namespace
 }  // namespace iota::contact
