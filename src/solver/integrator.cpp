@@ -371,6 +371,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   if (settings_.max_error > 0) fit_contacts(problem, part.h / step_length_);
   problem.copy_multipliers_to(multipliers_saved_);
   (void)find_bounces(problem, part);
+  if (part.to < 1) spread_overlaps(problem, part.from, stage.part_left());
   const Trial trial{.scheme = attempt.scheme,
                     .is_finest = !attempt.is_halved || !may_halve(part, report),
                     .is_conservative = is_conservative_,

@@ -150,6 +150,8 @@ class Integrator {
   static void fit_contacts(Problem&, double share);
   bool find_bounces(Problem&, const Part&) const;
   static void forget_bounces(Problem&);
+  /// Lets a part of a step leave a part of each overlap that it begins with.
+  static void spread_overlaps(Problem&, double from, double left);
   bool has_impacts(const Problem&, const Stage&) const;
   static bool has_driven_rows(const Problem&);
   void solve_impacts(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);

@@ -53,6 +53,21 @@ void Integrator::forget_bounces(Problem& problem) {
   for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.floor = 0, c.meets = false;
 }
 
+// What the search for touches leaves of an overlap closes evenly over the whole step. In the first of many parts it gave speed: 1e-7 m
+// of an ellipsoid that rolls pushed with 140 times its weight in a 1024th of a step, and 1.5e-3 J a step came from nowhere.
+void Integrator::spread_overlaps(Problem& problem, double from, double left) {
+  if (!problem.has_used<ContactConstraint>()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    ContactConstraint& c = pool.items[k];
+    if (c.meets) continue;
+    c.floor = 0;
+    double g[ContactConstraint::rows];
+    pool.value(k, problem.position.data(), from, g);
+    c.floor = left * std::min(0.0, g[0]);
+  }
+}
+
 // Without a restitution it is a projection as after each step, but for the friction: what was hit at the end of the step had
 // none of it, and what was hit at its begin twice as much as its impulse allows.
 bool Integrator::has_impacts(const Problem& problem, const Stage& stage) const {

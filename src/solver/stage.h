@@ -49,6 +49,8 @@ struct Stage {
             .tolerance = 1e-10,
             .max_iterations = 30};
   }
+  /// The share of an error of its start that a part of a step leaves, which closes evenly until the end of the step.
+  double part_left() const { return (1 - fraction) / (1 - fraction_start); }
   static Stage projection(double compliance = exact_rows) { return {.compliance = compliance}; }
 };
 
