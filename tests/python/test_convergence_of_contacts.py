@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""With shorter steps what slides and rolls tends to one limit, by the order of the mode, on a box and on a mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import iota
+
+SECONDS = 0.4
+FINE = 1920  # steps a second in `energy_keeping`: the limit
+EVENTS = 1e-5  # of places and turns, where what slides begins to stick within a step
+
+Make = Callable[[iota.System], iota.Body]
+
+
+def turn(axis: tuple[float, float, float], angle: float) -> tuple[float, float, float, float]:
+    x, y, z = (math.sin(angle / 2) * a for a in axis)
+    return x, y, z, math.cos(angle / 2)
+
+
+def sliding_box(system: iota.System) -> iota.Body:
+    body = system.body(
+        shape=iota.Box((0.3, 0.2, 0.2)), density=500, position=(0, 0.1, 0), orientation=turn((0, 1, 0), 0.4)
+    )
+    body.velocity, body.angular_velocity = (1.5, 0, 0.4), (0, 2, 0)
+    return body
+
+
+def ball(system: iota.System) -> iota.Body:
+    body = system.body(shape=iota.Sphere(0.1), density=500, position=(0, 0.1, 0))
+    body.velocity = (2, 0, 0)
+    return body
+
+
+def cylinder(system: iota.System) -> iota.Body:
+    askew = turn((0, 1, 0), math.pi / 2 + 0.3)
+    return system.body(shape=iota.Cylinder(0.1, 0.3), density=500, position=(0, 0.1, 0), orientation=askew)
+
+
+def capsule(system: iota.System) -> iota.Body:
+    askew = turn((0, 1, 0), math.pi / 2 + 0.3)
+    return system.body(shape=iota.Capsule(0.1, 0.3), density=500, position=(0, 0.1, 0), orientation=askew)
+
+
+def ellipsoid(system: iota.System) -> iota.Body:
+    body = system.body(
+        shape=iota.Ellipsoid((0.4, 0.2, 0.2)), density=500, position=(0, 0.1, 0), orientation=turn((0, 1, 0), 0.5)
+    )
+    body.angular_velocity = (2, 0, -1)
+    return body
+
+
+def cone(system: iota.System) -> iota.Body:
+    tilt = math.atan(0.25)
+    place = (0, 0.2 * math.sin(tilt) + 1e-9, 0)
+    return system.body(shape=iota.Cone(0.1, 0.4), density=500, position=place, orientation=turn((0, 0, 1), -tilt))
+
+
+def leaning_capsule(system: iota.System) -> iota.Body:
+    place = (0, 0.5 * math.sin(1.2) + 0.03, 0)
+    return system.body(shape=iota.Capsule(0.03, 1), density=500, position=place, orientation=turn((0, 0, 1), 1.2))
+
+
+def after(make: Make, on_mesh: bool, mode: Any, rate: int) -> NDArray[np.float64]:
+    """Its position and orientation."""
+    slope = 0.1
+    system = iota.System(gravity=(9.81 * math.sin(slope), -9.81 * math.cos(slope), 0), mode=mode)
+    system.usual_material = iota.Material(friction=0.5)
+    if on_mesh:
+        places = [(x, 0.0, z) for x in (-4.0, -1.3, 1.1, 4.0) for z in (-4.0, -1.3, 1.1, 4.0)]
+        corners = [(4 * i + k, 4 * i + k + 1, 4 * i + k + 4, 4 * i + k + 5) for i in range(3) for k in range(3)]
+        triangles = [t for a, b, c, d in corners for t in ((a, b, c), (b, d, c))]
+        system.obstacle(iota.Mesh(np.array(places), np.array(triangles), closed=False))
+    else:
+        system.obstacle(iota.Box((8, 1, 8)), (0, -0.5, 0))
+    body = make(system)
+    dissipated = 0.0
+    for _ in range(round(SECONDS * rate)):
+        report = system.step(1 / rate)
+        assert not report.warnings
+        now = report.energy
+        assert now.dissipated > dissipated - (1e-3 * now.kinetic + 1e-6), "contacts give no energy"
+        dissipated = now.dissipated
+    return np.array([*body.position, *body.orientation])
+
+
+@pytest.mark.parametrize("on_mesh", [False, True])
+@pytest.mark.parametrize("make", [sliding_box, ball, cylinder, capsule, ellipsoid, cone, leaning_capsule])
+def test_what_slides_and_rolls_tends_to_one_limit_by_the_order_of_the_mode(make: Make, on_mesh: bool) -> None:
+    limit = after(make, on_mesh, "energy_keeping", FINE)
+
+    def error(mode: Any, rate: int) -> float:
+        return float(np.abs(after(make, on_mesh, mode, rate) - limit).max())
+
+    robust, keeping = error("robust", 60), error("energy_keeping", 60)
+    assert error("robust", 240) < 0.45 * robust + EVENTS
+    assert error("energy_keeping", 240) < 0.12 * keeping + EVENTS
+    assert error("accurate", 60) < keeping + EVENTS
