@@ -264,7 +264,7 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
 
   Stage half = Stage::mid_point(stage.h / 2, stage.fraction_start, (stage.fraction_start + stage.fraction) / 2);
   half.tolerance = stage.tolerance, half.part = stage.part;
-  // Of what the whole step closes, as much as a constant acceleration closes in half of it.
+  // The half closes a quarter of what the whole step closes, as by a constant acceleration.
   spread_overlaps(problem, stage.fraction_start, 0.75 + 0.25 * stage.part_left());
   const bool solved = try_step(problem, half, report);
   spread_overlaps(problem, stage.fraction_start, stage.part_left());

@@ -53,8 +53,8 @@ void Integrator::forget_bounces(Problem& problem) {
   for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.floor = 0, c.meets = false;
 }
 
-// What the search for touches leaves of an overlap closes evenly over the whole step. In the first of many parts it gave speed: 1e-7 m
-// of an ellipsoid that rolls pushed with 140 times its weight in a 1024th of a step, and 1.5e-3 J a step came from nowhere.
+// Overlaps that the search for touches leaves close evenly over the whole step. In the first of many parts they gave speed: 1e-7 m of an
+// ellipsoid that rolls pushed with 140 times its weight in a 1024th of a step, and 1.5e-3 J a step came from nowhere.
 void Integrator::spread_overlaps(Problem& problem, double from, double left) {
   if (!problem.has_used<ContactConstraint>()) return;
   auto& pool = problem.pool_of<ContactConstraint>();
