@@ -409,9 +409,9 @@ void CornerSearch::find_of_shape(const Solid& solid, const Vec3& spin) {
     if (!torus && is_behind(face)) return;
     visit_lowest_above(face.plane, [&](const Ball& ball, bool is_lowest) {
       add_on_face(ball, face);
-      if (is_lowest) return has_rim ? add_beneath_valley(ball, face) : void();
+      if (is_lowest && has_rim) add_beneath_valley(ball, face);
       // Beneath the bottom of a valley a corner is over none of its faces.
-      const bool may_be_in = dot(face.plane.normal, ball.center - face.plane.origin) < 0;
+      const bool may_be_in = !is_lowest && dot(face.plane.normal, ball.center - face.plane.origin) < 0;
       if (!may_be_in || (looked >> ball.feature & 1)) return;
       looked |= 1u << ball.feature;
       const std::optional<Plane> plane = plane_of(other_, ball.center, middle_);
