@@ -3,6 +3,7 @@
 
 #include "ingredient/model.h"
 #include "ingredient/outcome.h"
+#include "math/damped_flight.h"
 #include "math/mat3.h"
 #include "shape/shape.h"
 #include "shape/traits.h"
@@ -132,8 +133,12 @@ void Emitters::bear(Model& model, std::uint32_t slot, double h, std::vector<Part
     Vec3 position = e.position + rotate(e.orientation, draw.in_source());
     Vec3 velocity = rotate(e.orientation, e.velocity) + draw.in_ball(e.velocity_spread);
     const double lifetime = e.lifetime + draw.number(-e.lifetime_spread, e.lifetime_spread);
-    position += since * velocity + (since * since / 2) * gravity;
-    velocity += since * gravity;
+    if (const double damping = model.damping + e.damping; damping > 0) {
+      const DampedFlight flight = fly_damped(velocity, gravity, damping, since);
+      position += flight.moved, velocity = flight.after;
+    } else {
+      position += since * velocity + (since * since / 2) * gravity, velocity += since * gravity;
+    }
     if (!(since < lifetime)) continue;
     const std::uint32_t body = model.make_body(BodyKind::dynamic, e.damping);
     const std::uint32_t particle = model.make_particle(body, position, e.mass, velocity);

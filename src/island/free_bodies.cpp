@@ -5,6 +5,7 @@
 #include "ingredient/ingredient_list.h"
 #include "ingredient/noise.h"
 #include "laws/velocity_part.h"
+#include "math/damped_flight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,21 +115,10 @@ namespace {
   return part.turn(before + 0.5 * gained);
 }
 
-struct DampedFlight {
-  Vec3 after, moved;  ///< velocity at the end, m/s, and way, m
-  double taken = 0;   ///< energy that damping takes of a kilogram, J
-};
 /// After a flight that began with half of the damping: `left` is the share of a velocity that a half leaves.
 DampedFlight damp_flight(const Vec3& start, const DampedFlight& flight, double left) {
   const Vec3& after = flight.after;
   return {left * after, flight.moved, 0.5 * (1 - left * left) * (dot(start, start) + dot(after, after))};
-}
-/// By a damping k, 1/s, and a constant acceleration, v' = a - k v. Exact. Apart from the loop, as the one above.
-[[gnu::noinline]] DampedFlight fly_damped(const Vec3& before, const Vec3& acceleration, double k, double h) {
-  const double rate = k * h, way = -std::expm1(-rate) / k;
-  const double rest = rate < 1e-3 ? h * h * (0.5 - rate / 6 + rate * rate / 24) : (h - way) / k;
-  const Vec3 after = std::exp(-rate) * before + way * acceleration, moved = way * before + rest * acceleration;
-  return {after, moved, dot(acceleration, moved) - 0.5 * (dot(after, after) - dot(before, before))};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,6 +36,21 @@ def test_an_emitter_emits_particles_for_their_lifetime(system: iota.System) -> N
     assert not fire.alive and particle.alive and system.validate() == []
     with pytest.raises(iota.StaleIdError):
         _ = fire.rate
+
+
+@pytest.mark.parametrize(("mode", "off"), [("energy_keeping", 6e-4), ("accurate", 2e-9)])
+@pytest.mark.parametrize("own", [False, True])
+def test_damping_acts_from_the_birth_within_a_step_on(mode: Any, off: float, own: bool) -> None:
+    rate, speed, gravity = 2.0, 3.0, 9.81
+    system = iota.System(mode=mode, damping=0.5 if own else rate)
+    system.emitter(
+        rate=170, source=iota.Sphere(1e-9), velocity=(0, speed, 0), lifetime=0.5, damping=1.5 if own else 0.0
+    )
+    for _ in range(30):
+        system.step(1 / 60)
+    heights = (speed + gravity / rate) / rate * -np.expm1(-rate * system.ages) - gravity / rate * system.ages
+    assert len(heights) > 80
+    np.testing.assert_allclose(system.positions[:, 1], heights, atol=off)
 
 
 def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
