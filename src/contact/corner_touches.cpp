@@ -147,25 +147,23 @@ std::optional<Plane> plane_of(const PartList& other, const Vec3& place, const Ve
 
 /// Whether no other face is nearer to a place behind this one.
 bool is_nearest(const Face& face, const Vec3& place, double depth, double tolerance) {
-  const Vec3 local = rotate(conjugate(face.solid.turn), place - face.solid.position);
+  const Vec3 local = to_local(face.solid, place);
   return depth <= norm(local - closest(*face.solid.form, local)) + tolerance;
 }
 
 /// Whether a place is in a closed mesh, or parted by an open one from the middle of its body.
 bool is_through(const Solid& solid, const Vec3& place, const Vec3& middle) {
-  const Quaternion back = conjugate(solid.turn);
-  const Vec3 local = rotate(back, place - solid.position);
+  const Vec3 local = to_local(solid, place);
   return solid.form->mesh->is_closed() ? is_within(*solid.form, local)
-                                       : is_between(*solid.form->mesh, rotate(back, middle - solid.position), local);
+                                       : is_between(*solid.form->mesh, to_local(solid, middle), local);
 }
 
 /// Whether a place is in front of a face, over it, with no other face between both.
 bool is_in_front(const Face& face, const Vec3& place, double tolerance) {
   const double height = dot(face.plane.normal, place - face.plane.origin);
   if (!(height > tolerance)) return false;
-  const Quaternion back = conjugate(face.solid.turn);
-  const Vec3 local = rotate(back, place - face.solid.position), down = rotate(back, -face.plane.normal);
-  return !face.solid.form->mesh->ray(local, down, height - tolerance);
+  const Vec3 down = rotate(conjugate(face.solid.turn), -face.plane.normal);
+  return !face.solid.form->mesh->ray(to_local(face.solid, place), down, height - tolerance);
 }
 
 /// Touches of one feature with faces of one side are numbered in the same order when the body moves along them.
@@ -332,7 +330,7 @@ void CornerSearch::add(const Ball& ball, const Plane& plane) {
 
 bool CornerSearch::is_behind(const Face& face) const {
   if (!(dot(face.plane.normal, middle_ - face.plane.origin) < 0)) return false;
-  return !is_within(*face.solid.form, rotate(conjugate(face.solid.turn), middle_ - face.solid.position));
+  return !is_within(*face.solid.form, to_local(face.solid, middle_));
 }
 
 void CornerSearch::add_on_face(const Ball& ball, const Face& face) {

@@ -21,8 +21,6 @@ struct Piece {
   Vec3 middle;  ///< some place of it
 };
 
-Vec3 to_world(const Solid& solid, const Vec3& place) { return solid.position + rotate(solid.turn, place); }
-Vec3 to_local(const Solid& solid, const Vec3& place) { return rotate(conjugate(solid.turn), place - solid.position); }
 const geometry::TriangleTree* triangles_of(const Form& form) {
   return form.mesh ? form.mesh.get() : form.surface.get();
 }

@@ -133,10 +133,10 @@ Near near(const Outline& outline, const Vec3& place) {
   Near best;
   for (const Solid& solid : outline.solids) {
     const Form& form = *solid.form;
-    const Vec3 local = rotate(conjugate(solid.turn), place - solid.position);
+    const Vec3 local = to_local(solid, place);
     const Vec3 point = closest(form, local);
     const double apart = is_within(form, local) ? -norm(local - point) : norm(local - point);
-    if (apart < best.distance) best = {apart, solid.position + rotate(solid.turn, point)};
+    if (apart < best.distance) best = {apart, to_world(solid, point)};
   }
   for (const Line& line : outline.lines) {
     const Vec3 middle = nearest_of_middle(line, place), away = place - middle;

@@ -3,6 +3,7 @@
 
 #include "geometry/box_tree.h"
 #include "geometry/triangle_tree.h"
+#include "math/mat3.h"
 #include "shape/shape.h"
 
 #include <iota/shapes.h>
@@ -43,6 +44,11 @@ struct Solid {
   Vec3 position;             ///< of the shape's origin
   Quaternion turn;           ///< of its frame
 };
+
+inline Vec3 to_world(const Solid& solid, const Vec3& place) { return solid.position + rotate(solid.turn, place); }
+inline Vec3 to_local(const Solid& solid, const Vec3& place) {
+  return rotate(conjugate(solid.turn), place - solid.position);
+}
 
 /// The unit vector out of a half-space, in the world.
 Vec3 outwards(const Solid& half_space);

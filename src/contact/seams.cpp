@@ -13,8 +13,6 @@ constexpr double flush = 1e-5;        ///< of the size: a part that is so much h
 constexpr double beside = 1e-3;       ///< of the size: a gap between two parts that is as good as none
 constexpr double same_cosine = 1e-6;  ///< below 1, of normals that count as the same
 
-Vec3 local(const Solid& solid, const Vec3& place) { return rotate(conjugate(solid.turn), place - solid.position); }
-
 /// Not less than how far it reaches along a direction, from a place.
 double reach_along(const Solid& solid, const Vec3& direction, const Vec3& place) {
   const Vec3 along = rotate(conjugate(solid.turn), direction);
@@ -24,7 +22,7 @@ double reach_along(const Solid& solid, const Vec3& direction, const Vec3& place)
 }
 
 bool is_at(const Solid& solid, const Vec3& place, double tolerance) {
-  const Vec3 here = local(solid, place);
+  const Vec3 here = to_local(solid, place);
   return is_within(*solid.form, here) || norm(here - closest(*solid.form, here)) <= tolerance;
 }
 
