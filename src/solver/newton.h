@@ -135,7 +135,8 @@ class Newton {
   };
   Wanted begin_after_step(Problem&, const Stage&, const AfterStep&);
   std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
-  std::optional<double> project_impacts(Problem&, const Wanted&, double h, double energy);
+  std::optional<double> project_within_cones(Problem&, const Wanted&, double h, double energy);
+  static void forget_drags(Problem&);
   double find_rebounds(Problem&, const Stage&, const Wanted&);
   void take_turns(Problem&, const Wanted&, double least);
   std::optional<double> take_turn(Problem&, const Wanted&, double kinetic);

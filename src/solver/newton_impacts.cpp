@@ -14,7 +14,7 @@ std::optional<double> Newton::solve_impacts(Problem& problem, const Stage& stage
   most += find_rebounds(problem, stage, wanted);
   const double limit = std::isfinite(most) ? 4 * std::max(known.kinetic, most) : most;
   const auto project = [&](double energy) {
-    std::optional<double> kinetic = project_impacts(problem, wanted, stage.h, energy);
+    std::optional<double> kinetic = project_within_cones(problem, wanted, stage.h, energy);
     if (kinetic && known.is_isolated) give_back_momenta(problem), kinetic = problem.kinetic_energy();
     return kinetic;
   };
@@ -25,7 +25,7 @@ std::optional<double> Newton::solve_impacts(Problem& problem, const Stage& stage
     x_.assign(problem.velocity.begin(), problem.velocity.end());
     const std::vector<double> impulses = impulses_;
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
-    for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.rebound = c.drags[0] = c.drags[1] = 0;
+    forget_drags(problem);
     const double a = project(known.kinetic).value_or(known.kinetic);
     const double c = problem.kinetic_energy([&](std::size_t i) { return x_[i] - problem.velocity[i]; });
     const double b = *kinetic - a - c, room = std::max(0.0, most - a);
@@ -36,13 +36,19 @@ std::optional<double> Newton::solve_impacts(Problem& problem, const Stage& stage
     for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += part * (impulses[i] - impulses_[i]);
     kinetic = problem.kinetic_energy();
   }
-  for (ContactConstraint& c : problem.items_of<ContactConstraint>()) c.rebound = c.drags[0] = c.drags[1] = 0;
+  forget_drags(problem);
   if (kinetic) add_impulses(problem);
   return kinetic;
 }
 
-// Principal pivoting: few rounds, as contacts only open, or begin to stick.
-std::optional<double> Newton::project_impacts(Problem& problem, const Wanted& wanted, double h, double energy) {
+void Newton::forget_drags(Problem& problem) {
+  for (ContactConstraint& c : problem.items_of<ContactConstraint>())
+    c.rebound = c.drags[0] = c.drags[1] = 0, c.stays_slipping = false;
+}
+
+// Principal pivoting: few rounds, as contacts only open, or begin to stick or to slip. Not for impacts alone: what sticks in the mean of a
+// step may have to slip at its end, and projected without a bound of its friction, nine dominoes that fell stood still within a step.
+std::optional<double> Newton::project_within_cones(Problem& problem, const Wanted& wanted, double h, double energy) {
   constexpr int most_rounds = 12;
   std::optional<double> kinetic;
   for (int round = 0; round < most_rounds; ++round) {
@@ -78,7 +84,6 @@ double Newton::find_rebounds(Problem& problem, const Stage& stage, const Wanted&
   double least = stage.h * norm(problem.gravity);
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     ContactConstraint& c = pool.items[k];
-    c.drags[0] = c.drags[1] = 0, c.stays_slipping = false;
     c.rebound = is_closed(k) ? -rate_in_the_middle(c, x_) : 0;  // the approach, for now
     least = std::max(least, noise * c.rebound);
   }

@@ -69,7 +69,8 @@ Newton::Wanted Newton::begin_after_step(Problem& problem, const Stage& stage, co
 std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
   if (!problem.has_used_constraints()) return {};
   const Wanted wanted = begin_after_step(problem, stage, known);
-  const std::optional<double> kinetic = project_onto_sides(problem, wanted, known.kinetic);
+  const std::optional<double> kinetic = project_within_cones(problem, wanted, stage.h, known.kinetic);
+  forget_drags(problem);
   if (kinetic) add_impulses(problem);
   if (!kinetic || !known.is_isolated) return kinetic;
   give_back_momenta(problem);
