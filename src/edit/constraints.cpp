@@ -336,7 +336,11 @@ void apply(Editor& e, const SetLength& c) {
   else if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
   constexpr double jump = 0.1;  // of the length: a winch changes it by less in each step
-  const double before = std::exchange(model.constraints[slot].length, c.value);
+  ingredient::Constraint& constraint = model.constraints[slot];
+  const double before = std::exchange(constraint.length, c.value);
+  // The multiplier is the tension in parts of |d| / L, unless the row yields.
+  if ((kind == ConstraintKind::rod || kind == ConstraintKind::rope) && constraint.compliance.is_exact())
+    constraint.multipliers[0] *= c.value / before;
   if (std::abs(c.value - before) > jump * c.value) note_jump(model, slot);
   model.changed_constraints.note(slot);
   wake(e, slot);

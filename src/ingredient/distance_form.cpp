@@ -36,10 +36,12 @@ solver::BilinearConstraint DistanceForm::square_row(const JointArms& j) {
   solver::BilinearConstraint row;
   j.sides(row, {a_origin}, {b_origin});
   for (const int arm : {0, 1}) j.add(row, arm, a_origin, 1), j.add(row, arm, b_origin, -1);
-  row.product = j.c.length * j.c.length;
-  row.scale = 2 * j.c.length;
-  row.reference = j.c.length;
+  set_length(row, j.c.length);
   return row;
+}
+
+void DistanceForm::set_length(solver::BilinearConstraint& row, double length) {
+  row.product = length * length, row.scale = 2 * length, row.reference = length;
 }
 
 std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {

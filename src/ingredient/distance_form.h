@@ -28,10 +28,10 @@ struct DistanceForm : PlainForm {
 
   using PlainForm::load;
   static void load(solver::DistanceConstraint& row, const Model&, const Constraint& c, double*) {
-    row.length = c.length;
+    row.length = row.scale = c.length;
   }
   static void load(solver::BilinearConstraint& row, const Model&, const Constraint& c, double*) {
-    row.product = c.length * c.length;
+    set_length(row, c.length);
   }
   static void load(solver::SpanConstraint& row, const Model&, const Constraint& c, double*) { row.target = c.length; }
 
@@ -42,6 +42,8 @@ struct DistanceForm : PlainForm {
   static solver::DistanceConstraint rod_row(const JointArms&);
   /// (|d|^2 - L^2) / 2L: the multiplier is the tension.
   static solver::BilinearConstraint square_row(const JointArms&);
+  /// The scale, too: by that of the length with which a rope was made, a hauled one told its force in the ratio of both.
+  static void set_length(solver::BilinearConstraint&, double length);
 };
 
 }  // namespace iota::ingredient::joint

@@ -137,6 +137,32 @@ def test_rod_and_rope_join_particles() -> None:
     assert rod.length == pytest.approx(-ball.position.y)
 
 
+@pytest.mark.parametrize("kind", ["rod", "rope"])
+@pytest.mark.parametrize("made_from", ["particles", "attachments"])
+def test_a_hauled_rope_tells_the_weight_that_hangs_on_it(kind: str, made_from: str) -> None:
+    """It told it in the ratio of the length with which it was made and that of now, and broke by that."""
+    system = iota.System()
+    if made_from == "particles":
+        hook, load = system.body().particle((0, 5, 0)), system.body().particle((0, 3, 0), mass=10)
+        hook.nail()
+    else:
+        box = iota.Box((0.2, 0.2, 0.2))
+        beam, crate = system.body(shape=box, position=(0, 5, 0)), system.body(shape=box, position=(0, 3, 0), mass=10)
+        beam.kind = "static"
+        hook, load = beam.attachment((0, 5, 0)), crate.attachment((0, 3, 0))
+    line = getattr(system, kind)(hook, load)
+    line.break_force = 150
+    for length in (2, 1, 0.5):
+        before = line.force.length
+        line.length = length
+        assert line.force.length == pytest.approx(before)  # of the last step
+        system.step(1 / 120)
+        load.body.velocity = (0, 0, 0)
+        system.step(1 / 120, 2)
+        assert line.force.length == pytest.approx(98.1, rel=1e-6)
+    assert not line.broken
+
+
 def test_joints_are_saved_and_replayed() -> None:
     system, box = hanging_box()
     joint = system.revolute(box, at=(0.1, 0, 0), axis=(0, 0, 1), friction=0.2, limits=(-0.5, 0.5))
