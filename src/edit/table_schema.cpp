@@ -51,7 +51,7 @@ IOTA_FIELDS(ingredient::Contact, p, q, next, previous, part, feature, other_part
             slips_turn, is_of_sweeps, is_off, continues, points, point_count, of_p, roll_rows, weights, center, place,
             normal, first, second, axis, bends, radius, friction, restitution, ball, drift, rolling, carried, roller,
             roll_first, roll_second, torque, pivot, static_friction, spin_rows, spinning, spinner, spin_second, twist,
-            depth, push, drag, energy, duration, impulse, approach, found_in)
+            depth, push, drag, energy, duration, impulse, time, approach, found_in)
 IOTA_FIELDS(ingredient::PairForce, law, group, other, active, shifted, cutoff, parameters)
 IOTA_FIELDS(ingredient::Closing, p, q, next, previous, distance, duration, elapsed, multiplier)
 IOTA_FIELDS(ingredient::Law, kind, number, parameter_count, uses, function, standard, parameters, name, text)

@@ -39,7 +39,7 @@ ContactPoint read(const Model& model, const Contact& c, std::uint32_t body, Carr
   ContactPoint point;
   point.body = model.bodies.id(body), point.other = model.bodies.id(other);
   point.position = Contacts::place(model, c);
-  point.normal = sign * c.normal, point.force = sign * c.force();
+  point.normal = sign * c.normal, point.force = sign * c.mean_force();
   point.gap = Contacts::gap(model, c);
   const Vec3 relative = carriers[0].velocity(model, body, point.position) -
                         carriers[1].velocity(model, other, point.position) - sign * c.drift;
@@ -92,7 +92,7 @@ Vec3 contact_force(const Model& model, std::uint32_t body, std::uint32_t other) 
   Vec3 sum;
   for (const std::uint32_t slot : slots) {
     const Contact& c = model.contacts[slot];
-    sum += (c.p == body ? 1.0 : -1.0) * c.force();
+    sum += (c.p == body ? 1.0 : -1.0) * c.mean_force();
   }
   return sum;
 }

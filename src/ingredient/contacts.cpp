@@ -728,8 +728,9 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
     c.is_of_sweeps = row.is_of_sweeps;
     c.push = -l[0], c.drag = -(l[1] * c.first + l[2] * c.second), c.duration = row.share * h;
     c.energy = row.leaves ? 0 : solver::strain_energy(row, l);
-    const Vec3 before = std::exchange(c.continues, 0) ? c.impulse : Vec3{};
-    c.impulse = before - (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
+    if (!std::exchange(c.continues, 0)) c.impulse = {}, c.time = 0;
+    c.time += h;
+    c.impulse -= (row.impulse[0] * c.normal + row.impulse[1] * c.first + row.impulse[2] * c.second);
     c.torque = {}, c.twist = 0;
   });
   if (!problem.has_used<solver::ResistanceConstraint>()) return;
@@ -808,13 +809,16 @@ void Contacts::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
     const std::uint32_t first = c.p == body ? 0 : c.of_p, last = c.p == body ? c.of_p : c.point_count;
     const Vec3 arm = c.radius * c.normal;
     const double of_normal = c.is_round() ? 0 : 1;
+    const Vec3 force = c.mean_force();
+    const double push = dot(force, c.normal);
+    const Vec3 drag = force - push * c.normal;
     const BodyId part =
         step.model.part_at(body, (c.p == body ? 1.0 : -1.0) * sum_over(c, Arm::place, first, last, place));
     for (std::uint32_t i = first; i < last; ++i)
       reader.take(
           {.particle = c.points[i],
-           .force = c.push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
-                    c.weights[Arm::place][i] * c.drag,
+           .force = push * (c.weights[Arm::center][i] * c.normal + of_normal * c.weights[Arm::turned][i] * arm) +
+                    c.weights[Arm::place][i] * drag,
            .part = part});
     const int side = c.p == body ? 0 : 1;
     const auto take_couple = [&](const Vec3& arm, const Vec3& force) {  // moment arm x force on q
@@ -853,8 +857,8 @@ void Contacts::validate(const Model& model, model::Audit& audit) {
                       c.roll_rows <= 2 && c.spin_rows <= 1 && c.spinning >= 0 && std::isfinite(c.twist) &&
                       c.static_friction >= 0 && is_finite(c.pivot),
                   "contact ", slot, " has no valid restitution, resistance or static friction");
-    audit.require(is_finite(c.force()) && is_finite(c.impulse) && std::abs(dot(c.normal, c.normal) - 1) < 1e-9 &&
-                      c.friction >= 0 && c.depth <= 0,
+    audit.require(is_finite(c.force()) && is_finite(c.impulse) && c.time >= 0 &&
+                      std::abs(dot(c.normal, c.normal) - 1) < 1e-9 && c.friction >= 0 && c.depth <= 0,
                   "contact ", slot, " has no valid plane, force or friction");
   });
 }

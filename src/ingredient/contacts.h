@@ -48,10 +48,14 @@ struct Contact : model::Ends {
   double energy = 0;           ///< of its elastic strain, J
   double duration = 0;         ///< of the step, or the part of it, in which these forces were found, s
   Vec3 impulse;                ///< on p in the last step, with that of an impact, N s
+  double time = 0;             ///< in which it was given, s
   double approach = 0;         ///< of p towards the plane before the step, if it carried nothing in the one before, m/s
   std::uint64_t found_in = 0;  ///< step
 
   Vec3 force() const { return push * normal + drag; }
+  /// In the last step, with what an impact or a jump of a prescribed velocity took: the force that is told. The mid-point rule alone
+  /// has twice the force of what begins to move.
+  Vec3 mean_force() const { return time > 0 && impulse != Vec3{} ? (1 / time) * impulse : force(); }
   bool is_round() const { return form == contact::TouchForm::round || form == contact::TouchForm::wires; }
   /// From the plane or what is round to the center, of d between the origin and the center.
   Vec3 off(const Vec3& d) const;
