@@ -304,13 +304,16 @@ void apply(Editor& e, const SetMaterial& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_material(c.value);
-  const Material* const before = model.material(body);
-  if (before && before->surface_velocity != c.value.surface_velocity)
-    ingredient::Contacts::end(model, body);  // it wakes what lies there
+  const std::optional<Material> before = model.material(body) ? std::optional(*model.material(body)) : std::nullopt;
   if (c.touches)
     model.materials.make(body) = c.value;
   else
-    model.materials.erase(body), ingredient::Contacts::end(model, body);
+    model.materials.erase(body);
+  const Material* const now = model.material(body);
+  if (!c.touches || !now ||
+      (before && (before->touches != now->touches || before->surface_velocity != now->surface_velocity)))
+    ingredient::Contacts::end(model, body);  // it wakes what lies there
+  ingredient::Contacts::wake(model, body);
   model.changed_outlines.note(body);
   if (model::is_free(model.bodies[body].kind)) model.wake(model.bodies[body].articulate);
 }
@@ -369,6 +372,7 @@ void apply(Editor& e, const SetPose& c) {
   const std::uint32_t body = e.require(c.body);
   require_finite("position", c.position);
   const Quaternion wanted = require_quaternion("orientation", c.orientation);
+  ingredient::Contacts::wake(model, body);
   if (model.obstacles.has(body)) {
     move_obstacle(model, body, {c.position, wanted});
     return e.orientations.forget();

@@ -278,6 +278,7 @@ void place_bodies(Editor& e, const std::vector<Wanted>& all) {
       apply(e, SetPose{model.bodies.id(w.body), w.position, w.orientation});
       continue;
     }
+    ingredient::Contacts::wake(model, w.body);
     const Quaternion& q = model.bodies[w.body].orientation;
     const Quaternion turn = multiply(w.orientation, {-q.x, -q.y, -q.z, q.w});
     const Vec3 center = model.center_of_mass(w.body);

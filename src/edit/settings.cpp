@@ -58,7 +58,10 @@ void apply(Editor& e, const SetUsualRadius& c) {
 
 void apply(Editor& e, const SetUsualMaterial& c) {
   require_material(c.value);
-  e.model.usual_material = c.value, e.model.has_usual_material = c.touches;
+  model::Model& model = e.model;
+  const bool is_same = model.has_usual_material == c.touches && model.usual_material == c.value;
+  model.usual_material = c.value, model.has_usual_material = c.touches;
+  if (!is_same) model.wake_all();
 }
 
 void apply(Editor& e, const SetRest& c) {

@@ -61,7 +61,7 @@ ContactPair pair_of(const Model& model, const Contact& c) {
 std::vector<ContactPoint> contact_points(const Model& model) {
   std::vector<std::tuple<ContactPair, std::uint32_t>> order;
   model.contacts.for_each([&](std::uint32_t slot, const Contact& c) {
-    if (c.carries()) order.emplace_back(pair_of(model, c), slot);
+    if (c.mean_force() != Vec3{}) order.emplace_back(pair_of(model, c), slot);
   });
   std::sort(order.begin(), order.end());
   std::vector<ContactPoint> points;
@@ -74,7 +74,7 @@ std::vector<ContactPoint> contact_points(const Model& model) {
 std::vector<ContactPoint> contact_points(const Model& model, std::uint32_t body) {
   std::vector<std::uint32_t> slots;
   model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-    if (model.contacts[slot].carries()) slots.push_back(slot);
+    if (model.contacts[slot].mean_force() != Vec3{}) slots.push_back(slot);
   });
   std::sort(slots.begin(), slots.end());
   std::vector<ContactPoint> points;

@@ -492,6 +492,15 @@ void Contacts::end(Model& model, std::uint32_t body) {
   end_if(model, body, false, [](const Contact&) { return true; });
 }
 
+void Contacts::wake(Model& model, std::uint32_t body) {
+  if (model.contacts.size() == 0) return;
+  model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+    const Contact& c = model.contacts[slot];
+    for (const std::uint32_t each : {c.p, c.q})
+      if (model::is_free(model.bodies[each].kind)) model.wake(model.bodies[each].articulate);
+  });
+}
+
 void Contacts::forget_body(Model& model, std::uint32_t body) {
   end(model, body);
   std::erase(model.told_as_buried, body);

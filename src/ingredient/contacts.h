@@ -122,6 +122,8 @@ class Contacts : public NoAnswers {
   static bool is_of_sweeps(const Model&, std::uint32_t body);
   /// Ends all contacts of a body that were not taken in this step.
   static void end_old(Model&, std::uint32_t body);
+  /// Wakes what touches a body whose place or material changes.
+  static void wake(Model&, std::uint32_t body);
   /// Ends all contacts of a body.
   static void end(Model&, std::uint32_t body);
   /// The place where the bodies touch, m.

@@ -141,12 +141,13 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
 void ContactFinder::note_changes(model::Model& model, contact::Outlines& outlines) {
   const auto look_at = [&](std::uint32_t slot, const model::Body& body) {
     if (model.material(slot) && outlines.has(slot)) touches_.prepare(outlines.described(slot));
+    if (!model.material(slot)) return ingredient::Contacts::end(model, slot);
     if (body.kind == BodyKind::static_) return;
     if (!may_touch(model, outlines, slot)) return ingredient::Contacts::end(model, slot);
     is_any_extended_ = is_any_extended_ || !is_particle(body, outlines, slot) || model.materials.has(slot);
   };
-  const bool has_usual = model.has_usual_material != 0;
-  if (std::exchange(had_usual_material_, has_usual) != has_usual) {
+  const Touches usual = model.has_usual_material ? model.usual_material.touches : Touches::nothing;
+  if (std::exchange(usually_touches_, usual) != usual) {
     model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) { look_at(slot, body); });
     listed_at_ = {};
   } else {
@@ -155,6 +156,16 @@ void ContactFinder::note_changes(model::Model& model, contact::Outlines& outline
   }
   outlines.forget_described();
 }
+
+namespace {
+
+/// What an edit wakes is looked at in the same step: with the contacts from before the edit a box stayed for a step on a floor that was gone.
+bool is_asleep(const model::Model& model, std::uint32_t slot) {
+  const model::Body& body = model.bodies[slot];
+  return body.kind == BodyKind::resting && !model.articulates[body.articulate].to_wake;
+}
+
+}  // namespace
 
 // A look at each of ten thousand sleepers takes a tenth of a millisecond.
 void ContactFinder::list_candidates(const model::Model& model, const contact::Outlines& outlines,
@@ -165,16 +176,15 @@ void ContactFinder::list_candidates(const model::Model& model, const contact::Ou
   obstacles_.clear(), candidates_.clear();
   std::ranges::copy_if(outlines.fixed(), std::back_inserter(obstacles_),
                        [&](std::uint32_t body) { return model.material(body) != nullptr; });
-  std::ranges::copy_if(outlines.movable(), std::back_inserter(candidates_), [&](std::uint32_t slot) {
-    return model.bodies[slot].kind != BodyKind::resting && may_touch(model, outlines, slot);
-  });
+  std::ranges::copy_if(outlines.movable(), std::back_inserter(candidates_),
+                       [&](std::uint32_t slot) { return !is_asleep(model, slot) && may_touch(model, outlines, slot); });
 }
 
 // Resting ones are looked at only where one of the others comes near.
 void ContactFinder::list_movers(const model::Model& model) {
   movers_.clear();
   std::ranges::copy_if(candidates_, std::back_inserter(movers_), [&](std::uint32_t slot) {
-    return model.bodies[slot].kind != BodyKind::resting && !ingredient::Strides::skips(model, slot);
+    return !is_asleep(model, slot) && !ingredient::Strides::skips(model, slot);
   });
 }
 

@@ -123,7 +123,7 @@ class ContactFinder {
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
-  bool had_usual_material_ = false;
+  Touches usually_touches_ = Touches::nothing;
   bool are_placed_ = false;         ///< all outlines, where their bodies are at this look
   bool is_any_extended_ = false;    ///< more than a plain particle, now or earlier
   double step_ = 0, shortest_ = 0;  ///< of the step, and of a part of it by sweeps, s

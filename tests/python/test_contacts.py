@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -241,3 +243,23 @@ def test_a_function_is_not_registered_twice_for_the_same_touches() -> None:
     world.on_contact(ball, min_speed=100)(hit)
     run(world, 0.3)
     assert told == ["start"]
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust", "accurate"])
+@pytest.mark.parametrize("acceleration", [3.0, -3.0])
+def test_a_box_weighs_more_on_a_lift_that_starts_and_less_on_one_that_stops(mode: Any, acceleration: float) -> None:
+    """A jump of what moves as prescribed was in no force, and the mid-point rule told twice that of what begins to move."""
+    system = iota.System(mode=mode)
+    system.usual_material = iota.Material(friction=0.6)
+    cabin = system.body("scripted", shape=iota.Box((1.6, 0.1, 1.6)), position=(0, 10, 0))
+    box = system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=20, position=(0, 10.25, 0))
+    system.step(1 / 120, 20)
+    start, forces = system.time, []
+    for _ in range(60):
+        time = system.time - start + 1 / 120
+        cabin.position = (0, 10 + 0.5 * acceleration * time * time, 0)
+        system.step(1 / 120)
+        forces.append(box.force_from(cabin).y)
+    weight = 20 * (9.81 + acceleration)
+    assert forces[2:] == pytest.approx([weight] * 58, rel=1e-6)
+    assert sum(contact.force.y for contact in box.contacts) == pytest.approx(weight, rel=1e-6)

@@ -372,3 +372,68 @@ def test_a_small_force_moves_what_could_sleep_as_what_never_does(which: int) -> 
             system.step(DT)
         ways.append(body.position.x)
     assert ways[1] == pytest.approx(ways[0], rel=1e-9)
+
+
+def move_floor(system: iota.System, floor: iota.Body, place: tuple[float, float, float]) -> None:
+    floor.position = place
+
+
+def set_material(system: iota.System, floor: iota.Body, material: iota.Material) -> None:
+    floor.material = material
+
+
+def set_usual_material(system: iota.System, floor: iota.Body, material: iota.Material | None) -> None:
+    system.usual_material = material
+
+
+FLOORS: dict[str, tuple[Callable[..., None], Any]] = {
+    "moved down": (move_floor, (0, -5, 0)),
+    "moved aside": (move_floor, (50, -0.5, 0)),
+    "moved up": (move_floor, (0, -0.45, 0)),
+    "touches nothing": (set_material, iota.Material(touches="nothing")),
+    "a sensor": (set_material, iota.Material(touches="sensor")),
+    "of ice": (set_material, iota.Material(friction=0)),
+    "nothing touches": (set_usual_material, iota.Material(touches="nothing")),
+    "all of ice": (set_usual_material, iota.Material(friction=0)),
+    "no material": (set_usual_material, None),
+}
+
+
+@pytest.mark.parametrize("kind", ["obstacle", "static"])
+@pytest.mark.parametrize("change", FLOORS)
+def test_what_lies_on_a_floor_wakes_in_the_step_in_which_that_changes(change: str, kind: str) -> None:
+    """A box slept in the air above a floor that was gone, and one that woke felt its old friction for a step."""
+
+    def fall(rest_after: float) -> np.ndarray:
+        system = iota.System(gravity=(2, -9.81, 0))
+        system.usual_material = iota.Material(friction=0.6)
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        make = system.obstacle if kind == "obstacle" else lambda shape, position: system.body(
+            "static", shape=shape, position=position
+        )  # fmt: skip
+        floor = make(iota.Box((4, 1, 4)), position=(0, -0.5, 0))
+        box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), density=1000, position=(0, 0.1, 0))
+        system.step(1 / 60, 60)
+        assert box.kind == ("resting" if rest_after else "dynamic")
+        apply, value = FLOORS[change]
+        apply(system, floor, value)
+        start = np.array(box.position)
+        system.step(1 / 60, 20)
+        return np.array(box.position) - start
+
+    awake = fall(0)
+    assert np.abs(awake).max() > 0.04
+    assert np.abs(fall(0.2) - awake).max() < 1e-6
+
+
+@pytest.mark.parametrize("shape", [iota.Box((0.2, 0.2, 0.2)), iota.Sphere(0.1)])
+def test_contacts_begin_when_the_usual_material_lets_them(shape: iota.Shape) -> None:
+    """After a usual material that touches nothing, what moves passed through each other."""
+    system = iota.System()
+    system.usual_material = iota.Material(touches="nothing")
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    bodies = [system.body(shape=shape, density=500, position=(0, 0.12 + 0.22 * k, 0)) for k in range(3)]
+    system.step(1e-6)
+    system.usual_material = iota.Material(friction=0.6)
+    system.step(1 / 120, 120)
+    assert [body.position.y for body in bodies] == pytest.approx([0.1, 0.3, 0.5], abs=1e-6)

@@ -120,7 +120,7 @@ class Queries(Part):
 
     def gap(self, body: Body, other: Body) -> Gap:
         """How far two bodies are apart, and where they are nearest to each other. Shapes count as in `overlap`. Raises ValueError
-        for one body with itself. The force between two that touch is `Body.contact_force`.
+        for one body with itself. The force between two that touch is `Body.force_from`.
 
         if world.queries.gap(gripper, part).distance < 0.01: slow_down()
         """

@@ -105,7 +105,7 @@ class Scene(Part):
     @property
     def ground_body(self) -> Body | None:
         """The obstacle that is the ground, a HalfSpace named "ground"; None without one, and for another Simulator. It is made
-        when the world begins, or is asked for it. One that the system has already is taken as it is."""
+        when the world begins, or is asked for it if its height is given. One that the system has already is taken as it is."""
         self.keep_ground()
         return self._ground
 
