@@ -53,7 +53,7 @@ struct Contact : model::Ends {
   std::uint64_t found_in = 0;  ///< step
 
   Vec3 force() const { return push * normal + drag; }
-  /// In the last step, with what an impact or a jump of a prescribed velocity took: the force that is told. The mid-point rule alone
+  /// The force that is told: in the last step, with what an impact or a jump of a prescribed velocity took. The mid-point rule alone
   /// has twice the force of what begins to move.
   Vec3 mean_force() const { return time > 0 && impulse != Vec3{} ? (1 / time) * impulse : force(); }
   bool is_round() const { return form == contact::TouchForm::round || form == contact::TouchForm::wires; }

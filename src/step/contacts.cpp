@@ -159,7 +159,8 @@ void ContactFinder::note_changes(model::Model& model, contact::Outlines& outline
 
 namespace {
 
-/// What an edit wakes is looked at in the same step: with the contacts from before the edit a box stayed for a step on a floor that was gone.
+/// Bodies that an edit wakes are looked at in the same step: with the contacts from before it a box stayed for a step on a floor that was
+/// gone.
 bool is_asleep(const model::Model& model, std::uint32_t slot) {
   const model::Body& body = model.bodies[slot];
   return body.kind == BodyKind::resting && !model.articulates[body.articulate].to_wake;
