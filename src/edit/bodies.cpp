@@ -372,7 +372,8 @@ void apply(Editor& e, const SetPose& c) {
   const std::uint32_t body = e.require(c.body);
   require_finite("position", c.position);
   const Quaternion wanted = require_quaternion("orientation", c.orientation);
-  ingredient::Contacts::wake(model, body);
+  // A scripted body wakes by its motion, so that what lies on one that is set to its place in each step may sleep.
+  if (model.bodies[body].kind != BodyKind::scripted) ingredient::Contacts::wake(model, body);
   if (model.obstacles.has(body)) {
     move_obstacle(model, body, {c.position, wanted});
     return e.orientations.forget();

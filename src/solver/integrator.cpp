@@ -458,6 +458,7 @@ bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial
   if (stage.compliance > exact_rows && violation_ > IntegratorSettings::largest_violation) return false;
   if (stage.is_mid_point() && turns_too_far(problem)) return false;
   if (mirrors_a_solid(problem, problem.position, newton_.solution())) return false;
+  if (passes_through_round(problem, stage, newton_.solution())) return false;
   if (stage.is_mid_point() && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
   const Outside outside{.drives_rows = drives_rows_, .holds = !holds_.are_none()};
@@ -621,6 +622,21 @@ bool Integrator::will_turn_too_far(const Problem& problem, double h) const {
     const Vec3 d = problem.position[c.nodes[1]] - problem.position[c.nodes[0]];
     const Vec3 moved = h * (problem.velocity[c.nodes[1]] - problem.velocity[c.nodes[0]]);
     if (dot(moved, moved) > settings_.max_turn * settings_.max_turn * dot(d, d)) return true;
+  }
+  return false;
+}
+
+bool Integrator::passes_through_round(const Problem& problem, const Stage& stage, std::span<const Vec3> after) {
+  if (!problem.has_used<ContactConstraint>()) return false;
+  const auto apart = [](const ContactConstraint& c, const Vec3* x, double fraction) {
+    return c.off(c.arm(0, x, fraction), c.arm(2, x, fraction), c.arm(3, x, fraction));
+  };
+  const auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const ContactConstraint& c = pool.items[k];
+    if (!c.is_round) continue;
+    const Vec3 start = apart(c, problem.position.data(), stage.fraction_start);
+    if (dot(start, apart(c, after.data(), stage.fraction)) < 0) return true;
   }
   return false;
 }

@@ -134,6 +134,8 @@ class Integrator {
   double compliance_part(const Part&, Scheme) const;
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
+  /// Whether a round thing would be on the other side of what it may touch: its distance is the same there.
+  static bool passes_through_round(const Problem&, const Stage&, std::span<const Vec3> after);
   bool mirrors_a_solid(const Problem&, std::span<const Vec3> before, std::span<const Vec3> after);
   static void track(Problem&, double fraction);
   static void add_impulses(Problem&, double h);

@@ -47,7 +47,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
       problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
     }
     // Bodies that move as prescribed go on: stopped here and driven on in the step, a turning plate had its energy booked in each.
-    project_velocities(problem, drives_rows_ ? step_length_ : 0);
+    project_velocities(problem, drives_rows_ && !keeps_offsets_ ? step_length_ : 0);
   }
   if (is_open) report.spin_lost = spin().restore(problem);
   energy_.measure(problem, 0);

@@ -126,6 +126,26 @@ def test_a_ring_hangs_on_a_bar_of_any_shape_and_swings(kind: str, mode: str) -> 
     assert np.diff(energies).max() < 1e-5  # of 18 J
 
 
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust", "plausible", "accurate"])
+@pytest.mark.parametrize(("size", "pull"), [(0.1, 1), (0.15, 1), (1, 10), (1, 20)])
+def test_a_thin_ring_stays_on_its_bar_though_it_could_fall_past_it_in_a_step(
+    mode: Any, size: float, pull: float
+) -> None:
+    """`robust` put it against the other side of the bar, where its distance is the same, and told nothing."""
+    system = iota.System(mode=mode)
+    system.usual_material = iota.Material(friction=0.3)
+    system.body("static", shape=iota.Capsule(0.008 * size, 0.3 * size), position=(0, 1, 0))
+    height = 1 - 0.044 * size
+    ring = system.body(
+        shape=iota.Torus(0.06 * size, 0.008 * size), density=7800, position=(0, height, 0), orientation=("y", 90)
+    )
+    system.step(1 / 60)
+    system.gravity = (0, -9.81 * pull, 0)
+    for _ in range(30):
+        assert system.step(1 / 60).unconverged == 0
+    assert ring.position.y == pytest.approx(height, abs=1e-6)
+
+
 @pytest.mark.parametrize("kind", ["cylinder", "box", "hull"])
 def test_two_links_of_solids_hold_each_other_by_a_ring(kind: str) -> None:
     """A heavy bar hangs in a ring that hangs on a bar; all of it moves."""
