@@ -372,13 +372,14 @@ void apply(Editor& e, const SetPose& c) {
   const std::uint32_t body = e.require(c.body);
   require_finite("position", c.position);
   const Quaternion wanted = require_quaternion("orientation", c.orientation);
+  const bool is_obstacle = model.obstacles.has(body);
+  if (!is_obstacle) require_particles(model, body);
   // A scripted body wakes by its motion, so that what lies on one that is set to its place in each step may sleep.
   if (model.bodies[body].kind != BodyKind::scripted) ingredient::Contacts::wake(model, body);
-  if (model.obstacles.has(body)) {
+  if (is_obstacle) {
     move_obstacle(model, body, {c.position, wanted});
     return e.orientations.forget();
   }
-  require_particles(model, body);
   e.orientations.refresh(e.model, std::span(&body, 1));
   const Quaternion& q = model.bodies[body].orientation;
   const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
