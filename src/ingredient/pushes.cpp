@@ -119,13 +119,15 @@ void Pushes::load_parts_by_velocity(const Model& model, const IslandNodes& nodes
   }
 }
 
+// They act on until `end_step`: an island may take the step in parts. Ended here, a brake that was pressed on a fast disc had a
+// tenth of its force.
 void Pushes::store(Model& model, const IslandNodes& nodes, double h, const Problem& problem) const {
   if (!model.torques.is_empty())
     for (const std::uint32_t body : nodes.bodies)
-      if (Torque* const torque = model.torques.find(body)) torque->before = std::exchange(torque->torque, Vec3{});
+      if (Torque* const torque = model.torques.find(body)) torque->before = torque->torque;
   if (model.pushes.is_empty()) return;
   nodes.for_each_ring(model, [&](std::uint32_t ring) {
-    if (Push* const push = model.pushes.find(ring)) push->before = std::exchange(push->force, Vec3{});
+    if (Push* const push = model.pushes.find(ring)) push->before = push->force;
   });
   for_each_item_of<solver::VelocityForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     model.pushes.at(key.slot).before +=
@@ -189,15 +191,9 @@ void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
 void Pushes::end_step(Model& model, double) {
   model.pushes_by_velocity.clear();
   model.pushes.for_each([&](std::uint32_t ring, const Push& push) {
-    if (push.force == Vec3{}) return;
-    bool all_free = true;
-    model.for_each_in_ring(
-        ring, [&](std::uint32_t p) { all_free = all_free && is_free(model.bodies[model.particles[p].body].kind); });
-    if (!all_free) model.pushes.at(ring).force = {};
+    if (push.force != Vec3{}) model.pushes.at(ring).force = {};
   });
-  model.torques.for_each([&](std::uint32_t body, const Torque&) {
-    if (!is_free(model.bodies[body].kind)) model.torques.at(body).torque = {};
-  });
+  model.torques.for_each([&](std::uint32_t body, const Torque&) { model.torques.at(body).torque = {}; });
 }
 
 void Pushes::ring_changed(Model& model, std::uint32_t ring) {

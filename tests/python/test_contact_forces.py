@@ -125,3 +125,22 @@ def test_a_pile_begins_to_move_as_an_independent_solver_of_its_contacts_says(see
     known[:, 3:] *= pile.radii[:, None]
     assert np.abs(known).max() > 0.5, "m/s^2: it moves"
     assert np.abs(found - known).max() < 1e-3
+
+
+@pytest.mark.parametrize("mode", [None, "robust", "accurate"])
+@pytest.mark.parametrize("rate", [60, 120, 480])
+def test_a_brake_is_pressed_with_the_same_force_however_fast_its_disc_is(mode: Any, rate: int) -> None:
+    """In a step that is taken in parts a held force acted in the first one alone: a twelfth of it was left."""
+    system = iota.System(gravity=(0, 0, 0)) if mode is None else iota.System(gravity=(0, 0, 0), mode=mode)
+    material = iota.Material(friction=0.3)
+    disc = system.body(shape=iota.Cylinder(0.3, 0.02), mass=400, position=(-0.01, 1, 0), material=material)
+    disc.angular_velocity = (30, 0, 0)
+    system.revolute(disc, at=(0, 1, 0), axis=(1, 0, 0))
+    shoe = system.body(shape=iota.Box((0.02, 0.02, 0.02)), mass=0.05, position=(0.01, 1.15, 0), material=material)
+    system.prismatic(shoe, at=shoe.position, axis=(1, 0, 0))
+    pressed = 0.0
+    for _ in range(20):
+        shoe.apply_force((-50, 0, 0))
+        system.step(1 / rate)
+        pressed -= disc.force_from(shoe).x / 20
+    assert pressed == pytest.approx(50, rel=1e-3)
