@@ -263,3 +263,16 @@ def test_a_box_weighs_more_on_a_lift_that_starts_and_less_on_one_that_stops(mode
     weight = 20 * (9.81 + acceleration)
     assert forces[2:] == pytest.approx([weight] * 58, rel=1e-6)
     assert sum(contact.force.y for contact in box.contacts) == pytest.approx(weight, rel=1e-6)
+
+
+def test_what_absorbs_something_that_touches_nothing_still_touches() -> None:
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.5)
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    box = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=0.3, position=(0, 0.05, 0))
+    nothing = iota.Material(touches="nothing")
+    box.combine(system.body(shape=iota.Sphere(0.02), mass=0.01, position=(0, 0.11, 0), material=nothing))
+    for _ in range(30):
+        system.step(1 / 60)
+    lowest = 0.05 - 0.01 / 0.31 * 0.06  # by the center of both, which is a little higher
+    assert box.position.y > lowest
