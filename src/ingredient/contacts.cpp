@@ -426,6 +426,9 @@ bool Contacts::renew(Model& model, std::uint32_t first, std::uint32_t second, st
 
 namespace {
 
+/// Whether it was found for the step that follows, or is at hand.
+bool is_of_next_step(const Model& model, const Contact& c) { return c.found_in == model.step + 1; }
+
 template <class Test>
 void end_if(Model& model, std::uint32_t body, bool by_motion, Test test) {
   if (model.contacts.size() == 0) return;
@@ -485,7 +488,7 @@ bool Contacts::is_of_sweeps(const Model& model, std::uint32_t body) {
 void Contacts::take_over(Model& restored, Model& before) { restored.restores = before.restores + 1; }
 
 void Contacts::end_old(Model& model, std::uint32_t body) {
-  end_if(model, body, true, [&](const Contact& c) { return c.found_in != model.step + 1; });
+  end_if(model, body, true, [&](const Contact& c) { return !is_of_next_step(model, c); });
 }
 
 void Contacts::end(Model& model, std::uint32_t body) {
@@ -509,6 +512,12 @@ void Contacts::forget_body(Model& model, std::uint32_t body) {
 void Contacts::drop(Model& model, std::uint32_t particle) { end(model, model.particles[particle].body); }
 
 void Contacts::absorb(Model& model, std::uint32_t q, std::uint32_t) { drop(model, q); }
+
+// Those of the step at hand get the new basis in `prepare`: of two boxes between which a bond was made, the places that it holds
+// became unknowns after their contacts had been found, and a weak spring drew one into the other within a step.
+void Contacts::inertia_changed(Model& model, std::uint32_t body) {
+  end_if(model, body, false, [&](const Contact& c) { return !is_of_next_step(model, c); });
+}
 
 // A body may have another basis, in the same place.
 void Contacts::prepare(Model& model, std::uint32_t body) {

@@ -91,7 +91,7 @@ class Contacts : public NoAnswers {
   static void visit_tied(const Model&, std::uint32_t particle, Visit);
   static bool ties_any(const Model&);
   static void forget_body(Model&, std::uint32_t body);
-  static void inertia_changed(Model& model, std::uint32_t body) { end(model, body); }
+  static void inertia_changed(Model&, std::uint32_t body);
   static void acting_changed(Model& model, std::uint32_t particle) { drop(model, particle); }  ///< a new kind, too
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
