@@ -578,6 +578,10 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     row.count = c.point_count;
     row.first_side = has_world_plane(c) ? 0 : c.of_p;
     row.weights = c.weights;  // they tell which arms are places of the world: Problem::set_origin
+    const auto turns = [&](std::uint32_t body) {
+      return is_free(model.bodies[body].kind) && model.bodies[body].rank == 4;
+    };
+    row.of_first = c.of_p, row.first_turns = turns(c.p), row.second_turns = turns(c.q);
     problem.add(row, {owner, {}, slot});
     solver::ResistanceConstraint roll;
     roll.nodes = row.nodes, roll.count = row.count, roll.first_side = row.first_side;
@@ -702,6 +706,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.radius = c.radius + c.depth;
     row.is_of_sweeps = c.is_of_sweeps;
     row.pivots[0] = dot(c.pivot, c.first), row.pivots[1] = dot(c.pivot, c.second);
+    row.ball = c.ball, row.from = 0, row.to = 1;
     row.friction = c.friction, row.static_friction = c.static_friction, row.restitution = c.restitution;
     const auto [of_center, of_place] = natural_compliances(row, c.of_p, nodes, h, problem);
     row.normal_compliance = normal_softness * of_center;

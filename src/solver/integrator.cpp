@@ -369,6 +369,9 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   stage.is_held = holds_.count > 1;
   // Parts of a step that only its solution needs are solved more easily with the compliances of the whole one.
   if (settings_.max_error > 0) fit_contacts(problem, part.h / step_length_);
+  if (part.h < step_length_)
+    for (ContactConstraint& c : problem.items_of<ContactConstraint>())
+      c.begin_part(problem.position.data(), problem.velocity.data(), part.from, part.to, part.h);
   problem.copy_multipliers_to(multipliers_saved_);
   (void)find_bounces(problem, part);
   if (part.to < 1) spread_overlaps(problem, part.from, stage.part_left());

@@ -20,9 +20,76 @@ struct TrialFriction {
   double force[2], size;
 };
 
+/// A body by four of its points.
+class RigidPoints {
+ public:
+  RigidPoints(const std::uint32_t* nodes, const Vec3* x, const Vec3* v) : first_(x[nodes[0]]) {
+    Vec3 edges[3];
+    for (int k = 0; k < 3; ++k) edges[k] = x[nodes[k + 1]] - first_;
+    const double volume = dot(edges[0], cross(edges[1], edges[2]));
+    for (int k = 0; k < 3; ++k) {
+      duals_[k] = (1 / volume) * cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+      spin_ += 0.5 * cross(duals_[k], v[nodes[k + 1]] - v[nodes[0]]);
+    }
+  }
+  /// rad/s
+  const Vec3& spin() const { return spin_; }
+  /// Writes weight times those by which the points give a place.
+  void weigh(const Vec3& place, double weight, double* weights) const {
+    weights[0] = weight;
+    for (int k = 0; k < 3; ++k) {
+      weights[k + 1] = weight * dot(duals_[k], place - first_);
+      weights[0] -= weights[k + 1];
+    }
+  }
+  /// An arm now that will be `arm` after h seconds, a little longer: its chord is as long as the way that it rolls.
+  Vec3 back(const Vec3& arm, double h) const { return arm - h * cross(spin_, arm); }
+
+ private:
+  Vec3 first_, duals_[3], spin_;
+};
+
 constexpr ConeState slips{ConeState::Mode::slips, 1};
 
 }  // namespace
+
+// As ingredient::Contacts finds them for the whole step.
+void ContactConstraint::begin_part(const Vec3* x, const Vec3* v, double start, double end, double h) {
+  constexpr int center_arm = 0, place_arm = 1;
+  const Vec3 d = arm(center_arm, x, start),
+             across = is_round ? off(d, arm(2, x, start), arm(3, x, start)) : arm(2, x, start);
+  const double length = norm(across);
+  if (!(length > 0) || !(first_turns || second_turns)) return;
+  const Vec3 normal = (1 / length) * across;
+  const double gap = is_round ? length - radius : dot(normal, d) - radius;
+  Vec3 center = of_first > 0 ? Vec3{} : constant[center_arm], closing;
+  for (std::uint32_t i = 0; i < of_first; ++i) center += weights[center_arm][i] * x[nodes[i]];
+  for (std::uint32_t i = 0; i < count; ++i) closing += weights[center_arm][i] * v[nodes[i]];
+  const Vec3 along = closing - dot(closing, normal) * normal;
+  const double other_ball = is_round ? radius - ball : 0;
+  Vec3 turning, run = along;
+  if (first_turns) {
+    const RigidPoints first(nodes.data(), x, v);
+    first.weigh(center + first.back(-ball * normal, h / 2), 1, weights[place_arm].data());
+    turning += first.spin();
+  }
+  if (second_turns) {
+    const RigidPoints second(nodes.data() + of_first, x, v);
+    Vec3 place = center - (ball + 0.5 * gap) * normal;
+    if (is_round) {
+      const Vec3 origin = center - d;
+      place = origin + second.back(place - origin, h / 2) + (0.5 * h * other_ball / radius) * along;
+      run = (other_ball / radius) * along - other_ball * cross(second.spin(), normal);
+    } else {
+      place += 0.5 * h * along;
+    }
+    second.weigh(place, -1, weights[place_arm].data() + of_first);
+    turning -= second.spin();
+  }
+  const Vec3 pivot = -0.5 * h * dot(turning, normal) * cross(normal, run);
+  for (int k = 0; k < 2; ++k) pivots[k] = dot(pivot, arm(3 + k, x, start));
+  from = start, to = end;
+}
 
 ConeState ContactConstraint::state_of(const double* multipliers) const {
   constexpr double at_edge = 1 - 1e-6;

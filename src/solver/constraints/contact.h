@@ -38,7 +38,12 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   bool never_slips = false;                      ///< while a solution is searched
   double share = 1;                              ///< of the step, for which the compliances are
   double reference = 1;
-  double pivots[2] = {};  ///< rates of the tangential rows at the end of a step in which they stick, see rate_of, m/s
+  double pivots[2] =
+      {};  ///< rates of the tangential rows at the end of a (sub-)step in which they stick, see rate_of, m/s
+  double from = 0, to = 1;     ///< that (sub-)step, as fractions of the step: see begin_part
+  double ball = 0;             ///< how far the point of the first body is from the center, against the normal, m
+  std::uint32_t of_first = 0;  ///< the number of nodes of the first body
+  bool first_turns = false, second_turns = false;  ///< four nodes that move by themselves
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
   double rebound = 0;               ///< the normal speed at which an impact ends, while impacts are solved, m/s
   double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
@@ -130,7 +135,12 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double compliance_of(int r) const { return r == 0 ? softening * normal_compliance : compliance; }
   /// The rate of a row that sticks, at a fraction of the step, m/s. The point that touches in the middle of the step does not
   /// rest before and after it if the bodies turn about their normal while they roll: a coin in a circle, or a tilted disk.
-  double rate_of(int r, double fraction) const { return is_tangent(r) ? (2 * fraction - 1) * pivots[r - 1] : 0; }
+  double rate_of(int r, double fraction) const {
+    return is_tangent(r) ? (2 * fraction - from - to) / (to - from) * pivots[r - 1] : 0;
+  }
+  /// For a part of the step, of h seconds, with the nodes at x and their velocities v at its start: the points that touch in its
+  /// middle, of bodies that turn.
+  void begin_part(const Vec3* x, const Vec3* v, double start, double end, double h);
   /// The friction of what slips, N.
   double largest_friction(const double* multipliers) const { return friction * std::max(0.0, -multipliers[0]); }
   /// The friction beyond which what sticks begins to slip, N.

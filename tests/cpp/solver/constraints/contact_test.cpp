@@ -248,6 +248,25 @@ TEST(Contact, has_a_rate_of_its_sticking_point_before_and_after_the_middle_of_a_
   EXPECT_EQ(c.rate_of(2, 0.5), 0);
 }
 
+TEST(Contact, has_the_point_that_touches_in_the_middle_of_a_part_of_a_step) {
+  const Vec3 center{3, 1, 0}, spin{0, 0, -2}, speed{2, 0, 0};
+  std::vector<Vec3> x, v;
+  for (const Vec3 arm : {Vec3{1, 1, 1}, Vec3{1, -1, -1}, Vec3{-1, 1, -1}, Vec3{-1, -1, 1}})
+    x.push_back(center + 0.3 * arm), v.push_back(speed + cross(spin, 0.3 * arm));
+  ContactConstraint c;
+  c.nodes = {0, 1, 2, 3}, c.count = c.of_first = 4, c.first_turns = true, c.ball = c.radius = 1;
+  c.weights[0] = {0.25, 0.25, 0.25, 0.25};
+  c.set_directions({Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, -1}});
+  const double h = 0.3;
+  c.begin_part(x.data(), v.data(), 0.5, 0.75, h);
+  EXPECT_LT(norm(c.arm(1, x.data(), 0.5) - (center + Vec3{h / 2 * 2, -1, 0})), 1e-12);
+  std::vector<Vec3> middle;  // by the velocities at the start
+  for (std::size_t i = 0; i < x.size(); ++i) middle.push_back(x[i] + h / 2 * v[i]);
+  const Vec3 below = c.arm(1, middle.data(), 0.5) - (center + h / 2 * speed);
+  EXPECT_LT(std::abs(below.x), 1e-12) << "it is below the center";
+  EXPECT_EQ(c.rate_of(1, 0.5), -c.rate_of(1, 0.75)) << "pivots are those of the part";
+}
+
 TEST(ContactRows, have_the_gradients_and_the_curvature_of_their_values) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
