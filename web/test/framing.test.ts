@@ -282,6 +282,52 @@ describe("the view of a running scene", () => {
     expect(shareOutside(rest, free[0], frame)).toBe(1);
   });
 
+  /** A lone ball in a picture of 60 frames a second: its place in it in each, from -1 to 1, and the camera's. */
+  function watchOne(place: (time: number) => [number, number, number], seconds: number, held = -1): { seen: Vector3[]; eyes: Vector3[] } {
+    const camera = new PerspectiveCamera(42, 16 / 9);
+    const { test, navigation, framing } = framed(camera);
+    test.join();
+    test.world.take({
+      type: "worldSettings", title: "", styles: [], style: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false,
+      ground: 0, modules: [],
+    });
+    framing.changed("settings");
+    test.set("visual", visual(0, "ball", part("sphere", [0.1])));
+    test.set("body", bodyEntity(0));
+    test.world.marks.held = held;
+    const [seen, eyes]: [Vector3[], Vector3[]] = [[], []];
+    for (let time = 0; time < seconds; time += 1 / 60) {
+      const boxMin = place(time);
+      test.poses([body(0, 0)], { boxMin, boxMax: [boxMin[0] + 1, boxMin[1] + 1, boxMin[2] + 1] });
+      framing.update(1 / 60);
+      navigation.update(1 / 60);
+      camera.updateMatrixWorld();
+      seen.push(new Vector3().fromArray(test.world.poses.position).project(camera));
+      eyes.push(camera.position.clone());
+    }
+    return { seen, eyes };
+  }
+
+  it.each([
+    ["at 2 m/s", (time: number) => 2 * time, 0], ["at 20 m/s", (time: number) => 20 * time, 0], ["at 200 m/s", (time: number) => 200 * time, 0],
+    ["that falls", () => 0, 9.81],
+  ])("keeps a lone thing %s well inside the picture", (_, way, gravity) => {
+    for (const { x, y, z } of watchOne((time) => [way(time), (-gravity * time * time) / 2, 0], 4).seen.slice(90)) {
+      expect(Math.max(Math.abs(x), Math.abs(y))).toBeLessThan(0.5);
+      expect(z).toBeLessThan(1);
+    }
+  });
+
+  it("is back with a lone thing at once when that returns from very far away", () => {
+    const { seen } = watchOne((time) => [time < 1 || time > 2 ? 0 : 1e6, 0, 0], 3);
+    for (const { x, y } of seen.slice(-30)) expect(Math.hypot(x, y)).toBeLessThan(0.5);
+  });
+
+  it("rests while a hand of this page holds the thing, which goes where the camera's pointer is", () => {
+    const { eyes } = watchOne((time) => [time, 0, 0], 2, 0);
+    for (const eye of eyes) expect(eye.distanceTo(eyes[0])).toBeLessThan(1e-9);
+  });
+
   it("follows the only thing", async () => {
     const views = await watch((time) => 0.5 + time, []);
     expect(views.at(-1)!.pivot[0]).toBeGreaterThan(8);

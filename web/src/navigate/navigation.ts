@@ -8,6 +8,8 @@ import type { FittedView } from "./framing.ts";
 const easeSeconds = 0.07;
 /** Returning to a view is slower than a drag. */
 const travelSeconds = 0.25;
+/** In distances from the camera to what it looks at. */
+const longestTravel = 3;
 const steepest = 1.5;
 /** Relative to the size of the scene: limits of the camera's distance, and of the pivot's distance from the scene's
  * center. */
@@ -134,10 +136,13 @@ export class Navigation {
     this.now_.pivot.add(way);
   }
 
-  /** Follows a first view that moves. */
-  follow(): void {
+  /** Follows a first view that moves, in which all has moved by a vector, m: what goes steadily stays in its place in the picture. */
+  follow(way: readonly [number, number, number]): void {
     copyView(this.home_, this.goal_);
     this.seconds_ = travelSeconds;
+    this.now_.pivot.add(this.way_.set(...way));
+    // On a longer journey nothing would be seen.
+    if (this.now_.pivot.distanceTo(this.goal_.pivot) > longestTravel * this.goal_.distance) copyView(this.goal_, this.now_);
   }
 
   /** Jumps to the first view. */

@@ -12,7 +12,7 @@ import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import type { World } from "../world/world.ts";
 import type { PageListener } from "./events.ts";
-import { apart, boxOf, makeItem, settingOf, settingSize, withoutFar, type Item } from "./subject.ts";
+import { apart, boxOf, makeItem, settingOf, settingSize, withoutFar, type Item, type Place } from "./subject.ts";
 import type { Ways } from "./ways.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
@@ -37,6 +37,8 @@ const widestCircle = 3;
 const few = 0.1;
 /** A followed scene has room to move in. */
 const followDistance = 1.6;
+/** What has stayed in the middle of the picture for so long is not followed any more, s. */
+const followSeconds = 0.5;
 /** In s: from then on a thing that is far away has gone there. */
 const goneAfter = 5;
 /** A scene is at least so large, in distances from the script's camera to its target: a single rocket that flies has another size. */
@@ -84,7 +86,10 @@ export class Framing implements FramePart, PageListener {
   /** Looks in a row at which the scene was much smaller. */
   private small_ = 0;
   private updated_ = 0;
-  private falling_ = false;
+  /** Since the followed things have left the middle of the picture, s; where it was then, and where they were last. */
+  private stayed_ = Infinity;
+  private anchor_: FittedView | null = null;
+  private last_: Place = [0, 0, 0];
   /** The connection was lost since the last look: another scene is of another script, though that may have the same title. */
   private rejoined_ = false;
   /** The aspect ratio of the window for which the first view was calculated. */
@@ -153,7 +158,8 @@ export class Framing implements FramePart, PageListener {
       this.frame_(false);
     }
     // In real time: a frame that took long is told as a short one.
-    this.wait_ -= now === undefined ? seconds : (now - this.updated_) / 1000;
+    const elapsed = now === undefined ? seconds : (now - this.updated_) / 1000;
+    this.wait_ -= elapsed;
     this.updated_ = now ?? 0;
     // A thing that moves before the page shows its first picture widens it, unless a view was chosen already.
     const isEarly = this.viewer_.hidden && !this.navigation_.touched && this.framed_ !== null && this.early_ < mostEarly;
@@ -162,7 +168,7 @@ export class Framing implements FramePart, PageListener {
       this.wait_ = 0;
     }
     // A page at rest has nothing new to look at.
-    if (this.framed_ !== null && (this.wait_ > 0 || this.viewer_.resting) && !this.falling_) return;
+    if (this.framed_ !== null && (this.wait_ > 0 || this.viewer_.resting) && !this.isFollowing_) return;
     this.wait_ = lookEverySeconds;
     // A first look at a part of the scene would be kept: light and ground do not shrink at once.
     if (!this.world_.described || this.script_ === "") return;
@@ -191,12 +197,15 @@ export class Framing implements FramePart, PageListener {
     } else if (isEarly) {
       this.frame_(false);
       this.navigation_.jumpHome();
-    } else if (isOther) {
-      this.frame_(false);
-    } else if (!this.navigation_.touched && !this.viewer_.presenting) {
-      if (hasCamera) this.widen_();
-      else this.follow_(bounds);
+    } else if (this.world_.marks.held < 0) {
+      // A camera that moved would move what its user holds, which would move the camera.
+      const isFree = !this.navigation_.touched && !this.viewer_.presenting;
+      if (isFree && !hasCamera && this.follow_(elapsed)) return;
+      if (isOther) this.frame_(false);
+      else if (isFree && hasCamera) this.widen_();
+      else if (isFree) this.widenFree_(bounds);
     }
+    this.stayed_ = Infinity;
   }
 
   // --- inside
@@ -229,18 +238,30 @@ export class Framing implements FramePart, PageListener {
     return 2 * (this.members_.length + fixed) >= this.moving_.length + fixed;
   }
 
+  private get isFollowing_(): boolean {
+    return this.stayed_ < followSeconds;
+  }
+
+  /** Goes along with a scene that leaves the picture, at any speed, until it has come to rest; whether it does. */
+  private follow_(elapsed: number): boolean {
+    const { home: shown } = this.navigation_;
+    const { isFollowing_: isFollowing } = this;
+    const { center } = boxOf(withoutFar(this.moving_));
+    this.stayed_ = this.isLeaving_(isFollowing ? this.anchor_! : shown) ? 0 : this.stayed_ + elapsed;
+    if (!this.isFollowing_) return false;
+    const view = this.calcView_(this.begin_(this.look_(true)) === null ? this.kept_ : this.base_);
+    if (view === null) return false;
+    const { last_: last } = this;
+    this.last_ = center;
+    this.navigation_.setHome({ ...view, distance: Math.max(followDistance * view.distance, isFollowing ? shown.distance : 0) });
+    this.navigation_.follow(isFollowing ? [center[0] - last[0], center[1] - last[1], center[2] - last[2]] : [0, 0, 0]);
+    if (this.stayed_ === 0) this.anchor_ = this.navigation_.home;
+    return true;
+  }
+
   /** Keeps the scene in view unless the script or the user has set the camera. */
-  private follow_(bounds: Bounds): void {
+  private widenFree_(bounds: Bounds): void {
     const shown = this.navigation_.home;
-    // A scene that falls out of the picture is followed.
-    this.falling_ = this.isLeaving_(shown);
-    if (this.falling_) {
-      const view = this.calcView_(this.begin_(this.look_(true)) === null ? this.kept_ : this.base_);
-      if (view === null) return;
-      this.navigation_.setHome({ ...view, distance: Math.max(followDistance * view.distance, shown.distance) });
-      this.navigation_.follow();
-      return;
-    }
     const frame = this.calcFrame_(1.04);
     const out = this.members_.filter((item) => {
       const { setting_: corners } = this;
@@ -286,7 +307,7 @@ export class Framing implements FramePart, PageListener {
     places.clear();
     for (const { center } of free) places.add(...center);
     // It is brought well into the picture.
-    const inner = this.calcFrame_(this.falling_ ? 0.25 : moving.length === 1 ? 0.7 : 0.9);
+    const inner = this.calcFrame_(this.isFollowing_ ? 0.25 : moving.length === 1 ? 0.7 : 0.9);
     const away = shareOutside(places, shown, inner) * free.length;
     if (2 * away <= moving.length + fixed) return false;
     const middle = withoutFar(moving);
