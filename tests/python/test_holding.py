@@ -6,11 +6,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from page_client import PageClient
 
 import iota
+from iota import _protocol as protocol
 
 Runner = Callable[[iota.World], str]
 
@@ -174,3 +176,103 @@ def test_a_hand_far_away_pulls_with_its_largest_force_and_no_more(limit: float) 
     system.grip(ball, target=(1000, 1, 0), max_acceleration=limit)
     system.step(1 / 120)
     assert 0.8 * limit / 120 < ball.velocity.x <= limit / 120, "its damping takes some of it"
+
+
+def hand(world: iota.World, *messages: object, body: iota.Body | None = None) -> None:
+    """A user's hand does this, without a page; then the functions of a frame are called."""
+    first = () if 5 in world._state.clients.by_id else (protocol.Join("Ada", protocol.Role.HOST),)
+    inputs: list[Any] = [(5, message) for message in (*first, *messages)]
+    world._inputs.take(inputs, lambda ids: [] if body is None else [body])
+    world._inputs.frame()
+
+
+def take_up(world: iota.World, body: iota.Body, target: tuple[float, float, float], seconds: float = 1.0) -> None:
+    """A hand takes a body at its center and moves."""
+    start = protocol.GrabStart(1, protocol.Id(0, 1), iota.Vec3(0, 0, 0), body.center_of_mass, "mouse")
+    hand(world, start, protocol.GrabMove(1, iota.Vec3(*target)), body=body)
+    run(world, seconds)
+
+
+def run(world: iota.World, seconds: float) -> None:
+    for _ in range(round(seconds / world.dt)):
+        world.step()
+        world._inputs.frame()
+
+
+def box_on_ground() -> tuple[iota.World, iota.Body]:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.3, 0.3, 0.3)), mass=1, position=(0, 0.15, 0))
+    world = iota.World(system, ground=0)
+    world.offer("rewind")
+    return world, box
+
+
+@pytest.mark.parametrize("lets_go_first", [False, True])
+def test_a_hand_of_then_does_not_come_back_with_a_rewind(lets_go_first: bool) -> None:
+    world, box = box_on_ground()
+    take_up(world, box, (0, 1, 0), seconds=3)
+    if lets_go_first:
+        hand(world, protocol.GrabEnd(1))
+    world.controls.act("rewind")
+    hand(world, *(() if lets_go_first else (protocol.GrabEnd(1),)))
+    assert box.center_of_mass.y > 0.5, "it was in the hand then"
+    run(world, 2)
+    assert box.center_of_mass.y == pytest.approx(0.15, abs=1e-3)
+
+
+def test_a_hand_of_then_does_not_come_back_with_an_undo_or_a_redo_and_the_grip_of_the_script_does() -> None:
+    system = iota.System(damping=3)
+    links = iota.builder.chain(6, 1.2, top=(0, 2, 0)).realize(system).bodies
+    ball = system.body(shape=iota.Sphere(0.1), mass=1, position=(2, 1, 0))
+    world = iota.World(system, ground=None)
+    world.offer("break", "undo", "redo")
+    own = system.grip(ball)
+    take_up(world, links[3], (1, 2, 0))
+    world.controls.act("break", links[3])
+    hand(world, protocol.GrabEnd(1))
+    for move in (world.undo, world.redo, world.undo):
+        assert move() and own.alive
+        run(world, 0.1)
+    run(world, 8)
+    assert abs(links[3].center_of_mass.x) < 0.02, "nothing pulls at the chain"
+    assert ball.center_of_mass.y > 0.9
+
+
+@pytest.mark.parametrize("lets_go_first", [False, True])
+def test_what_a_hand_carried_then_is_let_go_by_a_rewind(lets_go_first: bool) -> None:
+    world, box = box_on_ground()
+    world.tools.carry(box)
+    statue = world.system.body(shape=iota.Box((0.3, 0.3, 0.3)), mass=1, position=(2, 1, 0))
+    statue.kind = "scripted"
+    take_up(world, box, (0, 1, 0), seconds=3)
+    if lets_go_first:
+        hand(world, protocol.GrabEnd(1))
+    world.controls.act("rewind")
+    hand(world)
+    assert box.center_of_mass.y > 0.5 and (box.kind, statue.kind) == ("dynamic", "scripted")
+    run(world, 2)
+    assert box.center_of_mass.y == pytest.approx(0.15, abs=1e-3)
+    # It can be carried again, also after a reset, which knows no hands.
+    for begin in (run, lambda world, seconds: world.reset()):
+        begin(world, 0.1)
+        hand(world, protocol.GrabEnd(1))
+        take_up(world, box, (0, 1, 0))
+        assert box.kind == "scripted" and box.center_of_mass.y == pytest.approx(1)
+
+
+def test_the_pull_of_a_socket_on_a_plug_of_then_ends_with_a_rewind() -> None:
+    system = iota.System(gravity=(0, 0, 0), damping=2.0)
+    place = system.body().particle((0, 1, 0))
+    place.nail()
+    plug = system.body().particle((1, 1, 0))
+    world = iota.World(system, ground=None)
+    world.offer("rewind")
+    world.tools.socket(place, [plug], within=0.2, pull=3)
+    take_up(world, plug.body, (0.35, 1, 0), seconds=1)
+    hand(world, protocol.GrabMove(1, iota.Vec3(0.351, 1, 0)))
+    run(world, 2)
+    assert len(system.bonds) == 1
+    hand(world, protocol.GrabEnd(1))
+    assert len(system.bonds) == 0
+    world.controls.act("rewind")
+    assert len(system.bonds) == 0

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Protocol
 
 from iota._core import Body, Grip, System, Vec3
 from iota.saving import replacing
@@ -18,6 +18,15 @@ TakePicture = Callable[[int, float], bytes]  # client, time limit in s
 SendPulse = Callable[[int, str, float, float], None]  # client, hand, strength, s
 SendCamera = Callable[[int, Camera | None], None]
 LONGEST_PULSE = 5.0  # s
+
+
+class Fleeting(Protocol):
+    """Something in the simulator that is there only while a hand holds a body."""
+
+    @property
+    def alive(self) -> bool: ...
+
+    def destroy(self) -> None: ...
 
 
 @dataclass
@@ -130,6 +139,8 @@ class Clients:
         self.send_camera: SendCamera | None = None
         self.send_away: Callable[[int], None] | None = None
         self.taken_away: list[tuple[Hold, str]] = []  # with the reason; their functions wait to be told
+        # All that hands have made since the last reset, for a state that is restored may have it again.
+        self.fleeting: set[Fleeting] = set()
 
     def join(self, id: int, name: str, role: str = "host") -> None:
         self.by_id[id] = Client(
@@ -144,9 +155,11 @@ class Clients:
         """The holds of all clients."""
         return [hold for client in self.by_id.values() for hold in client.holds.values()]
 
-    def grip(self, hold: Hold, local_point: Vec3, target: Vec3) -> None:
-        """Grips a point of the body (body frame). Raises what the system raises if that is not possible."""
-        hold.grip = self._system.grip(hold.taken, local_point, target, client=hold.client, hold=hold.number)
+    def grip(self, hold: Hold, body: Body, local_point: Vec3, target: Vec3) -> None:
+        """Grips a point of a body (body frame). Raises what the system raises if that is not possible."""
+        hold.grip = self._system.grip(body, local_point, target, client=hold.client, hold=hold.number)
+        if isinstance(hold.grip, Grip):
+            self.fleeting.add(hold.grip)
 
     def let_go(self, client: Client) -> None:
         for hold in client.holds.values():
@@ -160,11 +173,17 @@ class Clients:
             hold.last = hold.body or hold.last
 
     def take_away(self, reason: str, holds: Iterable[Hold] | None = None) -> None:
-        """Ends these holds, or all, without their users. After the system was restored, the restored grips belong to no
-        present hold."""
+        """Ends these holds, or all, without their users."""
         for hold in self.holds() if holds is None else holds:
             del self.by_id[hold.client].holds[hold.number]
             self.taken_away.append((hold, reason))
+
+    def end_restored(self) -> None:
+        """After the system was restored: no hold goes on, and what hands did at that time ends, since nobody could let go of it."""
+        self.take_away("reset")
+        for made in self.fleeting:
+            if made.alive:
+                made.destroy()
 
     @property
     def is_profiled(self) -> bool:

@@ -140,9 +140,7 @@ class Guiding:
         hold = self._clients.by_id[client].holds[number]
         hold.let_go()
         hold.last = body
-        hold.grip = self._system.grip(
-            body, into_frame(hand, body.center_of_mass, list(body.orientation)), hand, client=client, hold=number
-        )
+        self._clients.grip(hold, body, into_frame(hand, body.center_of_mass, list(body.orientation)), hand)
 
     def _ray(self, client: int, hand: Vec3) -> Ray | None:
         """The ray of the pointer that leads a hand; None for a hand in space, which has a depth of its own."""

@@ -8,7 +8,7 @@ from iota.world.clients import Clients
 
 
 class History:
-    """Goes to another state of the system; the holds of users end. earlier: states of the run before, with their times, s."""
+    """Goes to another state of the system; the holds of users end, those of then too. earlier: states of the run before, with their times, s."""
 
     def __init__(self, system: System, clients: Clients) -> None:
         self._system, self._clients = system, clients
@@ -28,5 +28,5 @@ class History:
 
     def _moved(self, is_another: bool) -> bool:
         if is_another:
-            self._clients.take_away("reset")
+            self._clients.end_restored()
         return is_another

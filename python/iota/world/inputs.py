@@ -186,7 +186,7 @@ class Inputs:
         client.holds[hold.number] = hold
         if not any(listener.takes_over for listener in hold.listeners):
             with self._telling(client, "That cannot be held"):
-                clients.grip(hold, message.local_point, message.target)
+                clients.grip(hold, body, message.local_point, message.target)
         self._tell_of_hand("press", hold, message.target)
         self._tell_drag("start", hold, message.target)
 

@@ -237,6 +237,8 @@ class Stepper:
         if self._start is None:
             return
         self._state.history.restore(self._start)
+        # Nothing leads back to what hands made before it, and its identity may be that of something else from now on.
+        self._state.clients.fleeting.clear()
         self._state.scene.camera = self._camera
         self._state.schedule.rewind()
         self._off.clear()

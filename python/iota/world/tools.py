@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
 from typing import Any
 
-from iota._core import Body, Bond, Constraint, Particle, System, Vec3
+from iota._core import Body, Bond, Constraint, Group, Particle, System, Vec3
 from iota.arguments import SHORT, is_number
 from iota.colors import ColorLike, color_text
 from iota.world.clients import Clients, alive
@@ -30,6 +30,7 @@ from iota.world.visuals import Visuals
 REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
 REWIND_SHARE = 0.01  # of the time: what copies of the world may take
+CARRIED = "carried"  # name of a group
 MOST_COPIES = 400  # that are there; some thousand bodies, doubled by "select all", stop a world
 PARTS_COLORS = (
     "#d0402b",
@@ -144,7 +145,7 @@ class Tools(Part):
 
         world.tools.carry(chess_pieces)
         """
-        return Carry(self._events, bodies)
+        return Carry(self._system, self._events, self._clients, bodies)
 
 
 def named(body: Body) -> str:
@@ -373,6 +374,7 @@ class Socket:
             # As strong from everywhere but close to the place, where it fades.
             law = "energy = pull*sqrt(r^2 + soft^2)"
             bond = self._tools._system.bond(plug, self.place, law, pull=self.pull, soft=0.2 * self.within)
+            self._tools._clients.fleeting.add(bond)
         self._bond = bond
 
     def _held(self, body: Body) -> Particle | None:
@@ -476,13 +478,32 @@ class Articulates:
         self._paint = self._drawings.paint([body for part in parts for body in part], colors or PARTS_COLORS[0])
 
 
+class Carried:
+    """The bodies that hands carry, as a group, which the states of the system contain."""
+
+    def __init__(self, group: Group) -> None:
+        self.group = group
+
+    @property
+    def alive(self) -> bool:
+        # Made after a return to an earlier state, a group of the script may have the same identity.
+        return self.group.alive and self.group.name == CARRIED
+
+    def destroy(self) -> None:
+        """Lets go of them."""
+        for body in {particle.body for particle in self.group.particles}:
+            body.kind = "dynamic"
+            self.group.remove(body)
+
+
 class Carry:
     """Bodies that follow hands exactly."""
 
-    def __init__(self, events: Events, bodies: Any) -> None:
-        self._events = events
+    def __init__(self, system: System, events: Events, clients: Clients, bodies: Any) -> None:
+        self._system, self._events, self._clients = system, events, clients
         # By client and hold: the body, its center relative to the hand, its kind before.
         self._held: dict[tuple[int, int], tuple[Body, Vec3, Any]] = {}
+        self._carried: Carried | None = None
         self._drag = events.on_drag(bodies, grab=False)(self._dragged)
 
     def destroy(self) -> None:
@@ -497,6 +518,8 @@ class Carry:
             # A second hand on the same body only watches.
             if all(alive(body) != event.body for body, *_ in self._held.values()):
                 self._held[hand] = (event.body, event.body.center_of_mass - event.point, event.body.kind)
+                if event.body.kind in ("dynamic", "resting"):
+                    self._mark(event.body)
                 event.body.kind = "scripted"
         elif event.phase == "update" and event.point is not None and hand in self._held:
             event.body.set_pose(event.point + self._held[hand][1])
@@ -512,6 +535,15 @@ class Carry:
         now = alive(body)
         if now is not None:
             now.kind = "dynamic" if kind == "resting" else kind
+            if self._carried is not None and self._carried.alive:
+                self._carried.group.remove(now)
+
+    def _mark(self, body: Body) -> None:
+        """Puts a body among those that are let go in a restored state."""
+        if self._carried is None or not self._carried.alive:
+            self._carried = Carried(self._system.group(CARRIED))
+        self._carried.group.add(body)
+        self._clients.fleeting.add(self._carried)
 
 
 def _size(system: System) -> float:
