@@ -13,7 +13,7 @@ class Bench extends TestWorld {
   readonly pointer = new Pointer("mouse");
   readonly session: { role: Role };
 
-  constructor() {
+  constructor(look = "ball") {
     super();
     const session = {
       clientId: 1, role: Role.host as Role,
@@ -24,7 +24,7 @@ class Bench extends TestWorld {
     this.session = session;
     this.selection = new Selection(this.world, session, { invalidate: () => {} }, new Events());
     this.selection.gestures.add(this.pointer);
-    this.set("visual", visual(0, "ball", part("sphere", [0.2])));
+    this.set("visual", visual(0, look, part("sphere", [0.2])));
     this.set("body", bodyEntity(0, { id: id(0, 3) }), bodyEntity(1, { id: id(1, 5) }));
     this.poses([body(0, 1), body(1, 3)]);
     this.pointer.active = true;
@@ -112,6 +112,34 @@ describe("the selection", () => {
     expect(bench.sent.filter((message) => message.type === "grabEnd")).toHaveLength(1);
     bench.aim(3.1); // the hand goes on, closed
     expect(bench.sent.filter((message) => message.type === "grabMove")).toEqual([]);
+  });
+
+  it("pulls a particle by its center, which a press without a motion leaves where it is", () => {
+    const bench = new Bench("(particle)");
+    bench.aim(3.1);
+    bench.press(true);
+    const sent = bench.sent.at(-1)!;
+    if (sent.type !== "grabStart") throw new Error(sent.type);
+    expect(sent.localPoint).toEqual([0, 0, 0]);
+    const [x] = sent.target;
+    expect(x).toBeCloseTo(3, 3);
+    bench.aim(3.1);
+    expect(bench.sent.at(-1), "no motion").toBe(sent);
+    bench.aim(3.6);
+    const moved = bench.sent.at(-1)!;
+    expect(moved.type === "grabMove" && moved.target[0] - x).toBeCloseTo(0.5, 5);
+  });
+
+  it("takes the target to where the server's hold acts, if the look does not tell it", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    const [{ hold }] = bench.selection.gestures.grabs;
+    bench.poses([body(0, 1), body(1, 3)], { holds: [{ client: 1, hold, body: 1, point: [3, 0, 0], target: [3, 0, 0.2], force: 2 }] });
+    bench.selection.update();
+    bench.aim(3);
+    const sent = bench.sent.at(-1)!;
+    expect(sent.type === "grabMove" && Math.abs(sent.target[2])).toBeLessThan(2e-3);
   });
 
   it("goes on holding the body that absorbed the held one, as the server does", () => {

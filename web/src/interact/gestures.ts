@@ -64,6 +64,8 @@ export class Grab {
   body: number;
   /** The body was destroyed, or became part of another one. */
   isGone = false;
+  /** Its target counts from the place where the server acts on the body. */
+  isPlaced = false;
   readonly pointer: Pointer;
   readonly near: boolean;
   /** In the body's frame, m. */

@@ -29,7 +29,7 @@ export function toBody(scene: Pick<Pickable, "position" | "rotation">, body: num
 }
 
 /** Point of a body's frame into the world. */
-export function toWorld(scene: Pickable, body: number, point: Float32Array, out: Float32Array): void {
+export function toWorld(scene: Pick<Pickable, "position" | "rotation">, body: number, point: Float32Array, out: Float32Array): void {
   const p = body * 3;
   const r = body * 4;
   rotate(

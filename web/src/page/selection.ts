@@ -2,7 +2,7 @@
 // The hovered, selected and held bodies of the user. Sends selections and holds to the server.
 
 import { Gestures, type GestureListener, type Grab, type Pointer } from "../interact/gestures.ts";
-import { toBody } from "../interact/picking.ts";
+import { toBody, toWorld } from "../interact/picking.ts";
 import type { LinkState } from "../net/connection.ts";
 import { Role, type Vec3 } from "../protocol/generated.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
@@ -29,6 +29,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   private goneAt_ = 0;
   /** Version of the structure in which the holds were followed last. */
   private followedVersion_ = 0;
+  private readonly place_ = new Float32Array(3);
 
   constructor(world: World, session: SelectionSession, viewer: Pick<Viewer, "invalidate">, events: Events) {
     this.world_ = world;
@@ -173,6 +174,11 @@ export class Selection implements GestureListener, FramePart, PageListener {
     // A hand on one of several keeps them all: an action is about them.
     if (this.adding) this.toggle(grab.body);
     else if (grab.body !== this.selected_ && !this.more_.has(grab.body)) this.select(grab.body);
+    // The hand acts at the center of a particle, not where its surface was pressed: while it rests, it must not pull there.
+    const { entities: { body } } = this.world_;
+    body.toAnchor(grab.body, grab.localPoint);
+    toWorld(body, grab.body, grab.localPoint, grab.target);
+    for (let axis = 0; axis < 3; axis++) grab.offset[axis] += grab.target[axis] - grab.start[axis];
     this.session_.send({
       type: "grabStart", hold: grab.hold, body: this.session_.idOf(grab.body), localPoint: vec3(grab.localPoint), target: vec3(grab.target),
       pointer: grab.pointer.name,
@@ -222,7 +228,12 @@ export class Selection implements GestureListener, FramePart, PageListener {
       return;
     }
     const { body: before, isGone: wasGone } = grab;
-    if (!wasGone && hold.body === before && structureVersion === this.followedVersion_) return;
+    if (grab.isPlaced && !wasGone && hold.body === before && structureVersion === this.followedVersion_) return;
+    if (!grab.isPlaced && hold.body === before) {
+      toWorld(poses.newest, before, grab.localPoint, this.place_);
+      for (let axis = 0; axis < 3; axis++) grab.offset[axis] += hold.point[axis] - this.place_[axis];
+    }
+    grab.isPlaced = true;
     grab.body = hold.body;
     grab.isGone = false;
     // In the poses that came with it: the drawn ones are older, and a new body has none before its first picture.

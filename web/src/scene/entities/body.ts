@@ -432,6 +432,13 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, VisualUser {
     return name === "" || /^visual \d+$|^\(/.test(name) ? wordOf(found.shapes) : name;
   }
 
+  /** Moves a point onto the place of a body where a hand acts that presses there, as far as the server's own looks tell. */
+  toAnchor(body: number, point: Float32Array): void {
+    const name = this.visuals_.nameOf(this.bodies_.get(body)?.entity.visual ?? -1);
+    if (name === "(particle)") point.fill(0);
+    if (name === "(rod)") point.fill(0, 1);
+  }
+
   addOutline(outline: Outline): void {
     this.outlines_.push(outline);
     this.root.add(outline.root);
