@@ -26,7 +26,7 @@ const leastForce = 0.05;
 const meterEveryMs = 250;
 /** Between the page's controls and what is framed, css px; and the largest share of the window below it. */
 const reservedGap = 24;
-const mostReserved = 0.3;
+const mostReserved = 0.4;
 const linkCard = "link";
 const watcherWelcome = "You watch: drag to look around";
 const peopleSign = "M9 11a3.5 3.5 0 1 0 0-7 3.5 3.5 0 0 0 0 7M2.5 20v-1a6.5 5 0 0 1 13 0v1M15.5 4.5a3.5 3.5 0 0 1 0 6.3M18 14.6a6 5 0 0 1 3.5 4.4v1";
