@@ -106,12 +106,22 @@ export class Cards {
     const chosen = spotOf[place];
     if (chosen !== undefined) return this.stacks_.get(chosen)!.append(element);
     const covered = this.covered_();
+    // Cards lie on a label sooner than on each other; without a place for all of them, the oldest goes.
+    while (!this.fits_(element, covered) && !this.fits_(element, []) && this.shown_.size > 1) this.remove(this.shown_.keys().next().value!);
+  }
+
+  /** Puts a card in the first stack where it lies on no other card and on none of the boxes; whether there is one. Without one it is at the top. */
+  private fits_(element: HTMLElement, covered: readonly DOMRect[]): boolean {
     const isFree = (spot: (typeof spots)[number]) => {
       this.stacks_.get(spot)!.append(element);
       const { left, right, top, bottom } = element.getBoundingClientRect();
-      return bottom <= innerHeight && covered.every((box) => left >= box.right || right <= box.left || top >= box.bottom || bottom <= box.top);
+      const isClear = (box: DOMRect) => left >= box.right || right <= box.left || top >= box.bottom || bottom <= box.top;
+      const cards = [...this.shown_.values()].filter((other) => other !== element).map((other) => other.getBoundingClientRect());
+      return top >= 0 && bottom <= innerHeight && [...covered, ...cards].every(isClear);
     };
-    if (!spots.some(isFree)) this.stacks_.get("top")!.append(element);
+    if (spots.some(isFree)) return true;
+    this.stacks_.get("top")!.append(element);
+    return false;
   }
 
   /** Stacks leave the panel of controls and the bar free, as they are now. */
