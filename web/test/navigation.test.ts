@@ -33,6 +33,14 @@ describe("zooming", () => {
     expect(screen(point).y).toBeCloseTo(pointer[1], 3);
   });
 
+  it("ends before the point under the pointer, however fast the wheel turns", () => {
+    const { camera, navigation, rest } = make();
+    const place = new Vector3(0.2, 1.1, 0.3);
+    for (let turn = 0; turn < 60; turn++) navigation.zoom(0.77, 0.1, 0.05, navigation.depthOf(place.toArray()));
+    rest();
+    expect(place.sub(camera.position).dot(camera.getWorldDirection(new Vector3()))).toBeGreaterThan(0.01 * size);
+  });
+
   it("ends before the scene is passed through or lost from sight", () => {
     const { navigation, screen, rest } = make();
     for (let turn = 0; turn < 100; turn++) navigation.zoom(1.5);

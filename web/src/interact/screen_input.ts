@@ -252,10 +252,7 @@ export class ScreenInput {
   private zoomAt_(factor: number, x: number, y: number, onBody: boolean): void {
     const at = [(x / innerWidth) * 2 - 1, 1 - (y / innerHeight) * 2] as const;
     if (!onBody) return this.navigation_.zoom(factor, ...at);
-    this.camera_.getWorldDirection(this.ray_);
-    const { origin, hit: { point } } = this.mouse;
-    const depth = (point[0] - origin[0]) * this.ray_.x + (point[1] - origin[1]) * this.ray_.y + (point[2] - origin[2]) * this.ray_.z;
-    this.navigation_.zoom(factor, ...at, depth);
+    this.navigation_.zoom(factor, ...at, this.navigation_.depthOf(this.mouse.hit.point));
   }
 
   private wheel_(event: WheelEvent): void {

@@ -195,7 +195,8 @@ export class Navigation {
   zoom(factor: number, x = 0, y = 0, depth = this.goal_.distance): void {
     this.touch_();
     const before = this.goal_.distance;
-    this.goal_.distance = MathUtils.clamp(before * factor, nearest * this.size_, farthest * this.size_);
+    const close = nearest * this.size_;
+    this.goal_.distance = MathUtils.clamp(before * Math.max(factor, Math.min(1, close / depth)), close, farthest * this.size_);
     const share = 1 - this.goal_.distance / before;
     const tangent = Math.tan(MathUtils.degToRad(this.camera_.fov / 2));
     this.axes_(this.goal_);
@@ -204,6 +205,12 @@ export class Navigation {
       .addScaledVector(this.up_, share * y * tangent * depth)
       .addScaledVector(this.direction_, share * (before - depth));
     this.keepNear_();
+  }
+
+  /** How far ahead of the camera a place will be, m, when it has reached its goal; a wheel turns faster than the camera eases. */
+  depthOf(point: ArrayLike<number>): number {
+    const eye = this.eyeOf_(this.goal_, this.eye_);
+    return Math.max(eye.sub(this.way_.fromArray(point)).dot(this.awayOf_(this.goal_, this.direction_)), 1e-9 * this.size_);
   }
 
   /** Advances and places the camera; returns whether it moved. */
