@@ -167,7 +167,7 @@ function makePress(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
 
 /** The least number of digits that distinguishes the slider's values. */
 export function written(value: number, span: number): string {
-  const digits = span > 0 ? Math.min(Math.max(3 - Math.floor(Math.log10(span)), 0), 9) : 3;
+  const digits = span > 0 ? Math.min(Math.max(3 - Math.floor(Math.log10(span)), 0), 100) : 3;
   return String(Number(value.toFixed(digits)));
 }
 
