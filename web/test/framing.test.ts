@@ -51,7 +51,7 @@ function framed(camera: PerspectiveCamera): { test: TestWorld; navigation: Navig
   let size = 1;
   const viewer = {
     camera, get size() { return size; }, stage: { setScene: (__: unknown, radius: number) => void (size = radius) }, invalidate: () => {},
-    renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
+    renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84, right: 0 },
   };
   const framing = new Framing(test.world, viewer as unknown as Viewer, navigation);
   return { test, navigation, framing };
@@ -66,6 +66,15 @@ describe("a fitted view", () => {
         expect(fullness(points, view)).toBeCloseTo(1, 6);
       }
     }
+  });
+
+  it("keeps what is narrower to the right free, and is filled all the same", () => {
+    const points = cloud(1, 3);
+    const narrow = { ...frame, right: 0.3 };
+    const view = fitView(points, 0.4, 0.2, narrow)!;
+    expect(shareOutside(points, { ...view, distance: view.distance * 1.001 }, narrow)).toBe(0);
+    expect(shareOutside(points, { ...view, distance: view.distance * 0.98 }, narrow)).toBeGreaterThan(0);
+    expect(view.distance).toBeGreaterThan(fitView(points, 0.4, 0.2, frame)!.distance);
   });
 
   it("scales with the scene", () => {
@@ -195,7 +204,7 @@ describe("another scene on the same page", () => {
     vi.stubGlobal("innerHeight", 720);
     const test = new TestWorld();
     const viewer = {
-      camera, size: 1, stage: { setScene: vi.fn() }, invalidate: () => {}, renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84 },
+      camera, size: 1, stage: { setScene: vi.fn() }, invalidate: () => {}, renderer: { domElement: { height: 720 } }, presenting: false, filming: false, margins: { bottom: 84, right: 0 },
       resting: false,
     };
     const framing = new Framing(test.world, viewer as unknown as Viewer, new Navigation(camera));

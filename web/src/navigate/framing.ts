@@ -6,6 +6,8 @@ import type { Points } from "../scene/points.ts";
 /** The part of the picture to fill, as tangents of angles from the center: to the side, up and down. */
 export interface Frame {
   readonly side: number;
+  /** To the right, if that is less. */
+  readonly right?: number;
   readonly up: number;
   readonly down: number;
 }
@@ -31,6 +33,7 @@ export function viewAxes(yaw: number, pitch: number): readonly [right: number[],
  * (a, b, c) within its right edge where (z - c) side >= a - x, and so on for each edge: the largest of each decides.
  */
 export function fitView({ xyz, count }: Points, yaw: number, pitch: number, frame: Frame): FittedView | null {
+  const { side, right: edge = side } = frame;
   if (count === 0) return null;
   const [right, up, away] = viewAxes(yaw, pitch);
   let [toRight, toLeft, over, under, front, back] = Array<number>(6).fill(-Infinity);
@@ -39,16 +42,16 @@ export function fitView({ xyz, count }: Points, yaw: number, pitch: number, fram
     const a = right[0] * x + right[2] * z;
     const b = up[0] * x + up[1] * y + up[2] * z;
     const c = away[0] * x + away[1] * y + away[2] * z;
-    toRight = Math.max(toRight, c * frame.side + a);
-    toLeft = Math.max(toLeft, c * frame.side - a);
+    toRight = Math.max(toRight, c * edge + a);
+    toLeft = Math.max(toLeft, c * side - a);
     over = Math.max(over, c * frame.up + b);
     under = Math.max(under, c * frame.down - b);
     front = Math.max(front, c);
     back = Math.max(back, -c);
   }
-  const depth = Math.max((toRight + toLeft) / (2 * frame.side), (over + under) / (frame.up + frame.down), front);
-  const aside = (toRight - toLeft) / 2;
-  // If the width is decisive, the remaining height is divided equally above and below.
+  const depth = Math.max((toRight + toLeft) / (edge + side), (over + under) / (frame.up + frame.down), front);
+  // What remains of the width or the height is divided equally to both sides.
+  const aside = ((toRight - depth * edge) + (depth * side - toLeft)) / 2;
   const height = ((over - depth * frame.up) + (depth * frame.down - under)) / 2;
   const middle = (front - back) / 2;
   const distance = Math.max(depth - middle, 1e-12);
@@ -129,7 +132,7 @@ export function addOutermost(found: Points, points: Points, view: FittedView, fr
   for (let at = 0; at < 3 * points.count; at += 3) {
     const p = [points.xyz[at] - view.pivot[0], points.xyz[at + 1] - view.pivot[1], points.xyz[at + 2] - view.pivot[2]];
     const [a, b, c] = [dot(right, p), dot(up, p), dot(away, p)];
-    const out = [c * frame.side + a, c * frame.side - a, c * frame.up + b, c * frame.down - b];
+    const out = [c * (frame.right ?? frame.side) + a, c * frame.side - a, c * frame.up + b, c * frame.down - b];
     for (let side = 0; side < 4; side++) {
       if (out[side] <= most[side]) continue;
       most[side] = out[side];
@@ -148,7 +151,7 @@ export function shareOutside({ xyz, count }: Points, view: FittedView, frame: Fr
     const a = right[0] * p[0] + right[2] * p[2];
     const b = up[0] * p[0] + up[1] * p[1] + up[2] * p[2];
     const depth = view.distance - (away[0] * p[0] + away[1] * p[1] + away[2] * p[2]);
-    if (depth <= 0 || Math.abs(a) > frame.side * depth || b > frame.up * depth || -b > frame.down * depth) outside++;
+    if (depth <= 0 || a > (frame.right ?? frame.side) * depth || -a > frame.side * depth || b > frame.up * depth || -b > frame.down * depth) outside++;
   }
   return count === 0 ? 0 : outside / count;
 }

@@ -151,10 +151,10 @@ export class Framing implements FramePart, PageListener {
     const { body } = this.world_.entities;
     camera.getWorldPosition(body.eye);
     body.pixels = (renderer.domElement.height * camera.projectionMatrix.elements[5]) / 2;
-    const { margins: { bottom } } = this.viewer_;
-    if ((camera.aspect !== this.aspect_ || bottom !== this.margin_) && !this.viewer_.presenting) {
+    const { margins: { bottom, right } } = this.viewer_;
+    if ((camera.aspect !== this.aspect_ || bottom + right !== this.margin_) && !this.viewer_.presenting) {
       this.aspect_ = camera.aspect;
-      this.margin_ = bottom;
+      this.margin_ = bottom + right;
       this.frame_(false);
     }
     // In real time: a frame that took long is told as a short one.
@@ -411,13 +411,14 @@ export class Framing implements FramePart, PageListener {
     }
   }
 
-  /** The part of the picture without bar and edges, enlarged by the factor `larger`. */
+  /** The part of the picture without bar, panel and edges, enlarged by the factor `larger`. A script's camera is as the script says. */
   private calcFrame_(larger: number): Frame {
-    const { camera } = this.viewer_;
+    const { camera, filming } = this.viewer_;
     const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
-    const bar = this.viewer_.filming ? 0.06 : this.viewer_.margins.bottom / innerHeight;
+    const bar = filming ? 0.06 : this.viewer_.margins.bottom / innerHeight;
     return {
       side: Math.min(0.9 * larger, 1) * up * camera.aspect,
+      right: Math.min((filming || this.world_.settings.hasCamera ? 1 : 1 - (2 * this.viewer_.margins.right) / innerWidth) * larger, 0.9 * larger, 1) * up * camera.aspect,
       up: Math.min(0.88 * larger, 1) * up,
       down: Math.max(Math.min((1 - 2 * bar) * larger, 1), 0.3) * up,
     };

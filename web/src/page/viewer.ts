@@ -59,8 +59,8 @@ export class Viewer {
   /** The place of a headset's user in the world, m: the head, and three numbers for each hand. Null and none before a flat screen. */
   readonly user = { head: null as Vector3 | null, hands: [] as number[] };
 
-  /** Height of the page's own controls at the lower edge, css px: a view is framed above them. */
-  readonly margins = { bottom: 84 };
+  /** Height of the page's own controls at the lower edge, and width of the script's at the right one, css px: a view is framed beside them. */
+  readonly margins = { bottom: 84, right: 0 };
 
   /** Distance from the camera to what it looks at, m. */
   lookDistance: () => number = () => this.stage.size;

@@ -26,6 +26,8 @@ interface ShownPlot {
 
 /** In narrower windows the panel would cover much of the world: it is folded there, and opens at a touch. */
 const roomy = "(min-width: 900px)";
+/** Share of the window's height. */
+const lowest = 0.3;
 
 export class Panel implements FramePart {
   private readonly page_: PanelPage;
@@ -59,6 +61,12 @@ export class Panel implements FramePart {
   private keepAbove_(foot: HTMLElement): void {
     const fit = () => this.root_.style.setProperty("--foot", `${Math.ceil(innerHeight - foot.getBoundingClientRect().top)}px`);
     new ResizeObserver(fit).observe(foot);
+    // A view is framed beside the panel, and under one that is low.
+    new ResizeObserver(() => {
+      const { left, height } = this.root_.getBoundingClientRect();
+      this.page_.viewer.margins.right = height > lowest * innerHeight ? innerWidth - left + 12 : 0;
+      this.page_.viewer.invalidate();
+    }).observe(this.root_);
     window.addEventListener("resize", fit);
     fit();
   }
