@@ -324,6 +324,20 @@ def test_a_plot_samples_by_itself_and_begins_anew_after_reset(run_world: Runner)
         page.wait_for(lambda: page.entities["plot"][0]["times"][-1] < 1)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", [1e39, -1e300, float("inf"), float("nan")])
+def test_a_value_that_is_too_large_for_a_page_is_a_gap_in_its_plot(value: float) -> None:
+    world = iota.World(iota.System(), ground=None)
+    largest = 3.4028234e38
+    plot = world.controls.plot("huge", ["a", "b"])
+    plot.add(0.0, largest, 0.0)
+    plot.add(1.0, 0.0, value)
+    plot.add(2.0, 1.0, -largest)
+    record = plot._record()
+    assert record is not None and record["times"] == [0.0, 2.0]
+    assert np.isfinite(np.asarray(record["values"], "f4")).all()
+
+
 # --- what users do ------------------------------------------------------------------------------------------------------
 
 

@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
+import numpy as np
+
 from iota._protocol import NO_COLOR, WidgetKind
 from iota.arguments import is_number
 from iota.world.callbacks import Guard, Hook
@@ -18,6 +20,7 @@ from iota.world.things import Field, Thing, Things, color, flag, number, text
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 CURVES = ("#2f9d92", "#e8452c", "#3f7fd0", "#f2a324", "#8d6fd1", "#4c9a52")
 MOST_SAMPLES = 400  # of a plot
+LARGEST = float(np.finfo(np.float32).max)  # of the numbers of a page, where a larger one is not finite
 
 
 class Widget(Thing):
@@ -180,7 +183,7 @@ class Plot(Thing):
             raise ValueError(f"this plot has {len(self._functions)} curves, not {len(values)}")
         if self._samples and time < self._samples[-1][0]:
             self._samples.clear()
-        if not self.is_due(time) or not all(map(math.isfinite, values)):
+        if not self.is_due(time) or not all(abs(value) <= LARGEST for value in values):
             return
         self._samples.append((float(time), tuple(map(float, values))))
         while self._samples[0][0] < time - self.seconds:
