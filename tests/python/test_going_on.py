@@ -23,7 +23,7 @@ from iota import _protocol as protocol
 from iota.journal.folder import Folder
 from iota.studies import chain
 from iota.world import going_on, pictures
-from iota.world.clients import Client, Clients
+from iota.world.clients import Client
 from iota.world.options import RunOptions, use
 from iota.world.pictures import Pictures, Portrait
 
@@ -120,7 +120,7 @@ def test_a_process_in_the_background_of_a_terminal_goes_on_without_a_question(
 
 def test_a_page_of_a_host_draws_the_kept_world_now_and_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pictures, "FIRST", 0.0)
-    taken, clients, room = Pictures(), Clients(iota.System()), Asked()
+    taken, clients, room = Pictures(), iota.World(iota.System())._state.clients, Asked()
     portrait = Portrait(tmp_path / "picture.png", taken, clients)
     portrait.look(room)
     assert room.requests == [], "nobody is there"

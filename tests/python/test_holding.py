@@ -13,6 +13,7 @@ from page_client import PageClient
 
 import iota
 from iota import _protocol as protocol
+from iota.world.clients import hand_frequency
 
 Runner = Callable[[iota.World], str]
 
@@ -276,3 +277,61 @@ def test_the_pull_of_a_socket_on_a_plug_of_then_ends_with_a_rewind() -> None:
     assert len(system.bonds) == 0
     world.controls.act("rewind")
     assert len(system.bonds) == 0
+
+
+def cube_in_world(size: float, gravity: float = 9.81) -> tuple[iota.World, iota.Body]:
+    system = iota.System(gravity=(0, -gravity, 0))
+    cube = system.body(shape=iota.Box((size, size, size)), density=500, position=(0, size / 2, 0))
+    world = iota.World(system, ground=0)
+    run(world, 0.2)
+    return world, cube
+
+
+@pytest.mark.parametrize("size", [0.01, 0.03, 0.1, 0.3])
+def test_a_hand_gives_way_under_a_body_by_a_tenth_of_its_size_and_throws_it(size: float) -> None:
+    world, cube = cube_in_world(size)
+    take_up(world, cube, (0, 3 * size, 0), seconds=1.5)
+    heights = []
+    for _ in range(60):
+        run(world, world.dt)
+        heights.append(cube.center_of_mass.y)
+    assert heights[-1] == pytest.approx(3 * size, abs=0.1 * size + 1e-6 if size < 0.3 else 0.05)
+    assert max(heights) - min(heights) < 1e-3 * size, "it hangs still"
+    # The hand goes on sideways at five sizes per second, and opens.
+    speed = 5 * size
+    for step in range(1, 61):
+        hand(world, protocol.GrabMove(1, iota.Vec3(speed * world.dt * step, 3 * size, 0)))
+        run(world, world.dt)
+    hand(world, protocol.GrabEnd(1))
+    assert cube.velocity.x == pytest.approx(speed, rel=0.1) and abs(cube.velocity.z) < 0.01 * speed
+    run(world, 2)
+    assert cube.center_of_mass.y == pytest.approx(size / 2, abs=0.02 * size) and abs(cube.velocity) < 0.01 * speed
+
+
+@pytest.mark.parametrize("size", [1e-3, 0.01, 0.03, 0.1])
+def test_a_hand_that_is_pulled_away_and_pressed_on_the_ground_explodes_nothing(size: float) -> None:
+    world, cube = cube_in_world(size)
+    take_up(world, cube, (0, -10, 0), seconds=1)
+    assert abs(cube.center_of_mass.y - size / 2) < 0.3 * size
+    for target in ((50, 50, 0), (-50, 1, 0), (0, 3 * size, 0)):
+        hand(world, protocol.GrabMove(1, iota.Vec3(*target)))
+        for _ in range(60):
+            run(world, world.dt)
+            assert abs(cube.velocity) < 3, "no faster than a hand that holds a large body"
+    run(world, 2)
+    assert abs(cube.velocity) < 1
+
+
+@pytest.mark.parametrize(("size", "gravity"), [(0.5, 9.81), (2.0, 9.81), (0.01, 0.0), (0.01, 0.05)])
+def test_a_hand_on_what_is_large_or_light_is_as_soft_as_ever(size: float, gravity: float) -> None:
+    world, cube = cube_in_world(size, gravity)
+    assert hand_frequency(cube, world.dt) == 2.5
+
+
+def test_a_hand_on_a_link_is_as_stiff_as_all_that_hangs_on_it_needs() -> None:
+    system = iota.System()
+    links = iota.builder.chain(3, 0.03, top=(0, 2, 0), nailed=False).realize(system).bodies
+    assert hand_frequency(links[0], 1 / 120) > 6
+    long = iota.builder.chain(30, 3, top=(1, 2, 0)).realize(system).bodies
+    assert hand_frequency(long[0], 1 / 120) == 2.5
+    assert hand_frequency(links[0], 1 / 4) == 2.5, "a long step resolves no more"

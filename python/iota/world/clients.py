@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Literal, Protocol
 from iota._core import Body, Grip, System, Vec3
 from iota.saving import replacing
 from iota.simulator import SimulatedGrip
+from iota.world.clock import Clock
 from iota.world.listeners import Listener
 from iota.world.scene import Camera, camera_or_none
 
@@ -18,6 +20,8 @@ TakePicture = Callable[[int, float], bytes]  # client, time limit in s
 SendPulse = Callable[[int, str, float, float], None]  # client, hand, strength, s
 SendCamera = Callable[[int, Camera | None], None]
 LONGEST_PULSE = 5.0  # s
+FREQUENCY, ACCELERATION = 2.5, 60.0  # of the spring of a hand on a large body, Hz, m/s^2
+SAG = 0.1  # of the size of what is held: how far the spring gives way under its weight
 
 
 class Fleeting(Protocol):
@@ -128,11 +132,28 @@ def alive(body: Body | None) -> Body | None:
     return None if body is None else body.survivor
 
 
+def hand_frequency(body: Body, dt: float) -> float:
+    """The frequency of a hand's spring, Hz: under the weight of a small body it gives way by a small part of its size. dt: of a step, s,
+    which resolves no shorter times."""
+    center, part = body.center_of_mass, body.articulate
+    # A grip pulls with at least half of the mass of what hangs on its body, see `Grips::build`.
+    sag = abs(body.system.gravity) * (1 if len(part) == 1 else 2) / (2 * math.pi * FREQUENCY) ** 2
+    size = 2 * body.radius
+    for particle in (particle for each in part for particle in each.particles):
+        size = max(size, 2 * abs(particle.position - center))
+        if sag <= SAG * size:
+            break
+    if sag <= SAG * size or size == 0:
+        return FREQUENCY
+    stiffest = 1 / (2 * math.pi * dt)
+    return max(FREQUENCY, min(FREQUENCY * math.sqrt(sag / (SAG * size)), stiffest))
+
+
 class Clients:
     """The open pages, and their grips. Each holder has a grip of its own, so their forces are added."""
 
-    def __init__(self, system: System) -> None:
-        self._system = system
+    def __init__(self, system: System, clock: Clock) -> None:
+        self._system, self._clock = system, clock
         self.by_id: dict[int, Client] = {}
         self.take_picture: TakePicture | None = None
         self.send_pulse: SendPulse | None = None
@@ -157,9 +178,16 @@ class Clients:
 
     def grip(self, hold: Hold, body: Body, local_point: Vec3, target: Vec3) -> None:
         """Grips a point of a body (body frame). Raises what the system raises if that is not possible."""
-        hold.grip = self._system.grip(body, local_point, target, client=hold.client, hold=hold.number)
-        if isinstance(hold.grip, Grip):
-            self.fleeting.add(hold.grip)
+        whose = {"client": hold.client, "hold": hold.number}
+        held: object = body
+        if not isinstance(held, Body):  # of another simulator, whose hands are its own
+            hold.grip = self._system.grip(body, local_point, target, **whose)
+            return
+        frequency = hand_frequency(body, self._clock.dt)
+        # In proportion, so that a stiffer hand is as fast: it pulls against a damping of its own.
+        limit = ACCELERATION * frequency / FREQUENCY
+        hold.grip = self._system.grip(body, local_point, target, **whose, frequency=frequency, max_acceleration=limit)
+        self.fleeting.add(hold.grip)
 
     def let_go(self, client: Client) -> None:
         for hold in client.holds.values():

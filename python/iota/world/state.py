@@ -44,7 +44,7 @@ class State:
     kept_picture: bytes = b""
 
     def __post_init__(self) -> None:
-        self.clients = Clients(self.system)
+        self.clients = Clients(self.system, self.clock)
         self.history = History(self.system, self.clients)
         self.step_costs = StepCosts(self.costs)
 
