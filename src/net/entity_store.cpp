@@ -39,6 +39,7 @@ void EntityChanges::append(const EntityChanges& later) {
     items_.push_back(item);
   }
   bytes_.insert(bytes_.end(), later.bytes_.begin(), later.bytes_.end());
+  sizes_.insert(sizes_.end(), later.sizes_.begin(), later.sizes_.end());
 }
 
 std::optional<std::uint8_t> entity_kind_of(std::string_view name) {

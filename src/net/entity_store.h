@@ -14,6 +14,7 @@
 #include <span>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace iota::net {
@@ -37,7 +38,10 @@ class EntityChanges {
  public:
   void set(std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record);
   void destroy(std::uint8_t kind, protocol::Id id);
-  bool empty() const { return items_.empty(); }
+  /// How large the body in a slot is drawn, m; 0: not known. Not sent: it decides how exactly its poses are.
+  void set_size(std::uint32_t slot, float size) { sizes_.emplace_back(slot, size); }
+  const std::vector<std::pair<std::uint32_t, float>>& sizes() const { return sizes_; }
+  bool empty() const { return items_.empty() && sizes_.empty(); }
   void append(const EntityChanges& later);
 
   /// visit(kind, id, record): without a record the entity was destroyed.
@@ -54,6 +58,7 @@ class EntityChanges {
   };
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
+  std::vector<std::pair<std::uint32_t, float>> sizes_;
 };
 
 class EntityStore {

@@ -260,7 +260,10 @@ void Hub::deliver() {
   }
   for (const Edit& edit : delivering_) edit();
   delivering_.clear();
-  for (const EntityChanges& changes : delivered_changes_) entities_.apply(changes);
+  for (const EntityChanges& changes : delivered_changes_) {
+    entities_.apply(changes);
+    for (const auto& [slot, size] : changes.sizes()) poses_.set_size(slot, size);
+  }
   delivered_changes_.clear();
   if (!has_newer_poses) return;
   poses_.update(delivered_);

@@ -18,6 +18,15 @@ constexpr double rotation_steps = 1023;
 /// Bodies within this extent are quantized in one box, for any initial extent, m.
 constexpr double least_limit = 64;
 
+/// A step of the box is at most this share of a body's size, so that the error is not seen even where the body fills the
+/// window.
+constexpr double finest_share = 1.0 / 200;
+
+/// More bodies would cost a world with many small ones two thirds more bytes. They bear steps of a larger share, as many
+/// are looked at from afar.
+constexpr std::ptrdiff_t most_exact = 64;
+constexpr double largest_share = 1.0 / 25;
+
 /// Above this a float has no useful resolution, and the box would leave its range, m.
 bool is_finite(const float (&v)[3]) {
   return std::abs(v[0]) <= farthest && std::abs(v[1]) <= farthest && std::abs(v[2]) <= farthest;  // false for NaN
@@ -119,6 +128,26 @@ PoseQuantizer::Bounds PoseQuantizer::bulk_of(std::span<const BodyPose> bodies) {
   return out;
 }
 
+void PoseQuantizer::set_size(std::uint32_t slot, float size) {
+  if (sizes_.size() <= slot) sizes_.resize(slot + std::size_t{1});
+  sizes_[slot] = finite_or_zero(size);
+}
+
+double PoseQuantizer::calc_usual_limit(std::span<const BodyPose> bodies) {
+  sorted_.clear();
+  for (const BodyPose& body : bodies)
+    if (size_of(body.body) > 0) sorted_.push_back(size_of(body.body));
+  if (sorted_.empty()) return std::numeric_limits<double>::infinity();
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  return *middle * finest_share * steps;
+}
+
+bool PoseQuantizer::is_too_small(const BodyPose& body, double share) const {
+  const double size = size_of(body.body);
+  return size > 0 && box_->longest_edge() > size * share * steps;
+}
+
 void PoseQuantizer::set_box(const Bounds& bulk) {
   // A margin for motion, so that the box is kept; the error stays small relative to the scene. Bodies that come
   // together for a moment change the box by at most a factor.
@@ -152,7 +181,9 @@ void PoseQuantizer::fit_box(std::span<const BodyPose> bodies) {
   const bool is_new = !inside;
   if (is_new) {
     inside = bulk_of(bodies);
-    limit_ = std::max(least_limit, 4 * inside->longest_edge());
+    // What would make the box too wide for the bodies in it is sent as far ones, instead of them.
+    limit_ = std::max(2 * inside->longest_edge(),
+                      std::min(std::max(least_limit, 4 * inside->longest_edge()), calc_usual_limit(bodies)));
   }
   bool has_grown = false;
   for (const BodyPose& body : bodies) {
@@ -170,7 +201,7 @@ void PoseQuantizer::add_body(const BodyPose& body) {
   const auto rotation = pack_rotation(body.orientation);
   if (!is_finite(body.position) || !rotation) return;
   // Coincident bodies, or a single one, do not define a size of the scene: they are sent as floats.
-  if (body.body > 0xFFFF || widest_ == 0 || !box_->contains(body.position)) {
+  if (body.body > 0xFFFF || widest_ == 0 || is_too_small(body, share_) || !box_->contains(body.position)) {
     poses_.far_bodies.push_back({body.body, to_vec3(body.position), *rotation});
     return;
   }
@@ -191,6 +222,9 @@ void PoseQuantizer::update(const PoseSnapshot& snapshot) {
   if (std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
                   [](const auto& b) { return is_finite(b.position); })) {
     fit_box(snapshot.bodies);
+    const auto count =
+        std::ranges::count_if(snapshot.bodies, [&](const BodyPose& body) { return is_too_small(body, finest_share); });
+    share_ = count <= most_exact ? finest_share : largest_share;
   }
   poses_.bodies.clear();
   poses_.far_bodies.clear();

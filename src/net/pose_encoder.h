@@ -3,8 +3,9 @@
 //
 // A position takes 3 x 16 bits within a box around the bodies, a rotation 2 + 3 x 10 bits ("smallest three"): 12 bytes
 // a body with its slot. A body far from all others (a falling piece) would enlarge the box and so all errors; it is
-// sent separately with a float position, 20 bytes. Errors: position at most half of box edge / 65535 per axis, rotation
-// at most 5 mrad.
+// sent separately with a float position, 20 bytes, and so is one that is too small for the steps of the box. Errors:
+// position at most half of box edge / 65535 per axis, and 1/400 of the size of its body, in a world with many
+// small ones 1/50; rotation at most 5 mrad.
 #pragma once
 
 #include <iota/pose_snapshot.h>
@@ -31,6 +32,8 @@ std::array<float, 3> unpack_position(const protocol::Poses& poses, const protoco
 /// Keeps the box and turns snapshots into frames that list every body.
 class PoseQuantizer {
  public:
+  /// How large the body in a slot is drawn, m; 0: not known.
+  void set_size(std::uint32_t slot, float size);
   /// Bodies and holds that are not finite are left out. No allocation once the sizes have settled.
   void update(const PoseSnapshot& snapshot);
 
@@ -48,14 +51,21 @@ class PoseQuantizer {
   };
   void fit_box(std::span<const BodyPose> bodies);
   Bounds bulk_of(std::span<const BodyPose> bodies);
+  /// The longest edge of a box whose steps are small enough for half of the bodies, m.
+  double calc_usual_limit(std::span<const BodyPose> bodies);
   void set_box(const Bounds& bulk);
+  /// Whether a step of the box is more than a share of a body's size.
+  bool is_too_small(const BodyPose& body, double share) const;
+  float size_of(std::uint32_t slot) const { return slot < sizes_.size() ? sizes_[slot] : 0; }
   void add_body(const BodyPose& body);
 
   protocol::Poses poses_;
   std::optional<Bounds> box_;
   std::uint32_t box_version_ = 0;
-  double widest_ = 0;  ///< longest edge of all bulks so far, m
-  double limit_ = 0;   ///< longest edge that the bodies in the box may span, m
+  double widest_ = 0;         ///< longest edge of all bulks so far, m
+  double share_ = 0;          ///< of a body's size, that a step of the box may be
+  double limit_ = 0;          ///< longest edge that the bodies in the box may span, m
+  std::vector<float> sizes_;  ///< by slot, m
   std::vector<float> sorted_;
 };
 

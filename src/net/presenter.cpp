@@ -133,6 +133,18 @@ std::pair<Vec3, Box> box_around(const Mesh& mesh) {
   return {0.5 * (low + high), Box{high - low}};
 }
 
+/// About the longest extent of what a visual draws, m; 0 if that is not known.
+float extent_of(const std::vector<protocol::Part>& parts) {
+  float extent = 0;
+  for (const protocol::Part& part : parts) {
+    float own = size(2 * radius_of(part.shape));
+    for (const float length : part.shape.sizes) own = std::max(own, length);
+    for (const float coordinate : part.shape.vertices) own = std::max(own, 2 * std::abs(coordinate));
+    if (own > 0) extent = std::max(extent, own + 2 * std::hypot(part.offset[0], part.offset[1], part.offset[2]));
+  }
+  return extent;
+}
+
 /// Parts with a length are as long as a rod, on whose line they belong: with unequal masses its middle is not at its
 /// center of mass. The place is rounded, so that equal rods share a visual.
 std::vector<protocol::Part> on_line(std::vector<protocol::Part> parts, const DrawnBody& body) {
@@ -293,6 +305,9 @@ void Presenter::present_body(const DrawnBody& body, const NameOf& name_of) {
                             color_of(body, is_assigned),
                             name_of ? fit_text(name_of(body.id), max_name) : std::string()},
        is_other);
+  out_.set_size(slot, length > 0                      ? size(length)
+                      : visual != protocol::no_visual ? visuals_by_slot_[visual]->second.size
+                                                      : 0.0F);
   if (drawn.visual != protocol::no_visual) release_visual(drawn.visual);
   drawn = {body.id, visual};
 }
@@ -434,6 +449,7 @@ std::uint32_t Presenter::use_visual(std::string_view name, const std::vector<pro
       free_visuals_.pop_back();
       visuals_by_slot_[known->second.slot] = known;
     }
+    known->second.size = extent_of(parts);
     tell(known->second.slot, std::move(visual));
   }
   ++known->second.uses;

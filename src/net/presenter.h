@@ -67,6 +67,7 @@ class Presenter {
   /// A visual as viewers were told.
   struct Visual {
     std::uint32_t slot = 0, uses = 0;
+    float size = 0;  ///< of what is drawn, m
   };
 
   /// Sends an entity unless it is unchanged. A new thing in a slot gets a new generation.

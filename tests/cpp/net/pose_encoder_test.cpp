@@ -224,6 +224,64 @@ TEST(PoseEncoder, positions_are_as_exact_in_a_molecule_as_in_a_valley) {
   }
 }
 
+/// Drawn errors of the first bodies, m.
+double worst_error(const protocol::Poses& poses, const PoseSnapshot& snapshot, std::size_t count) {
+  double worst = 0;
+  const auto compare = [&](std::uint32_t body, const auto& found) {
+    for (std::size_t k = 0; body < count && k < 3; ++k)
+      worst = std::max<double>(worst, std::abs(found[k] - snapshot.bodies[body].position[k]));
+  };
+  for (const auto& body : poses.bodies) compare(body.body, unpack_position(poses, body));
+  for (const auto& body : poses.far_bodies) compare(body.body, body.position);
+  return worst;
+}
+
+TEST(PoseEncoder, bodies_beside_one_far_away_are_exact_to_a_small_part_of_their_size) {
+  for (const float away : {10.0F, 100.0F, 1e3F, 1e5F}) {
+    for (const std::uint32_t count : {3U, 30U, 60U}) {
+      Receiver receiver;
+      PoseSnapshot snapshot = hanging_chain(count);
+      for (std::uint32_t i = 0; i < count; ++i) receiver.quantizer.set_size(i, 0.1F);
+      for (std::uint32_t i = count; i < count + 8; ++i) {
+        snapshot.bodies.push_back(make_pose(i, away, 0, static_cast<float>(i)));
+        receiver.quantizer.set_size(i, 20);
+      }
+      EXPECT_LE(worst_error(receiver.next(snapshot), snapshot, count), 0.1 / 400) << away << " m, " << count;
+    }
+  }
+}
+
+TEST(PoseEncoder, bodies_far_from_the_ground_are_as_exact_as_floats) {
+  for (const float away : {1e3F, 1e5F, 1e6F}) {
+    Receiver receiver;
+    PoseSnapshot snapshot;
+    snapshot.bodies = {make_pose(0, away, 0.5F, away), make_pose(1, away + 2, 0.5F, away), make_pose(2, 0, 0, 0)};
+    for (std::uint32_t i = 0; i < 2; ++i) receiver.quantizer.set_size(i, 1);
+    EXPECT_EQ(worst_error(receiver.next(snapshot), snapshot, 2), 0) << away << " m";
+  }
+}
+
+TEST(PoseEncoder, a_piece_that_rolls_away_leaves_small_bodies_in_their_box) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(300);
+  for (BodyPose& body : snapshot.bodies) {
+    for (float& x : body.position) x *= 0.1F;
+    receiver.quantizer.set_size(body.body, 0.01F);
+  }
+  EXPECT_EQ(receiver.next(snapshot).bodies.size(), 300U);
+  snapshot.bodies[299].position[0] = 50;
+  const auto poses = receiver.next(snapshot, true);
+  EXPECT_EQ(poses.bodies.size(), 299U);
+  EXPECT_EQ(poses.far_bodies.size(), 1U);
+}
+
+TEST(PoseEncoder, many_small_bodies_stay_in_the_box_of_their_world) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(2000);
+  for (std::uint32_t i = 0; i < 2000; ++i) receiver.quantizer.set_size(i, i == 0 ? nan_value : 0.2F);
+  EXPECT_EQ(receiver.next(snapshot).bodies.size(), 2000U);
+}
+
 TEST(PoseEncoder, a_single_body_is_exact_at_any_size) {
   Receiver receiver;
   PoseSnapshot snapshot;

@@ -65,6 +65,16 @@ TEST(Presenter, tells_each_thing_once_until_it_changes) {
   EXPECT_EQ(second.generation.at("nail"), first.generation.at("nail"));
 }
 
+TEST(Presenter, knows_how_large_a_body_is_drawn) {
+  System system;
+  const BodyId box = system.bodies().create(Shape(Box{{0.1, 0.3, 0.2}}));
+  Presenter presenter;
+  const auto sizes = presenter.present(system.viewer().take_scene_changes()).sizes();
+  ASSERT_EQ(sizes.size(), 1U);
+  EXPECT_EQ(sizes[0].first, box.slot);
+  EXPECT_FLOAT_EQ(sizes[0].second, 0.3F);
+}
+
 TEST(Presenter, reports_a_destroyed_entity_once_and_its_slot_gets_another_generation) {
   Presenter presenter;
   const Told first(presenter.present(one_of_each(true)));
