@@ -513,7 +513,7 @@ void Contacts::drop(Model& model, std::uint32_t particle) { end(model, model.par
 
 void Contacts::absorb(Model& model, std::uint32_t q, std::uint32_t) { drop(model, q); }
 
-// Those of the step at hand get the new basis in `prepare`: of two boxes between which a bond was made, the places that it holds
+// Contacts of the step at hand get the new basis in `prepare`: of two boxes between which a bond was made, the places that it holds
 // became unknowns after their contacts had been found, and a weak spring drew one into the other within a step.
 void Contacts::inertia_changed(Model& model, std::uint32_t body) {
   end_if(model, body, false, [&](const Contact& c) { return !is_of_next_step(model, c); });

@@ -181,7 +181,7 @@ void PoseQuantizer::fit_box(std::span<const BodyPose> bodies) {
   const bool is_new = !inside;
   if (is_new) {
     inside = bulk_of(bodies);
-    // What would make the box too wide for the bodies in it is sent as far ones, instead of them.
+    // Bodies that would make the box too wide for the others are sent as far ones, instead of those.
     limit_ = std::max(2 * inside->longest_edge(),
                       std::min(std::max(least_limit, 4 * inside->longest_edge()), calc_usual_limit(bodies)));
   }

@@ -50,7 +50,7 @@ export function fitView({ xyz, count }: Points, yaw: number, pitch: number, fram
     back = Math.max(back, -c);
   }
   const depth = Math.max((toRight + toLeft) / (edge + side), (over + under) / (frame.up + frame.down), front);
-  // What remains of the width or the height is divided equally to both sides.
+  // The rest of the width or the height is divided equally to both sides.
   const aside = ((toRight - depth * edge) + (depth * side - toLeft)) / 2;
   const height = ((over - depth * frame.up) + (depth * frame.down - under)) / 2;
   const middle = (front - back) / 2;

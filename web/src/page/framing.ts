@@ -37,7 +37,7 @@ const widestCircle = 3;
 const few = 0.1;
 /** A followed scene has room to move in. */
 const followDistance = 1.6;
-/** What has stayed in the middle of the picture for so long is not followed any more, s. */
+/** A thing that has stayed in the middle of the picture for so long is not followed any more, s. */
 const followSeconds = 0.5;
 /** In s: from then on a thing that is far away has gone there. */
 const goneAfter = 5;
