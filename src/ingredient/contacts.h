@@ -71,6 +71,7 @@ struct Contact : model::Ends {
 /// are solved together; one of them may be static.
 class Contacts : public NoAnswers {
  public:
+  static constexpr bool ties_by_contact = true;
   struct Tables {
     model::EndTable<Contact, Id<"contact">> contacts;  ///< the ends are bodies
     std::uint64_t restores = 0;                        ///< of this model; not saved

@@ -86,7 +86,7 @@ struct NoAnswers {
   /// visit(body): of the bodies that it joins with a particle's body in one articulate, as hinges do.
   static void visit_joined(const Model&, std::uint32_t /*particle*/, Visit) {}
   /// visit(body): of the bodies that must be solved together with a particle's body, by constraints or by forces.
-  static constexpr bool ties_rigidly = false;
+  static constexpr bool ties_rigidly = false, ties_by_contact = false;
   static void visit_tied(const Model&, std::uint32_t /*particle*/, Visit) {}
   static bool ties_any(const Model&) { return false; }
   static bool ties_to_world(const Model&, std::uint32_t /*body*/) { return false; }  ///< by a constraint
@@ -228,6 +228,7 @@ concept ModelIngredient = requires(
   { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
   I::visit_joined(seen, slot, visit);
   { I::ties_rigidly } -> std::convertible_to<bool>;
+  { I::ties_by_contact } -> std::convertible_to<bool>;
   I::visit_tied(seen, slot, visit);
   { I::ties_any(seen) } -> std::same_as<bool>;
   { I::ties_to_world(seen, slot) } -> std::same_as<bool>;

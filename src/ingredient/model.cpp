@@ -31,7 +31,8 @@ Vec3 Model::acting_gravity() const {
 
 void Model::visit_tied(std::uint32_t particle, Ties ties, Visit visit) const {
   for_each_ingredient([&]<class I>() {
-    if (ties == Ties::all || I::ties_rigidly) I::visit_tied(*this, particle, visit);
+    const bool counts = ties == Ties::all || (ties == Ties::but_contacts && !I::ties_by_contact);
+    if (counts || I::ties_rigidly) I::visit_tied(*this, particle, visit);
   });
 }
 

@@ -65,10 +65,14 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   /// The acceleration of all masses: gravity, unless an active field replaces it.
   Vec3 acting_gravity() const;
 
-  enum class Ties { all, constraints };
+  enum class Ties { all, but_contacts, constraints };
   /// The bodies of one problem: those of the articulates of `bodies` and of all articulates tied to those by
-  /// constraints and (if `ties` is all) implicit forces. In order of discovery.
+  /// constraints and, unless `ties` excludes them, implicit forces and contacts. In order of discovery.
   std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies, Ties ties = Ties::all) const;
+  /// The same, without bodies that only touch.
+  std::vector<std::uint32_t> connected_bodies(std::span<const std::uint32_t> bodies) const {
+    return tied_bodies(bodies, Ties::but_contacts);
+  }
   bool has_ties() const;                            ///< between any articulates
   bool is_tied_to_world(std::uint32_t body) const;  ///< by an active constraint
   /// visit(body): of the bodies tied to a particle's body, except those of its articulate.

@@ -208,6 +208,35 @@ def box_on_ground() -> tuple[iota.World, iota.Body]:
     return world, box
 
 
+@pytest.mark.parametrize("mode", ["energy_keeping", "robust"])
+def test_a_hand_on_a_small_body_has_not_the_strength_for_a_large_one_beside_it(mode: Any) -> None:
+    """It pulled 50 g with the strength for half of the 400 kg that they touched."""
+    system = iota.System(mode=mode)
+    system.usual_material = iota.Material(friction=0)
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    system.body(shape=iota.Box((1, 1, 1)), mass=400, position=(-0.55, 0.5, 0))
+    small = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=0.05, position=(0, 0.05, 0))
+    for _ in range(5):
+        system.step(1 / 120)
+    system.grip(small, target=small.position + iota.Vec3(10, 0, 0), max_acceleration=60)
+    system.step(1 / 120)
+    assert 60 < 120 * small.velocity.x < 3.5 * 60, "its damping takes some of five times as much"
+
+
+def test_a_hand_lifts_a_tray_with_ten_times_its_weight_on_it() -> None:
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.5)
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    tray = system.body(shape=iota.Box((0.5, 0.02, 0.4)), mass=0.5, position=(0, 0.01, 0))
+    load = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=5, position=(0, 0.12, 0))
+    for _ in range(10):
+        system.step(1 / 60)
+    system.grip(tray, target=(0, 0.3, 0))
+    for _ in range(120):
+        system.step(1 / 60)
+    assert tray.position.y > 0.15 and load.position.y == pytest.approx(tray.position.y + 0.11, abs=1e-3)
+
+
 @pytest.mark.parametrize("lets_go_first", [False, True])
 def test_a_hand_of_then_does_not_come_back_with_a_rewind(lets_go_first: bool) -> None:
     world, box = box_on_ground()
