@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from test_study_capstan import build
 
@@ -45,3 +47,22 @@ def test_a_rope_that_slides_over_a_beam_takes_eleven_iterations() -> None:
     reports = [world.step() for _ in range(round(0.6 / world.dt))]
     iterations = [report.iterations_max for report in reports if report is not None]
     assert np.mean(iterations) < 14, "19 with contacts that are hard from the start"
+
+
+def test_a_chain_of_torus_links_under_a_thousand_times_their_mass_is_never_left_to_sweeps() -> None:
+    """Its first step takes some 50 iterations: a limit of 30 left it to sweeps, in which it came apart."""
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.3)
+    radius, tube, count = 0.04, 0.005, 32
+    pitch = 2 * (radius - tube)
+    shape = iota.Torus(radius, tube)
+    places = [(0, -pitch * k, 0) for k in range(count)]
+    links = [
+        system.body(shape=shape, density=7800, position=place, orientation=("y", 90 * (k % 2)))
+        for k, place in enumerate(places)
+    ]
+    links[0].kind, links[0].material = "static", system.usual_material
+    links[-1].particle(links[-1].position, mass=999 * links[-1].mass)
+    reports = [system.step(1 / 60) for _ in range(30)]
+    assert sum(report.approximate + report.unconverged for report in reports) == 0
+    assert all(abs(a.position.y - b.position.y - pitch) < 1e-6 for a, b in pairwise(links))
