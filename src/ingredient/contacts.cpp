@@ -70,24 +70,6 @@ void take_basis(Contact& c, const model::Body& p, const model::Body& q) {
 bool has_world_plane(const Contact& c) { return c.point_count == c.of_p; }
 bool has_world_point(const Contact& c) { return c.of_p == 0; }
 
-/// The turn of a body in the first half of a step of the mid-point rule, by tan(w h/2).
-class HalfTurn {
- public:
-  HalfTurn(const Vec3& spin, double h) : tangent_(0.5 * h * norm(spin)), axis_(spin) {
-    if (tangent_ > 0) axis_ = (1 / norm(spin)) * spin;
-  }
-  /// The place now of the point of the body that will be at `arm` in the middle of the step. It is a little further out, so
-  /// that its chord is as long as the way that the body rolls in this time: else what rolls slips by w^2 h^2/8 of it.
-  Vec3 back(const Vec3& arm) const {
-    const Vec3 along = dot(axis_, arm) * axis_, across = arm - along;
-    return along + across - tangent_ * cross(axis_, across);
-  }
-
- private:
-  double tangent_;
-  Vec3 axis_;
-};
-
 /// The place of p or of q in one of the first two arms.
 Vec3 place_of(const Model& model, const Contact& c, Arm arm, bool of_q) {
   const double sign = of_q ? -1 : 1;
@@ -227,14 +209,14 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   Places places;
   places.center = t.center;
   places.origin = is_round ? t.origin : t.center - (t.gap + t.radius) * t.normal;
-  places.point = t.center + HalfTurn(spin_p, h).back(t.place - t.center);
+  places.point = t.center + solver::arm_before(0.5 * h * spin_p, t.place - t.center);
   // If the gap closes in this step, the two points are at one place in its middle.
   places.other_point = t.place - 0.5 * t.gap * t.normal;
   places.set_center(c, sides);
   if (!has_world_plane(c)) {  // the point of q that touches in the middle of the step
     const Vec3 closing = relative_velocity(model, c), along = closing - dot(closing, t.normal) * t.normal;
     if (is_round)
-      places.other_point = t.origin + HalfTurn(spin_q, h).back(places.other_point - t.origin) +
+      places.other_point = t.origin + solver::arm_before(0.5 * h * spin_q, places.other_point - t.origin) +
                            (0.5 * h * (t.radius - c.ball) / t.radius) * along;
     else
       places.other_point += 0.5 * h * along;
@@ -285,9 +267,9 @@ void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Re
     c.carried = rolls || spins ? push : 0;
     if (!rolls && !spins) continue;
     const Vec3 &spin_p = motion.spins[c.p != first], &spin_q = motion.spins[c.p == first];
-    const HalfTurn turn_of_p(spin_p, motion.h), turn_of_q(spin_q, motion.h);
+    const Vec3 turn_of_p = 0.5 * motion.h * spin_p, turn_of_q = 0.5 * motion.h * spin_q;
     if (spins) {
-      c.spinner = turn_of_p.back(c.first), c.spin_second = turn_of_q.back(c.second);
+      c.spinner = solver::arm_before(turn_of_p, c.first), c.spin_second = solver::arm_before(turn_of_q, c.second);
       c.spinning = by.spinning * radius;
     }
     if (!rolls) continue;
@@ -298,8 +280,9 @@ void resist_turning(Model& model, std::span<const std::uint32_t> slots, const Re
       along = cross(Contacts::place(model, model.contacts[slots[1]]) - Contacts::place(model, c), c.normal);
     c.roll_first = unit_or(along - dot(along, c.normal) * c.normal, c.first),
     c.roll_second = cross(c.normal, c.roll_first);
-    c.roller = turn_of_p.back(c.normal);
-    c.roll_first = turn_of_q.back(c.roll_first), c.roll_second = turn_of_q.back(c.roll_second);
+    c.roller = solver::arm_before(turn_of_p, c.normal);
+    c.roll_first = solver::arm_before(turn_of_q, c.roll_first),
+    c.roll_second = solver::arm_before(turn_of_q, c.roll_second);
     c.rolling = by.rolling * radius;
   }
 }

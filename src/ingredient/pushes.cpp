@@ -119,7 +119,7 @@ void Pushes::load_parts_by_velocity(const Model& model, const IslandNodes& nodes
   }
 }
 
-// They act on until `end_step`: an island may take the step in parts. Ended here, a brake that was pressed on a fast disc had a
+// Pushes act on until `end_step`: an island may take the step in parts. Ended here, a brake that was pressed on a fast disc had a
 // tenth of its force.
 void Pushes::store(Model& model, const IslandNodes& nodes, double h, const Problem& problem) const {
   if (!model.torques.is_empty())

@@ -135,7 +135,7 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
           " is a half-space or an open mesh, which has no mass, so that what is combined with it cannot move; "
           "make it static or scripted first");
   const double damping = damping_of_union(model, a, b);
-  // Not that of what touches nothing, if the first one touches by the usual material: it would fall through the floor.
+  // The material of what touches nothing is not taken by what touches by the usual one: that would fall through the floor.
   if (!model.materials.has(a) && model.materials.has(b) && (model.material(b) || !model.material(a))) {
     const Material material = model.materials.at(b);
     model.materials.make(a) = material;

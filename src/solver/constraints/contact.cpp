@@ -42,8 +42,6 @@ class RigidPoints {
       weights[0] -= weights[k + 1];
     }
   }
-  /// An arm now that will be `arm` after h seconds, a little longer: its chord is as long as the way that it rolls.
-  Vec3 back(const Vec3& arm, double h) const { return arm - h * cross(spin_, arm); }
 
  private:
   Vec3 first_, duals_[3], spin_;
@@ -70,7 +68,7 @@ void ContactConstraint::begin_part(const Vec3* x, const Vec3* v, double start, d
   Vec3 turning, run = along;
   if (first_turns) {
     const RigidPoints first(nodes.data(), x, v);
-    first.weigh(center + first.back(-ball * normal, h / 2), 1, weights[place_arm].data());
+    first.weigh(center + arm_before(0.5 * h * first.spin(), -ball * normal), 1, weights[place_arm].data());
     turning += first.spin();
   }
   if (second_turns) {
@@ -78,7 +76,7 @@ void ContactConstraint::begin_part(const Vec3* x, const Vec3* v, double start, d
     Vec3 place = center - (ball + 0.5 * gap) * normal;
     if (is_round) {
       const Vec3 origin = center - d;
-      place = origin + second.back(place - origin, h / 2) + (0.5 * h * other_ball / radius) * along;
+      place = origin + arm_before(0.5 * h * second.spin(), place - origin) + (0.5 * h * other_ball / radius) * along;
       run = (other_ball / radius) * along - other_ball * cross(second.spin(), normal);
     } else {
       place += 0.5 * h * along;

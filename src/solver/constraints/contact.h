@@ -8,6 +8,10 @@
 
 namespace iota::solver {
 
+/// The arm now of a point that will be at `arm` when its body has turned, by less than a radian or so. turn: rad. It is a little
+/// longer, so that its chord is as long as the way that the body rolls in this time: else what rolls slips by turn^2/2 of it.
+inline Vec3 arm_before(const Vec3& turn, const Vec3& arm) { return arm - cross(turn, arm); }
+
 /// A place of a body against a plane of another body or of the world, or two round things, with Coulomb friction.
 ///   arms        0: center of what touches - origin of the plane;  1: point that touches - the other body's point there;
 ///               2: normal, towards the first body; of round things the unit axis along which they may slide, or zero
@@ -38,8 +42,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   bool never_slips = false;                      ///< while a solution is searched
   double share = 1;                              ///< of the step, for which the compliances are
   double reference = 1;
-  double pivots[2] =
-      {};  ///< rates of the tangential rows at the end of a (sub-)step in which they stick, see rate_of, m/s
+  double pivots[2] = {};       ///< rates of the tangential rows that stick at the end of a (sub-)step, see rate_of, m/s
   double from = 0, to = 1;     ///< that (sub-)step, as fractions of the step: see begin_part
   double ball = 0;             ///< how far the point of the first body is from the center, against the normal, m
   std::uint32_t of_first = 0;  ///< the number of nodes of the first body
