@@ -36,7 +36,12 @@ void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& r
   put_to_rest(model);
 }
 
+// What joins in the midst of a step is in no list of bodies to wake: one that slept moved on as a sleeper, whose outline stayed behind.
 void Island::look_whether_still(const Model& model) {
+  const auto has = [&](BodyKind kind) {
+    return std::ranges::any_of(nodes_.bodies, [&](std::uint32_t b) { return model.bodies[b].kind == kind; });
+  };
+  to_wake_ = to_wake_ || (has(BodyKind::resting) && has(BodyKind::dynamic));
   is_still_ = idle_ ? !is_driven(model) : is_asleep(model) && !to_wake_;
   book_epoch_ = 0;
 }

@@ -679,11 +679,27 @@ void ContactFinder::list_contacts_of(const model::Model& model, std::span<const 
   ingredient::sort_unique(contacts_);
 }
 
+// What was asleep when the step began has only contacts. Without them a tower that a ball wakes fell into itself for a step.
+void ContactFinder::add_pairs_of_woken(const model::Model& model) {
+  const std::size_t known = pairs_.size();
+  for (const std::uint32_t slot : contacts_) {
+    const ingredient::Contact& c = model.contacts[slot];
+    const Pair pair{c.p, c.q};
+    if (!c.is_off && !std::binary_search(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(known), pair))
+      pairs_.push_back(pair);
+  }
+  if (pairs_.size() == known) return;
+  std::ranges::sort(pairs_);
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+}
+
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,
                                                std::span<const std::uint32_t> bodies, double left, const Part& which) {
   const std::size_t most_parts = std::max<std::size_t>(2, most_in_parts / bodies.size());
   shortest_ = step_ / static_cast<double>(std::min<std::size_t>(most_parts, Heap::most_sub_steps));
   begin_look(model, left, false);
+  list_contacts_of(model, bodies);
+  add_pairs_of_woken(model);
   list_pairs_of(model, outlines, bodies);
   double part = left;
   if (which.may_cut)
@@ -694,7 +710,6 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
   if (left - part < least * step_) part = left;  // the rest is round-off
   h_ = part, fall_ = part * norm(model.acting_gravity());
   known_.forget();
-  list_contacts_of(model, bodies);
   ingredient::Contacts::begin_part(model, contacts_, which.is_first);
   for (const auto& [pair, meeting, apart] : listed_) {
     if (!(apart < part)) continue;

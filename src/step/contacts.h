@@ -120,6 +120,7 @@ class ContactFinder {
   contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
   void list_pairs_of(const model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies);
   void list_contacts_of(const model::Model&, std::span<const std::uint32_t> bodies);
+  void add_pairs_of_woken(const model::Model&);
 
   contact::TouchFinder touches_;
   contact::ApproachFinder approaches_{touches_};
