@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/active_set.h"
 
+#include "base/slack.h"
 #include "solver/row_equation.h"
 
 #include <algorithm>
@@ -110,9 +111,11 @@ ConeState ActiveSet::choose_state(const ConstraintPool<C>& pool, std::size_t k, 
   return stage.is_projection() && next.mode != ConeState::Mode::open ? ConeState{ConeState::Mode::slips, 1} : next;
 }
 
-void ActiveSet::begin(Problem& problem, const Stage& stage) {
+void ActiveSet::begin(Problem& problem, const Stage& stage, const Vec3* x) {
   fewest_wrong_ = std::numeric_limits<int>::max(), stalled_ = 0;
   softening_ = 0, has_softened_ = false, followed_ = 0;
+  has_many_cones_ = stage.is_heap && problem.pool_of<ContactConstraint>().items.size() > few_cones;
+  if (has_many_cones_) reserve_for_rare_use(changes_, problem.multiplier_count());
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
@@ -137,6 +140,21 @@ void ActiveSet::begin(Problem& problem, const Stage& stage) {
       }
     }
   });
+  close_touching(problem, stage, x);
+}
+
+void ActiveSet::close_touching(Problem& problem, const Stage& stage, const Vec3* x) {
+  if (stage.begins_softly || stage.is_projection() || !problem.has_used<ContactConstraint>()) return;
+  auto& pool = problem.pool_of<ContactConstraint>();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const std::size_t normal = k * ContactConstraint::rows;
+    const double little = stage.tolerance * pool.items[k].reference_length();
+    if (pool.states.cone(normal).mode != ConeState::Mode::open || std::abs(pool.states.start(normal)) > little)
+      continue;
+    double g[ContactConstraint::rows];
+    pool.value(k, x, stage.fraction, g);
+    if (std::abs(g[0]) <= little) set_cone(pool, k, {});
+  }
 }
 
 // With the force of the step before, resistance went on with that of an impact, a hundred times the weight, and in flight.
@@ -171,11 +189,22 @@ int ActiveSet::count_met(const Problem& problem) {
   return count;
 }
 
+template <class C>
+void ActiveSet::note(ConstraintPool<C>& pool, std::size_t k, int first, int count) {
+  if (!has_many_cones_) return;
+  for (int r = first; r < first + count; ++r) {
+    RowStates::Row& row = pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)];
+    double& multiplier = pool.multiplier(k)[r];
+    changes_.push_back({&row, row, &multiplier, multiplier});
+  }
+}
+
 bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   constexpr int before_softening = 1, patience = 6;
   constexpr std::int8_t to_slip = 4;
   const bool one_only = stalled_ > patience;
   has_changed_cones_ = false;
+  changes_.clear();
   int wrong = 0;
   bool changed = false;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -185,6 +214,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
         const ConeState now = pool.states.cone(k * C::rows), next = choose_state(pool, k, problem, stage, x);
         if (now == next) continue;
         has_changed_cones_ = true;
+        note(pool, k, 0, C::rows);
         std::int8_t& slips_on = pool.states.rows_[k * C::rows].slips_on;
         if (now.mode == ConeState::Mode::sticks && next.mode == ConeState::Mode::open) slips_on = to_slip;
         if (slips_on > 0 && now.slips() && next.mode == ConeState::Mode::sticks) {
@@ -192,7 +222,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
           continue;
         }
         ++wrong;
-        if (one_only && changed) continue;
+        if (one_only && changed && !has_many_cones_) continue;
         set_cone(pool, k, next), changed = true;
         if (next.mode == ConeState::Mode::open) std::fill_n(pool.multiplier(k), C::rows, 0.0);
         continue;
@@ -230,6 +260,7 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
         if (side == state.side) continue;
         ++wrong;
         if (one_only && changed) continue;
+        note(pool, k, r, 1);
         state.side = static_cast<std::int8_t>(side), changed = true;
         if (side != 0) lambda[r] = side < 0 ? bounds.lower : bounds.upper;
       }
@@ -244,6 +275,16 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
     return true;
   }
   return changed;
+}
+
+void ActiveSet::take_back() {
+  for (const Change& change : changes_) *change.row = change.row_before, *change.multiplier = change.multiplier_before;
+}
+
+int ActiveSet::times_for_sides(const Stage& stage) const {
+  if (!has_changed_cones_) return NewtonSettings::more_for_sides;
+  if (has_many_cones_) return 1;
+  return stage.begins_softly && stage.is_mid_point() ? NewtonSettings::more_for_cones : NewtonSettings::more_for_sides;
 }
 
 void ActiveSet::soften_cones(Problem& problem, double by) {

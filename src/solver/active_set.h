@@ -5,23 +5,33 @@
 #include "solver/stage.h"
 
 #include <span>
+#include <vector>
 
 namespace iota::solver {
 
 /// The sides of rows with bounds (RowLaw): at a bound, or free. A primal-dual active set (Hintermueller, Ito, Kunisch
 /// 2002): at each iteration a row is at the bound beyond which lambda + g / (natural compliance) lies, or free. All
 /// rows change at once while that reduces the number of wrong ones. Otherwise friction and motors first yield, less and
-/// less; then rows change one at a time, lowest first, which cannot cycle (Judice and Pires 1994). A cone switches as one row does, between its own states. States and multipliers are in
-/// the pools.
+/// less; then rows change one at a time, lowest first, which cannot cycle (Judice and Pires 1994). A cone switches as one row does,
+/// between its own states; many of a heap do so all at once in any case, as one after the other takes as many iterations and may
+/// cycle. States and multipliers are in the pools.
 class ActiveSet {
  public:
-  /// Sets sides from the multipliers of the last step; no other state is kept between steps.
-  void begin(Problem&, const Stage&);
+  /// Sets sides from the multipliers of the last step; no other state is kept between steps. x: the guess of positions. Contacts
+  /// of loose bodies that touch before and after it are closed. If each were open until others push it, a chain of 64 links that
+  /// all fall alike would take 113 iterations in its first step.
+  void begin(Problem&, const Stage&, const Vec3* x);
   /// Switches rows between bounds and free, by positions x and multipliers; returns whether any changed. Rows within
   /// the tolerance do not change.
   bool choose(Problem&, const Stage&, const Vec3* x);
+  /// Undoes the changes of sides and multipliers by the last call of `choose`, of a problem with many cones.
+  void take_back();
   /// Whether the last call of `choose` found a cone in a wrong state.
   bool has_changed_cones() const { return has_changed_cones_; }
+  /// Whether cones change their states all at once in any case; not in machines, whose contacts are softened.
+  bool has_many_cones() const { return has_many_cones_; }
+  /// How many times its usual iterations a solve may take after the last call of `choose`.
+  int times_for_sides(const Stage&) const;
   /// Gives the normals of contacts so many times their compliances, while a solution is sought.
   static void soften_cones(Problem&, double by);
   static constexpr int most_softenings = 6;
@@ -69,11 +79,26 @@ class ActiveSet {
   static ConeState choose_state(const ConstraintPool<C>&, std::size_t item, const Problem&, const Stage&,
                                 const Vec3* x);
 
+  static void close_touching(Problem&, const Stage&, const Vec3* x);
   void soften(Problem&, const Stage&, const Vec3* x);
+
+  /// A row and its multiplier before it changed.
+  struct Change {
+    RowStates::Row* row;
+    RowStates::Row row_before;
+    double* multiplier;
+    double multiplier_before;
+  };
+  /// Notes rows of an item, which are about to change, of a problem with many cones.
+  template <class C>
+  void note(ConstraintPool<C>&, std::size_t item, int first, int count);
+
+  static constexpr std::size_t few_cones = 8;
 
   int fewest_wrong_ = 0, stalled_ = 0, followed_ = 0;
   double softening_ = 0;  // of rate rows, in their natural compliances
-  bool has_softened_ = false, has_changed_cones_ = false;
+  bool has_softened_ = false, has_changed_cones_ = false, has_many_cones_ = false;
+  std::vector<Change> changes_;  // by the last call of `choose`
 };
 
 }  // namespace iota::solver

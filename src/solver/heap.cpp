@@ -24,9 +24,14 @@ bool Heap::find_bodies(const Problem& problem) {
   forces_.find(problem, found_);
   if (forces_.count_between() > problem.items_of<ContactConstraint>().size()) return false;
   pairs_.clear();
+  std::vector<std::uint8_t> is_grounded(found_.all.size(), 0);
+  const auto is_free = [&](std::uint32_t body) { return body != none && !found_.all[body].is_driven; };
   const auto connect = [&](std::uint32_t a, std::uint32_t b) {
-    if (a != b && a != none && b != none && !found_.all[a].is_driven && !found_.all[b].is_driven)
+    if (is_free(a) && is_free(b) && a != b) {
       pairs_.push_back({std::min(a, b), std::max(a, b)});
+    } else if (is_free(a) || is_free(b)) {
+      is_grounded[is_free(a) ? a : b] = 1;
+    }
   };
   for (const ContactConstraint& c : problem.items_of<ContactConstraint>()) {
     const auto nodes = std::span(c.nodes).first(c.count);
@@ -36,6 +41,12 @@ bool Heap::find_bodies(const Problem& problem) {
   ties_.for_each_pair(connect), forces_.for_each_pair(connect);
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  constexpr double few_loops = 1.25;
+  const auto free_bodies =
+      std::count_if(found_.all.begin(), found_.all.end(), [](const Body& b) { return !b.is_driven; });
+  const auto grounded = std::count(is_grounded.begin(), is_grounded.end(), 1);
+  is_tree_ = static_cast<double>(pairs_.size()) + static_cast<double>(grounded) <=
+             few_loops * static_cast<double>(free_bodies);
   find_least_cost();
   constexpr double light = 1.0 / 500;
   const std::vector<double> masses = found_.masses(problem);

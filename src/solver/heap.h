@@ -36,6 +36,9 @@ class Heap {
   bool has_joints() const { return !ties_.are_none(); }
   /// Whether a joint connects bodies of very different masses: sweeps do not hold what hangs on light links.
   bool has_light_joints() const { return has_light_joints_; }
+  /// Whether hardly more pairs touch than there are bodies, as in chains and columns: where each link hangs on the one before,
+  /// sweeps would need as many as the square of their number, and let it go.
+  bool is_tree() const { return is_tree_; }
   bool has_forces() const { return !forces_.are_none(); }
   /// Estimates the multiplications of one factor of the equations of all contacts; not beyond 1e9.
   double cost_of_factor() const;
@@ -73,7 +76,7 @@ class Heap {
   std::vector<Motion> motions_;  // of the bodies, and of the world
   HeapPoints points_;
   std::vector<Grip> grips_;
-  bool has_light_joints_ = false;
+  bool has_light_joints_ = false, is_tree_ = false;
   double least_cost_ = 0;                                       // of a factor
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  // of free bodies that touch, or that a tie connects
 };

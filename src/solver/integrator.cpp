@@ -135,7 +135,7 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
   constexpr double of_joints = 4;  // a blow of a machine may take longer than one of what lies about
   if (may_sweep_) {
-    const double burst = (heap_->has_joints() ? of_joints : 1) * settings.contact_burst();
+    const double burst = (heap_->has_joints() ? of_joints : 1) * settings.contact_burst(heap_->is_tree());
     iterations_left_ = std::min(iterations_left_, most_iterations(burst, cost));
   }
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
@@ -291,7 +291,7 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   const bool waits = swept > 0 && !is_due(swept);
   if (!is_large && !waits) accept_overlaps(problem);  // sweeps push them apart
   const bool is_beyond =
-      is_large || waits || ((swept > 0 || of_closing * cost > settings_.contact_burst()) && is_open());
+      is_large || waits || ((swept > 0 || of_closing * cost > settings_.contact_burst(true)) && is_open());
   if (is_large) is_due_ = true;
   if (is_beyond) ++swept;
   return is_beyond;
@@ -713,6 +713,7 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
   }
   Stage limited = stage;
   limited.iterations_left = iterations_left_;
+  limited.is_heap = may_sweep_ && !heap_->is_tree() && !stage.is_projection();
   const bool is_end_point = !stage.is_mid_point() && !stage.is_projection();
   if (settings_.scheme == Scheme::end_point && is_end_point && !problem.items_of<ContactConstraint>().empty())
     limited.max_iterations = IntegratorSettings::contact_iterations;

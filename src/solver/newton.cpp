@@ -16,6 +16,7 @@ namespace iota::solver {
 namespace {
 
 using Set = NewtonSettings;
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -86,7 +87,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   NewtonReport report;
   bool are_soft = false;
   if (has_laws_) {
-    active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
+    active_set_.begin(problem, stage, x_.data()), active_set_.choose(problem, stage, x_.data());
     are_soft = stage.begins_softly && active_set_.has_changed_cones();
   }
   if (are_soft) ActiveSet::soften_cones(problem, Set::softening);
@@ -98,19 +99,18 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   const bool carries = may_carry && assembly_.has_factors_of(stage);
   bool factor_will_do = carries, served_on = carries;
   int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
+  double limit = no_limit;  // of the residual after a change of sides: that before the step
   while (true) {
     if (has_laws_ && report.iterations > 0) {
-      are_final = !active_set_.choose(problem, stage, x_.data());
+      are_final = !choose_sides(problem, stage, limit);
       if (!are_final) {
         factor_will_do = false;
-        measure(problem, stage);
         for (int more = ActiveSet::most_softenings; more > 0 && !are_final && !(residual_.worst > stage.tolerance);
              --more) {
           are_final = !active_set_.choose(problem, stage, x_.data());  // what yields less may need no other motion
           measure(problem, stage);
         }
-        const bool may_cycle = stage.begins_softly && stage.is_mid_point() && active_set_.has_changed_cones();
-        const int most = (may_cycle ? Set::more_for_cones : Set::more_for_sides) * stage.max_iterations;
+        const int most = active_set_.times_for_sides(stage) * stage.max_iterations;
         most_iterations = std::max(most_iterations, std::min({most_iterations + 1, most, stage.iterations_left}));
       }
     }
@@ -118,6 +118,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
                      !(residual_.worst > stage.tolerance))) {
       ActiveSet::soften_cones(problem, 1);
       are_soft = stuck = factor_will_do = false;
+      limit = no_limit;
       measure(problem, stage);
       continue;
     }
@@ -129,7 +130,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
     if (!(residual_.worst > stage.tolerance) || report.iterations >= most_iterations) break;
     ++report.iterations;
     served_on = factor_will_do;
-    const double before = residual_.worst;
+    const double before = limit = residual_.worst;
     bool on_trial = false;
     if (factor_will_do)
       assembly_.solve();
@@ -158,7 +159,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
       stuck = !is_clamped && (may_carry || !served_on) && before <= nothing();
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step(problem, stage);
-        hessian = Hessian::clamped;
+        hessian = Hessian::clamped, limit = no_limit;
       } else if (!stuck) {
         const int halvings = stretch(problem, stage, before, is_clamped);
         stuck = halvings == Set::max_halvings && !(residual_.worst < before);  // lost
@@ -184,6 +185,20 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
       are_final && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
       (!exact || report.violation <= (stage.is_mid_point() || stage.is_projection() ? closed_gap : strained_gap));
   return report;
+}
+
+// Many contacts change their states at once, for which the step was not made: it may be too long for the new ones. It is shortened
+// until these leave less than was left before it. If nothing helps the whole step is taken.
+bool Newton::choose_sides(Problem& problem, const Stage& stage, double limit) {
+  constexpr int most = Set::halvings_for_sides;
+  for (int halvings = 0;; ++halvings) {
+    const bool have_changed = active_set_.choose(problem, stage, x_.data());
+    if (have_changed) measure(problem, stage);
+    if (!active_set_.has_many_cones() || !have_changed || halvings > most || !(residual_.worst >= limit))
+      return have_changed;
+    active_set_.take_back();
+    scale_step(problem, stage, halvings < most ? 0.5 : std::exp2(most));
+  }
 }
 
 // Halves the step until the residual or the merit falls; returns the number of halvings. Beside a saddle of springs, as
@@ -342,7 +357,7 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
   constexpr int most_rounds = 30;
   NewtonReport report;
   problem.copy_multipliers_to(multipliers_saved_);
-  if (has_laws_) active_set_.begin(problem, stage), active_set_.choose(problem, stage, x_.data());
+  if (has_laws_) active_set_.begin(problem, stage, x_.data()), active_set_.choose(problem, stage, x_.data());
   bool are_final = false;
   for (int round = 0; round < most_rounds && !are_final; ++round) {
     StepEquations equations(*this, problem, stage);

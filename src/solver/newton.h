@@ -112,6 +112,8 @@ class Newton {
   void place(const Problem&, const Stage&);
   void measure(const Problem&, const Stage&);
   bool find_step(const Problem&, const Stage&, Hessian);
+  /// Returns whether any row changed its side. Halves the latest step where they leave `limit` or more.
+  bool choose_sides(Problem&, const Stage&, double limit);
   int stretch(Problem&, const Stage&, double before, bool is_clamped);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool is_balanced() const;

@@ -58,9 +58,11 @@ struct IntegratorSettings {
   double contact_budget = std::numeric_limits<double>::infinity();
   double contact_share = 1;  ///< of this problem
   double part = 1;           ///< of a whole step: sweeps take so many of their sub-steps
-  /// Multiplications for a single step, as blows need more than what follows: eight budgets. Few problems need them at
-  /// the same time, so that each gets more than its share.
-  double contact_burst() const { return 8 * part * std::sqrt(contact_share) * contact_budget; }
+  /// Multiplications for a single step, as blows need more than what follows: four budgets, or eight for what sweeps would let
+  /// go. Few problems need them at the same time, so that each gets more than its share.
+  double contact_burst(bool is_tree) const {
+    return (is_tree ? 8 : 4) * part * std::sqrt(contact_share) * contact_budget;
+  }
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
   /// When all solves of a step have to end, but the last resort's.
@@ -90,7 +92,8 @@ struct NewtonSettings {
   static constexpr double noise = 10;              ///< times the estimate of round-off: the same
   /// A costly factor is used again after an iteration that reduced the residual to this part; then to the second.
   static constexpr double reuse_after = 0.03, reuse_again = 0.1;
-  static constexpr int more_for_sides = 4;  ///< times max_iterations, while bounded rows change sides
+  static constexpr int more_for_sides = 4;      ///< times max_iterations, while bounded rows change sides
+  static constexpr int halvings_for_sides = 6;  ///< of a step after which contacts change states
 
   /// If a solution is sought softly, contacts have so many times their compliance in so many iterations; in the second number
   /// while states change.

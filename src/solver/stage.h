@@ -32,6 +32,8 @@ struct Stage {
   /// The states of contacts are sought where these are soft: see Integrator::try_step.
   bool begins_softly = false;
 
+  bool is_heap = false;  ///< contacts connect loose bodies in loops, which sweeps move if no solution is found
+
   bool is_mid_point() const { return scheme == Scheme::mid_point; }
   bool is_projection() const { return h == 0; }
   /// The compliance of a row is this times sum |G|^2 / m.

@@ -150,6 +150,7 @@ struct OneStop {
   }
   bool is_equation() { return pool<BilinearConstraint>(problem).is_equation(stop, 0); }
   double& multiplier() { return pool<BilinearConstraint>(problem).multiplier(stop)[0]; }
+  void begin() { set.begin(problem, stage, problem.position.data()); }
   bool choose(double height) {
     const Vec3 x{0, height, 0};
     return set.choose(problem, stage, &x);
@@ -159,14 +160,14 @@ struct OneStop {
 TEST(ActiveSet, begins_on_the_sides_that_the_last_multipliers_tell) {
   OneStop open, pushing;
   open.multiplier() = 0, pushing.multiplier() = -5;
-  open.set.begin(open.problem, open.stage), pushing.set.begin(pushing.problem, pushing.stage);
+  open.begin(), pushing.begin();
   EXPECT_FALSE(open.is_equation()) << "a force of zero is its bound";
   EXPECT_TRUE(pushing.is_equation()) << "it pushes: the equation holds";
 }
 
 TEST(ActiveSet, frees_a_row_that_is_passed_and_drops_one_that_would_pull) {
   OneStop one;
-  one.set.begin(one.problem, one.stage);
+  one.begin();
   EXPECT_FALSE(one.choose(0.1)) << "above the stop nothing is to be done";
   EXPECT_TRUE(one.choose(-0.1));
   EXPECT_TRUE(one.is_equation());

@@ -53,7 +53,7 @@ struct Mixture {
     auto& pool = problem.pool_of<FrictionLineConstraint>();
     double* const lambda = pool.multiplier(0);
     lambda[0] = 3, lambda[1] = -2, lambda[2] = (slips ? -0.4 : -0.2) * std::hypot(lambda[0], lambda[1]);
-    ActiveSet().begin(problem, stage);
+    ActiveSet().begin(problem, stage, problem.position.data());
     EXPECT_EQ(pool.is_equation(0, 2), !slips);
   }
   std::vector<Vec3> positions(const Stage& stage) const {
