@@ -60,6 +60,7 @@ class ActiveSet {
     bool can_follow = true;  ///< not if a stop is met, or with a cone
     bool are_new = false;    ///< other ones than before
     bool stop_any = false;   ///< a row became an equation
+    bool jump_any = false;   ///< a motor or brake reaches its speed at once
   };
   /// By positions and velocities, in a step of h seconds: friction and motors slide or have their speed, stops are open or carry.
   static Sides begin_motion(Problem&, double h);

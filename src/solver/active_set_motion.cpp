@@ -61,7 +61,7 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           const double soon = at_once * h * bound * mobility_of(motion, problem, pool.items[k], r);
           const bool jumps = !is_at_rest && !(std::abs(speed) >= soon);  // also where nothing can move
           state.side = static_cast<std::int8_t>(is_at_rest || jumps ? 0 : speed > 0 ? 1 : -1);
-          sides.stop_any = sides.stop_any || jumps;
+          sides.jump_any = sides.jump_any || jumps;
         } else {
           const int open = opening(law);
           const bool touches = open * motion.value[r] <= closed_gap * pool.items[k].reference_length();
@@ -76,6 +76,7 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
       }
     }
   });
+  sides.stop_any = sides.stop_any || sides.jump_any;
   return sides;
 }
 

@@ -109,6 +109,11 @@ void begin_strain(Problem& problem) {
 
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
   const AdvanceReport report = advance_within_limits(problem, h, settings);
+  // What moves has its mean acceleration, too. Corrections of the end-point rule are not by rows.
+  if (problem.end_impulses(report.converged && !report.is_approximate ? h : 0)) {
+    is_instant_ = false;
+    has_corrected_ = has_corrected_ && settings.scheme == Scheme::end_point;
+  }
   // Projections between steps have none. With the deadline of a step that was long ago, each of them was given up at once.
   iterations_left_ = unlimited, settings_.deadline = never;
   return report;
@@ -158,7 +163,8 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
     advance_part(problem, part, by_end_point ? 1 : 0, report);
     damp(problem, part.h / 2, report);
   }
-  if (keeps_offsets_) drop_offsets(problem);
+  if (keeps_offsets_)
+    drop_offsets(problem), (void)problem.end_impulses(0);  // the rows of a conflict push without a measure
   const bool is_unsolved = taken == 0 && !solves_part_;
   const bool is_new = is_unsolved && (is_brief || !is_cut_short_);
   problem.unsolved_steps = is_new || report.is_approximate ? problem.unsolved_steps + 1 : 0;
@@ -195,12 +201,17 @@ void Integrator::begin_like_the_latest() {
 
 // Finds out how the world outside may act on the problem during the step.
 void Integrator::look_at(Problem& problem) {
-  drives_rows_ = false;
+  bool moves_rows = false, has_rates = false, drives = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (pool.items.empty()) return;  // as nearly all are: of many small problems each look at one waits for memory
-    for (const C& c : pool.items) drives_rows_ = drives_rows_ || c.is_moving();
-    for (const RowLaw& law : pool.laws) drives_rows_ = drives_rows_ || (law.rate != 0 && !law.is_off());
+    for (const C& c : pool.items) moves_rows = moves_rows || c.is_moving();
+    for (const RowLaw& law : pool.laws) {
+      if (!law.is_rate || law.is_off() || ConeConstraint<C>) continue;
+      has_rates = true, drives = drives || law.rate != 0;
+    }
   });
+  drives_rows_ = moves_rows || drives;
+  if (has_rates && !moves_rows) problem.begin_impulses();
   find_holds(problem);
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   // The push of a law has no energy: its work is not a gain.
@@ -485,6 +496,7 @@ void Integrator::commit(Problem& problem, const Stage& stage, const StepEnergy& 
     problem.position[i] = newton_.solution()[i];
   }
   add_impulses(problem, stage.h);
+  if (problem.adds_impulses()) problem.add_impulses(stage.h);
   track(problem, stage.fraction);
   has_corrected_ = is_instant_ = false;
   ++report.substeps;

@@ -72,6 +72,7 @@ bool Integrator::begin_motion(Problem& problem, bool has_accelerations, AdvanceR
   if (problem.has_laws()) {
     const ActiveSet::Sides sides = ActiveSet::begin_motion(problem, step_length_);
     if (!sides.can_follow) return false;
+    if (sides.jump_any) problem.note_late_impulses();
     if (sides.stop_any) {
       const double before = energy_.kinetic, missing = energy_.missing;
       if (!newton_.project_state(problem, 0)) return false;
@@ -180,6 +181,7 @@ double Integrator::take_explicit_steps(Problem& problem, double h, double start,
     if (good && change == 1) {
       time = is_last ? h : time + length;
       steps.accept(problem);
+      if (problem.adds_impulses()) problem.add_impulses(length);
       track(problem, 1);
       ++report.substeps, report.error += error / h;
     } else {
@@ -188,6 +190,7 @@ double Integrator::take_explicit_steps(Problem& problem, double h, double start,
       problem.set_times_of_laws(start + time, start + time);
       report = before, report.iterations = iterations, report.solves = solves, energy_ = energy;
       if (closes) break;
+      if (change < 1) problem.note_late_impulses();
       if (change < 1 && ++changes > most_changes) break;
     }
     until_change = change < 1 && change * length >= shortest * h ? change * length : 0;

@@ -152,6 +152,7 @@ class Newton {
   void add_step_to_velocities(Problem&);
   void give_back_momentum(Problem&, std::span<const Vec3> impulses) const;
   void add_impulses(Problem&) const;
+  void note_late_impulses(Problem&, double h) const;
 
   Assembly assembly_;
   ActiveSet active_set_;

@@ -57,11 +57,12 @@ bool Newton::project_state(Problem& problem, double time) {
     if (!(gap < before)) break;
   }
   const Wanted wanted;
+  impulses_.assign(problem.adds_impulses() ? assembly_.unknown_count() : 0, 0.0);
   for (int pass = 0; pass < most_passes && find_rates(problem, wanted) > 0; ++pass) {
     assembly_.solve();
-    for (std::size_t i = 0; i < problem.size(); ++i)
-      problem.velocity[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
+    add_step_to_velocities(problem);
   }
+  add_impulses(problem);
   // Two bodies that share two points know their distance from places that were rounded far from the origin: nothing meets
   // both lengths.
   const double blur =

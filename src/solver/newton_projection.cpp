@@ -33,7 +33,7 @@ void give_back_angular_momentum(Problem& problem, std::span<const Vec3> before) 
 void Newton::project_velocities(Problem& problem, double h, std::span<const Vec3> impulses) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   has_laws_ = problem.has_laws();  // which may have been added since the last solve
-  impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
+  impulses_.resize(has_laws_ || problem.adds_impulses() ? assembly_.unknown_count() : 0);
   if (has_laws_) ActiveSet::begin_impulses(problem);
   const Wanted wanted{.h = h, .impulses = impulses};
   const double energy = problem.kinetic_energy();
@@ -58,7 +58,7 @@ Newton::Wanted Newton::begin_after_step(Problem& problem, const Stage& stage, co
   }
   if (has_laws_) ActiveSet::begin_impulses_after_step(problem);
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
-  impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
+  impulses_.resize(has_laws_ || problem.adds_impulses() ? assembly_.unknown_count() : 0);
   // A stack at rest saves a factor so. A single link that rests at a spring would gather the noise, and never sleep.
   const double noise = problem.has_used<ContactConstraint>() ? 10 * round_off : 0;
   return {.h = known.drives_rows ? whole_step : 0,
@@ -92,6 +92,7 @@ std::optional<double> Newton::project_velocities_after(Problem& problem, const S
     forget_drags(problem);
   }
   if (kinetic) add_impulses(problem);
+  if (kinetic && problem.adds_impulses()) note_late_impulses(problem, stage.h);
   if (!kinetic || !known.is_isolated) return kinetic;
   give_back_momenta(problem);
   return problem.kinetic_energy();
@@ -102,13 +103,34 @@ void Newton::give_back_momenta(Problem& problem) const {
   if (has_laws_ || problem.has_used<CouplingConstraint>()) give_back_angular_momentum(problem, u_saved_);
 }
 
-// Contacts tell their impulses: an impact of the mid-point rule is complete only with the velocities at its end.
+// An impact of the mid-point rule is complete only with the velocities at its end; so is the start of what a target drives.
 void Newton::add_impulses(Problem& problem) const {
-  if (!problem.has_used<ContactConstraint>() || impulses_.empty()) return;
-  auto& pool = problem.pool_of<ContactConstraint>();
-  for (std::size_t k = 0; k < pool.items.size(); ++k)
-    for (std::size_t r = 0; r < ContactConstraint::rows; ++r)
-      pool.items[k].impulse[r] += impulses_[pool.slots[k].unknown + r];
+  if (impulses_.empty()) return;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    const auto add = [&](auto sum_of) {
+      for (std::size_t k = 0; k < pool.items.size(); ++k)
+        for (std::size_t r = 0; r < C::rows; ++r) sum_of(k)[r] += impulses_[pool.slots[k].unknown + r];
+    };
+    if constexpr (std::is_same_v<C, ContactConstraint>)
+      add([&](std::size_t k) { return pool.items[k].impulse.data(); });
+    else if (!pool.impulses.empty())
+      add([&](std::size_t k) { return pool.impulses.data() + k * C::rows; });
+  });
+}
+
+// Where a target changes its speed, the multipliers of the mid-point rule have twice what this takes, and the projection takes half of it
+// back.
+void Newton::note_late_impulses(Problem& problem, double h) const {
+  constexpr double little = 1e-3;  // of the impulse of a driven row
+  bool any = false;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t row = 0; row < pool.laws.size() && !ConeConstraint<C>; ++row) {
+      if (!pool.laws[row].is_rate || !pool.states.is_equation(row)) continue;
+      const double late = impulses_[pool.slots[row / C::rows].unknown + row % C::rows];
+      any = any || std::abs(late) > little * h * std::abs(pool.multipliers[row]);
+    }
+  });
+  if (any) problem.note_late_impulses();
 }
 
 void Newton::find_velocity_change(const Problem& problem, std::span<const Vec3> impulses, std::span<const double> rates,

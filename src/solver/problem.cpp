@@ -31,7 +31,7 @@ void Problem::clear() {
   clear(position, velocity, force, torques, mass, damping, mass_couplings, counted_angles);
   for_each_constraint_pool([&](auto& p) {
     acting_version_ += !p.acting.empty();  // the next ones may have no laws, and all act
-    clear(p.items, p.keys, p.multipliers, p.offsets, p.laws, p.states, p.acting, p.temporary);
+    clear(p.items, p.keys, p.multipliers, p.impulses, p.offsets, p.laws, p.states, p.acting, p.temporary);
   });
   for_each_force_pool([&](auto& p) { clear(p.items, p.keys); });
   changes_.clear(), is_open_.clear();
@@ -41,6 +41,29 @@ void Problem::clear() {
   has_new_rows = false;
   standing_gap = 0, standing_steps = unsolved_steps = 0;
   used_ = 0;
+}
+
+void Problem::begin_impulses() {
+  adds_impulses_ = true, has_late_impulses_ = false;
+  for_each_constraint_pool([](auto& pool) { pool.impulses.assign(pool.multipliers.size(), 0.0); });
+}
+
+void Problem::add_impulses(double h) {
+  for_each_constraint_pool([&](auto& pool) {
+    for (std::size_t i = 0; i < pool.impulses.size(); ++i) pool.impulses[i] += h * pool.multipliers[i];
+  });
+}
+
+// A spring has its force at the end of the step, and contacts add up their impulses themselves.
+bool Problem::end_impulses(double h) {
+  const bool adds = std::exchange(adds_impulses_, false), tells = adds && has_late_impulses_ && h > 0;
+  if (!adds) return false;
+  for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    for (std::size_t i = 0; i < pool.impulses.size() && tells && !ConeConstraint<C>; ++i)
+      if (!pool.has_laws() || !pool.laws[i].is_compliant()) pool.multipliers[i] = pool.impulses[i] / h;
+    pool.impulses.clear();
+  });
+  return tells;
 }
 
 // From the places as they were added, so that the same origin gives the same bits.

@@ -86,6 +86,7 @@ struct ConstraintPool {
   std::vector<C> items;
   std::vector<ItemKey> keys;
   std::vector<double> multipliers;   ///< C::rows each, N
+  std::vector<double> impulses;      ///< C::rows each, of a step, N s; or empty: see Problem::begin_impulses
   std::vector<double> offsets;       ///< C::rows each: held gaps that cannot be closed; or empty: none
   std::vector<RowLaw> laws;          ///< C::rows each; or empty: all are equations, which costs nothing. Of a cone the
                                      ///< tangents are rate rows, whose bounds it knows itself
@@ -375,6 +376,18 @@ struct Problem {
   void clear_multipliers() {
     for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
   }
+  /// The rows add up what they give in a step, with what projections of velocities give. A target that changes its speed has only a part of
+  /// that in its multipliers.
+  void begin_impulses();
+  bool adds_impulses() const { return adds_impulses_; }
+  /// Those of the multipliers, for h seconds.
+  void add_impulses(double h);
+  /// The multipliers are not all that the rows give. Otherwise they stay, as they balance accelerations to round-off, and late impulses only
+  /// to the turn within the step.
+  void note_late_impulses() { has_late_impulses_ = true; }
+  /// After a step of h seconds with late impulses: the multipliers of rigid rows become their means. 0: there is no solution, which
+  /// has them. Returns whether they have.
+  bool end_impulses(double h);
   void clear_offsets() {
     for_each_constraint_pool([](auto& pool) { pool.offsets.clear(); });
   }
@@ -495,6 +508,7 @@ struct Problem {
 
   std::vector<Vec3>
       places_;  // of rows, in the order of the pools, as they were added; or none: the origin is the world's
+  bool adds_impulses_ = false, has_late_impulses_ = false;
   std::uint32_t used_ = 0;  // a bit for each pool that ever had an item
   GraphChange changes_;
   static constexpr std::uint64_t no_structure = 1;  // is not 0

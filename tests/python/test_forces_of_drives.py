@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Forces that joints tell, and break by, where a motor or a servo changes its speed: judged from velocities."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import pytest
+
+import iota
+
+Mode = Literal["robust", "plausible", "energy_keeping", "accurate"]
+Drive = Literal["motor", "servo", "brake"]
+GRAVITY = 9.81
+MODES: tuple[Mode, ...] = ("robust", "plausible", "energy_keeping", "accurate")
+
+
+def drive_slide(system: iota.System, axis: tuple[float, float, float]) -> tuple[iota.Joint, iota.Body, iota.Joint]:
+    """A block of 5 kg on a slide, and one of 1 kg that is welded to it."""
+    carriage = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=5, position=(0, 1, 0))
+    load = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=1, position=(0.15, 1, 0))
+    return system.prismatic(carriage, at=(0, 1, 0), axis=axis), load, system.weld(load, carriage, at=(0.1, 1, 0))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("drive", ["motor", "servo", "brake"])
+@pytest.mark.parametrize("rate", [60, 960])
+def test_a_weld_and_a_drive_tell_what_the_acceleration_takes(mode: Mode, drive: Drive, rate: int) -> None:
+    system = iota.System(mode=mode)
+    joint, load, weld = drive_slide(system, (0, 1, 0))
+    if drive == "servo":
+        joint.slide.servo = (0.5, 1000, 1)
+    for step in range(round(0.5 * rate)):
+        if drive == "motor" or (drive == "brake" and step < 0.3 * rate):
+            joint.slide.motor = (0.5 * math.sin(4 * (system.time + 1 / rate)), 1000)
+        elif drive == "brake":
+            joint.slide.motor = (0, 1000)
+        before = load.velocity.y
+        system.step(1 / rate)
+        acceleration = (load.velocity.y - before) * rate
+        if step * 10 < rate:  # a servo starts at once
+            continue
+        allowed = 2e-3 * (GRAVITY + abs(acceleration))  # a thousandth of the force of the drive stays out
+        assert abs(weld.force.y - GRAVITY - acceleration) < allowed, step
+        assert abs(load.net_force.y - acceleration) < allowed, step
+        assert abs(joint.slide.effort - 6 * (acceleration + GRAVITY)) < 6 * allowed, step
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("rate", [60, 960])
+def test_a_weld_breaks_by_what_the_acceleration_of_a_motor_takes(mode: Mode, rate: int) -> None:
+    """2 m/s^2 aside and the weight: 10.01 N."""
+    for strength, holds in ((10.2, True), (9.9, False)):
+        system = iota.System(mode=mode)
+        joint, _, weld = drive_slide(system, (1, 0, 0))
+        weld.break_force = strength
+        for _ in range(rate // 2):
+            joint.slide.motor = (2 * (system.time + 1 / rate), 1000)
+            system.step(1 / rate)
+        assert weld.broken != holds
