@@ -116,6 +116,29 @@ void ContactFinder::begin_look(const model::Model& model, double h, bool are_pla
   if (all_movers_.size() < model.bodies.slot_count()) all_movers_.resize(model.bodies.slot_count());
 }
 
+namespace {
+
+/// The acceleration by what is known before the step: forces that were applied, fields, and hands. A ball at rest that was pushed by
+/// more than its size in a step went through walls.
+double acceleration_by_others(const model::Model& model, std::uint32_t slot) {
+  double sum = 0;
+  if (!model.pushes.is_empty()) {
+    Vec3 force;
+    model.for_each_particle_of(slot, [&](std::uint32_t p) {
+      if (const ingredient::Push* const push = model.pushes.find(model.particles[p].ring)) force += push->force;
+    });
+    if (force != Vec3{}) sum += norm(force) / model.body_mass(slot);
+  }
+  model.grips.for_each_of(slot, [&](std::uint32_t, const ingredient::Grip& grip) {
+    const double omega = 2 * std::numbers::pi * grip.frequency;
+    const double distance = norm(grip.target - ingredient::Grips::point(model, grip));
+    sum += std::min(omega * omega * distance, grip.max_acceleration);
+  });
+  return sum;
+}
+
+}  // namespace
+
 ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact::Outlines& outlines,
                                               std::uint32_t slot) {
   Mover& mover = all_movers_[slot];
@@ -132,6 +155,7 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
   for (std::size_t k = 0; k < body.rank; ++k) mover.velocity += (1.0 / body.rank) * model.velocity(body.basis[k]);
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
+  if (model::is_free(body.kind)) mover.thrust = h_ * acceleration_by_others(model, slot);
   const std::uint32_t stride = ingredient::Strides::of(model, slot);
   mover.steps = stride == ingredient::Strides::frozen ? 1 : stride;
   return mover;
@@ -191,7 +215,8 @@ void ContactFinder::list_movers(const model::Model& model) {
 
 double ContactFinder::within(const Mover& mover, const Mover* other, double steps) const {
   const Vec3 relative = other ? mover.velocity - other->velocity : mover.velocity;
-  const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + steps * fall_;
+  const double thrust = mover.thrust + (other ? other->thrust : 0);
+  const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + steps * (fall_ + thrust);
   return of_way * steps * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
@@ -213,7 +238,7 @@ geometry::Bounds ContactFinder::way_of_stride(const model::Model& model, contact
     double fastest = 0;
     for (std::size_t k = 0; k < body.rank; ++k)
       fastest = std::max(fastest, std::abs(model.velocity(body.basis[k]).*axis));
-    most.*axis += fastest + std::abs(mover.steps * h_ * gravity.*axis);
+    most.*axis += fastest + mover.steps * (std::abs(h_ * gravity.*axis) + mover.thrust);
   }
   const Vec3 way = time * most + of_size * mover.reach * Vec3{1, 1, 1};
   geometry::Bounds box = contact::bounds(outlines.placed(mover.body));
@@ -636,7 +661,9 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
   if (!(h_ * speed > far * size)) return {0, never};
   const contact::Outline& outline = placed(outlines, *mover);
   if (other) (void)placed(outlines, *other);
-  const contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
+  contact::Motion motions[2] = {motion_of(model, outlines, first), motion_of(model, outlines, second)};
+  motions[0].more += mover->thrust;
+  if (other) motions[1].more += other->thrust;
   const contact::Outline& other_outline = outlines.described(second);
   const double time = approaches_.time(outline, motions[0], other_outline, motions[1], of_size * size, h_);
   if (time > least * h_) return {time, time};

@@ -60,9 +60,11 @@ class ContactFinder {
   /// A body that may touch others.
   struct Mover {
     std::uint32_t body = 0;
-    double reach = 0;        ///< m
-    Vec3 place, velocity;    ///< of its first particle; mean
-    double spread = 0;       ///< of the velocities of its points, m/s
+    double reach = 0;      ///< m
+    Vec3 place, velocity;  ///< of its first particle; mean
+    double spread = 0;     ///< of the velocities of its points, m/s
+    double thrust =
+        0;  ///< speed that other forces than gravity and contacts give in this time, as far as they are known, m/s
     double steps = 1;        ///< that it may take at once
     std::uint64_t look = 0;  ///< in which it was measured
     bool is_placed = false;  ///< its outline is where the body is now; this and the following: where asked for
