@@ -285,6 +285,8 @@ def run(suite: Suite) -> Count:
     environment = dict(os.environ, PATH=path, CI="true", NO_COLOR="1", **suite.environment)
     # Containers set it, and then each of some hundred processes compiles all of iota: two fifths of its start.
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    # Other threads of numpy wait busily: beside other suites a product of matrices takes ten times as long.
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")
     count = Count()
     with (LOGS / f"test-{suite.name}.log").open("w") as log:
         try:

@@ -461,6 +461,17 @@ def test_a_script_that_ends_without_close_leaves_nothing_on_the_terminal(tmp_pat
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+@pytest.mark.parametrize("asked", ["", "2"])
+def test_numpy_has_one_thread_in_a_command_unless_its_user_asks_for_more(asked: str) -> None:
+    script = "import os, sys; sys.argv = ['iota']; import iota, numpy; print(os.environ['OPENBLAS_NUM_THREADS'])"
+    script += "; print(len(os.listdir('/proc/self/task')) if os.path.isdir('/proc/self/task') else 1)"
+    others = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    environment = {**others, **({"OPENBLAS_NUM_THREADS": asked} if asked else {})}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, env=environment)
+    number, threads = done.stdout.split()
+    assert number == (asked or "1") and (asked or threads == "1"), done.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="has no such signal")
 def test_a_world_that_nohup_started_outlives_its_terminal() -> None:
     script = "import os, signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); os.execvp('{0}', ['{0}', '-c', {1!r}])"
