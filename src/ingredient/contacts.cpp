@@ -669,6 +669,8 @@ bool has_direction(const Model& model, const Contact& c) {
 }  // namespace
 
 void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
+  constexpr double steady = 0.05;           // of the force, from the mean over the last step
+  constexpr double least_share = 1.0 / 64;  // of a step; with less, rows that share a weight differ by round-off alone
   if (!problem.has_used<solver::ContactConstraint>()) return;
   load_resistance(owner, model, nodes, h, problem);
   auto& rows = problem.pool_of<solver::ContactConstraint>();
@@ -696,8 +698,14 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     row.compliance = tangent_softness * of_place;
     row.reference = extent_of(c, [&](std::uint32_t k) { return problem.position[row.nodes[k]]; });
     // Its compliance goes with the square of the step, see ContactConstraint::fit. The force of an impact in a short part,
-    // taken over, was worth a hundred times the motion.
-    const double kept = c.duration < h ? c.duration * c.duration / (h * h) : 1;
+    // taken over, was worth a hundred times the motion. What rests on a steady one would sag by a part of g h^2 in each step, so that
+    // mode `accurate` took hundreds of parts: there it goes on with the compliance of the last part.
+    const double part = c.duration < h ? c.duration / h : 1;
+    row.is_steady = model.mode == IntegrationMode::accurate && part < 1 && c.carries() &&
+                    norm(c.mean_force() - c.force()) <= steady * norm(c.force());
+    if (row.is_steady) row.share = std::max(part, least_share);
+    row.normal_compliance *= row.share * row.share, row.compliance *= row.share * row.share;
+    const double kept = part * part / (row.share * row.share);
     double* const l = rows.multiplier(i);
     l[0] = -kept * c.push, l[1] = -kept * dot(c.drag, c.first), l[2] = -kept * dot(c.drag, c.second);
     const bool slipped = c.static_friction > c.friction && row.state_of(l).slips();

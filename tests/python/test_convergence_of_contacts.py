@@ -144,3 +144,24 @@ def test_a_ball_rolls_on_for_any_turn_in_a_step(mode: Any, turn: float) -> None:
         system.step(1 / rate)
     assert ball.velocity.x == pytest.approx(speed, rel=1e-6)
     assert -ball.angular_velocity.z * radius == pytest.approx(speed, rel=1e-6)
+
+
+@pytest.mark.parametrize("held_by", ["slope", "jaws"])
+def test_what_rests_takes_few_parts_of_a_step_in_mode_accurate(held_by: str) -> None:
+    """Contacts sagged anew in each step, by a part of g h^2: 64 parts on a slope, 288 between jaws."""
+    on_slope = held_by == "slope"
+    system = iota.System(mode="accurate", gravity=(3, -9.3, 0) if on_slope else (0, -9.81, 0))
+    system.usual_material = iota.Material(friction=0.6)
+    if on_slope:
+        system.obstacle(iota.HalfSpace((0, 1, 0)))
+        body = system.body(shape=iota.Box((0.2, 0.1, 0.2)), density=500, position=(0, 0.05, 0))
+    else:
+        body = system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=1, position=(0, 1, 0))
+        for side in (-1, 1):
+            place = (0.06 * side, 1, 0)
+            jaw = system.body(shape=iota.Box((0.02, 0.3, 0.08)), mass=0.3, position=place)
+            system.prismatic(jaw, at=place, axis=(1, 0, 0), motor=(-0.2 * side, 40))
+    start = np.array(body.position)
+    parts = [system.step(1 / 60).substeps_max for _ in range(60)]
+    assert sum(parts[2:]) < 120
+    assert np.abs(np.array(body.position) - start).max() < 1e-7

@@ -41,6 +41,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double softening = 1;                          ///< of c_n, while a solution is searched
   bool never_slips = false;                      ///< while a solution is searched
   double share = 1;                              ///< of the step, for which the compliances are
+  bool is_steady = false;  ///< its force hardly changes: in longer parts it keeps the compliance, too
   double reference = 1;
   double pivots[2] = {};       ///< rates of the tangential rows that stick at the end of a (sub-)step, see rate_of, m/s
   double from = 0, to = 1;     ///< that (sub-)step, as fractions of the step: see begin_part
@@ -128,7 +129,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   /// what slides. In a longer one it keeps its strain, in a shorter one its force: so its energy never rises.
   void fit(double part, double* multipliers) {
     const double ratio = part * part / (share * share);
-    if (ratio == 1) return;
+    if (ratio == 1 || (ratio > 1 && is_steady)) return;
     normal_compliance *= ratio, compliance *= ratio, share = part;
     for (int r = 0; r < 3 && ratio > 1; ++r) multipliers[r] /= ratio;
   }
