@@ -163,8 +163,10 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
     advance_part(problem, part, by_end_point ? 1 : 0, report);
     damp(problem, part.h / 2, report);
   }
-  if (keeps_offsets_)
-    drop_offsets(problem), (void)problem.end_impulses(0);  // the rows of a conflict push without a measure
+  if (keeps_offsets_) {
+    drop_offsets(problem);
+    (void)problem.end_impulses(0);  // in a conflict rows push with any force
+  }
   const bool is_unsolved = taken == 0 && !solves_part_;
   const bool is_new = is_unsolved && (is_brief || !is_cut_short_);
   problem.unsolved_steps = is_new || report.is_approximate ? problem.unsolved_steps + 1 : 0;
@@ -211,7 +213,8 @@ void Integrator::look_at(Problem& problem) {
     }
   });
   drives_rows_ = moves_rows || drives;
-  if (has_rates && !moves_rows) problem.begin_impulses();
+  const bool may_meet = problem.has_laws() && (!may_sweep_ || heap_->has_joints());
+  if ((has_rates || may_meet) && !moves_rows) problem.begin_impulses();
   find_holds(problem);
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   // The push of a law has no energy: its work is not a gain.

@@ -37,7 +37,7 @@ std::optional<double> Newton::solve_impacts(Problem& problem, const Stage& stage
     kinetic = problem.kinetic_energy();
   }
   forget_drags(problem);
-  if (kinetic) add_impulses(problem);
+  if (kinetic) add_impulses(problem), problem.note_late_impulses();
   return kinetic;
 }
 

@@ -118,14 +118,14 @@ void Newton::add_impulses(Problem& problem) const {
   });
 }
 
-// Where a target changes its speed, the multipliers of the mid-point rule have twice what this takes, and the projection takes half of it
-// back.
+// Where a target changes its speed, or a rope becomes taut, the multipliers of the mid-point rule have twice what this takes, and the
+// projection takes half of it back.
 void Newton::note_late_impulses(Problem& problem, double h) const {
   constexpr double little = 1e-3;  // of the impulse of a driven row
   bool any = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (std::size_t row = 0; row < pool.laws.size() && !ConeConstraint<C>; ++row) {
-      if (!pool.laws[row].is_rate || !pool.states.is_equation(row)) continue;
+    for (std::size_t row = 0; row < pool.laws.size(); row += ConeConstraint<C> ? C::rows : 1) {  // of a cone the normal
+      if (!pool.states.is_equation(row) || !(pool.laws[row].is_rate || pool.states.has_been_met(row))) continue;
       const double late = impulses_[pool.slots[row / C::rows].unknown + row % C::rows];
       any = any || std::abs(late) > little * h * std::abs(pool.multipliers[row]);
     }
