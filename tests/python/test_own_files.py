@@ -324,7 +324,7 @@ def test_joints_of_other_namespaces_and_links_without_inertia_are_told(tmp_path:
     notes = told(write(tmp_path, "r.urdf", text))
     assert "1 joint is not of URDF and left out, so that links hang on nothing" in notes
     assert "ball (<drake:joint>, line 5)" in notes
-    assert "1 link has no <inertial>, and 1e-06 kg each: tool" in notes
+    assert "1 link without mass is part of the one that it is fixed to: tool (a)" in notes
     assert "2 <sensor> are left out" in notes and "1 <drake:note> is left out" in notes
 
 

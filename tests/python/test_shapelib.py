@@ -13,6 +13,7 @@ from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -1066,6 +1067,115 @@ def test_links_of_a_urdf_file_touch_by_their_collisions_and_else_by_what_is_seen
         assert np.array(body.inertia) == pytest.approx(np.diag([0.02, 0.04, 0.03]), abs=1e-9)  # y up
         iota.World(system, ground=0.0).advance(360)
         assert body.center_of_mass.y == pytest.approx(height, abs=1e-4)
+
+
+BARE_ARM = """<robot name="r">
+  <link name="base"/><link name="foot"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="stand" type="fixed"><parent link="base"/><child link="foot"/><origin xyz="0 0 -0.2"/></joint>
+  <link name="arm"><inertial><origin xyz="0.3 0.1 -0.2"/><mass value="2"/><inertia ixx="1" iyy="0.8" izz="0.6"/></inertial></link>
+  <joint name="j" type="continuous"><parent link="base"/><child link="arm"/><origin xyz="1 2 3"/><axis xyz="0 1 0"/>
+    <dynamics damping="0.2"/></joint>
+  <link name="flange"/><link name="tool0"><visual><geometry><sphere radius="0.05"/></geometry></visual></link>
+  <link name="tag"><inertial><mass value="1e-5"/><inertia ixx="1e-9" iyy="1e-9" izz="1e-9"/></inertial></link>
+  <joint name="f" type="fixed"><parent link="arm"/><child link="flange"/><origin xyz="0.5 0 0"/></joint>
+  <joint name="t" type="fixed"><parent link="flange"/><child link="tool0"/><origin xyz="0 0 -0.5" rpy="0 0 1.5707963267948966"/></joint>
+  <joint name="u" type="fixed"><parent link="flange"/><child link="tag"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "accurate"])
+def test_links_without_mass_are_parts_of_what_they_are_fixed_to(
+    write: Write, mode: Literal["energy_keeping", "accurate"]
+) -> None:
+    """A damped pendulum in the right mode of motion: I a'' = -m g arm(a) - c a', where I is about the axis."""
+    found = shapelib.mechanism(write("bare.urdf", BARE_ARM))
+    assert [(body.name, body.kind) for body in found.bodies] == [("base", "static"), ("arm", "dynamic")]
+    assert found.notes == [
+        "4 links without mass are parts of those that they are fixed to: foot (base), flange (arm), tool0 (arm), tag (arm)"
+    ]
+    system = iota.System(mode=mode)
+    made = found.realize(system)
+    assert made["arm"].mass == pytest.approx(2 + 1e-5)
+    tool, foot = made["tool0"], made["foot"]
+    assert tool.body == made["arm"] and foot.body == made["base"] and len(made["base"].solids) == 1
+    assert tuple(tool.position) == pytest.approx((1.5, 2.5, -2), abs=1e-12)
+    assert tuple(foot.position) == pytest.approx((0, -0.2, 0), abs=1e-12)
+    end = tool.attachment()
+    for _ in range(120):
+        assert system.step(1 / 240).substeps_max <= 2 or mode == "accurate"
+    inertia, angle, speed, dt = 0.8 + 2 * (0.09 + 0.04), 0.0, 0.0, 1e-5
+    for _ in range(50_000):  # about +y of the file, which is -z here
+        level = 0.3 * math.cos(angle) - 0.2 * math.sin(angle)
+        speed += dt * (2 * 9.81 * level - 0.2 * speed) / inertia
+        angle += dt * speed
+    assert made["j"].angle.value == pytest.approx(angle, abs=3e-4)
+    x, z = 0.5 * math.cos(angle) - 0.5 * math.sin(angle), -0.5 * math.sin(angle) - 0.5 * math.cos(angle)
+    assert tuple(tool.position) == pytest.approx((1 + x, 3 + z, -2), abs=3e-4)
+    assert tuple(end.position) == pytest.approx(tuple(tool.position), abs=1e-9)
+    arm = tuple(tool.position - iota.Vec3(1, 3, -2))
+    assert tuple(tool.velocity) == pytest.approx(np.cross((0, 0, -speed), arm), abs=2e-3)
+    ahead = iota.frames.turned(tool.orientation, iota.Vec3(1, 0, 0))  # +x of the tool is y of the file, level
+    assert tuple(ahead) == pytest.approx((0, 0, -1), abs=1e-6)
+    again = iota.builder.Structure.from_json(json.loads(json.dumps(found.to_json())))
+    assert (again + (1, 0, 0)).realize(iota.System())["tool0"].position.x == pytest.approx(2.5)
+    row = iota.builder.Structure()
+    row.merge(found, prefix="a ")
+    row.merge(found, prefix="b ")
+    assert row.realize(iota.System())["b tool0"].position.x == pytest.approx(1.5)
+
+
+def test_a_root_without_mass_is_part_of_the_heavy_link_that_it_holds(write: Write) -> None:
+    rover = """<robot name="rover"><link name="base_footprint"/>
+  <link name="base_link"><inertial><mass value="5"/><inertia ixx="0.05" iyy="0.08" izz="0.1"/></inertial></link>
+  <joint name="fp" type="fixed"><parent link="base_footprint"/><child link="base_link"/><origin xyz="0 0 0.1"/></joint>
+  <link name="lidar"/><joint name="l" type="fixed"><parent link="base_link"/><child link="lidar"/></joint>
+</robot>"""
+    bases: tuple[Literal["free", "fixed"], ...] = ("free", "fixed")
+    for base in bases:
+        found = shapelib.mechanism(write("rover.urdf", rover), base=base)
+        assert [body.name for body in found.bodies] == ["base_link"]
+        assert [joint.name for joint in found.joints] == ["base_footprint to the world"][: base == "fixed"]
+        system = iota.System()
+        made = found.realize(system)
+        for _ in range(60):
+            system.step(1 / 120)
+        fallen = 9.81 / 2 * 0.5**2 if base == "free" else 0.0
+        assert made["base_footprint"].position.y == pytest.approx(-fallen, rel=1e-2, abs=1e-9)
+        assert made["base_link"].position.y == pytest.approx(0.1 - fallen, rel=1e-2)
+
+
+def test_links_without_mass_between_moving_joints_have_a_share_of_what_they_carry(write: Write) -> None:
+    text = """<robot name="r"><link name="base"/><link name="cross"/>
+  <link name="arm"><inertial><origin xyz="0 0 -0.3"/><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.05"/></inertial></link>
+  <link name="jaw"/>
+  <joint name="a" type="continuous"><parent link="base"/><child link="cross"/><axis xyz="1 0 0"/></joint>
+  <joint name="b" type="continuous"><parent link="cross"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+  <joint name="c" type="continuous"><parent link="arm"/><child link="jaw"/><axis xyz="0 0 1"/></joint></robot>"""
+    found = shapelib.mechanism(write("cross.urdf", text))
+    assert found.notes == ["2 links have no mass, and a thousandth of a neighbor's: cross (0.002 kg), jaw (0.002 kg)"]
+    system = iota.System()
+    made = found.realize(system)
+    assert made["cross"].mass + made["arm"].mass == pytest.approx(2, rel=1e-12)
+    made["arm"].angular_velocity = (0.02, 0, 0)  # about the axis of a: it swings with the arm's whole inertia
+    made["cross"].angular_velocity = (0.02, 0, 0)
+    made["jaw"].angular_velocity = (0.02, 0, 0)
+    crossings, before = [], made["a"].angle.value
+    for step in range(1500):
+        assert system.step(1 / 500).substeps_max <= 2
+        value = made["a"].angle.value
+        if before < 0 <= value:
+            crossings.append((step + 1 - value / (value - before)) / 500)
+        before = value
+    period = 2 * math.pi * math.sqrt((0.1 + 2 * 0.09) / (2 * 9.81 * 0.3))
+    assert crossings[1] - crossings[0] == pytest.approx(period, rel=2e-3)
+
+
+def test_bodies_of_an_mjcf_file_without_mass_are_parts_of_what_they_are_fixed_to(write: Write) -> None:
+    tool = '<body name="tool" pos="0.5 0 0.1"/><geom fromto="0 0 0 0.5 0 0.1"/>'
+    found = shapelib.mechanism(write("tool.xml", MJCF.replace('<geom fromto="0 0 0 0.5 0 0.1"/>', tool)))
+    assert "tool" not in [body.name for body in found.bodies]
+    made = found.realize(iota.System())
+    assert made["tool"].body == made["lower"] and tuple(made["tool"].position) == pytest.approx((1.1, 2.1, 0))
 
 
 def test_links_that_mujoco_lets_pass_each_other_do_so(write: Write) -> None:

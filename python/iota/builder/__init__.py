@@ -3,9 +3,9 @@
 
 from iota.builder.chain import chain
 from iota.builder.lines import ring, rope, snake
-from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
+from iota.builder.parts import Coupling, Joint, Place, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
-from iota.builder.realized import Realized
+from iota.builder.realized import PlaceOnBody, Realized
 from iota.builder.sheets import cloth, leaf, net
 from iota.builder.solids import bridge, cuboid, ladder, soft_block, tower, tree
 from iota.builder.structure import Shift, Structure
@@ -13,6 +13,8 @@ from iota.builder.structure import Shift, Structure
 __all__ = [
     "Coupling",
     "Joint",
+    "Place",
+    "PlaceOnBody",
     "Points",
     "Realized",
     "RigidBody",

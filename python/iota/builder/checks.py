@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from operator import index
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -100,6 +100,10 @@ def _missing_bodies(structure: Contents) -> Iterator[str]:
             if body not in range(count):
                 yield f"passing {number}: there is no body {body!r}, only {count} bodies"
 
+    for place in structure.places:
+        if place.body not in range(count):
+            yield f'place "{place.name}": there is no body {place.body!r}, only {count} bodies'
+
 
 def _missing_joints(structure: Contents) -> Iterator[str]:
     count = len(structure.joints)
@@ -146,6 +150,10 @@ def _bodies(structure: Contents) -> Iterator[str]:
         if body.look and body.look not in structure.looks:
             yield f"{name}: there is no look {body.look!r}"
 
+    for place in structure.places:
+        if structure.bodies[place.body].shape is None:
+            yield f'place "{place.name}": its body has no shape'
+
 
 def _hinges(structure: Contents, owner: Numbers) -> Iterator[str]:
     if not structure.hinges:
@@ -169,7 +177,14 @@ def _kinds(structure: Contents) -> Iterator[str]:
 
 
 def _names(structure: Contents) -> Iterator[str]:
-    named = (structure.bodies, structure.bonds, structure.joints, structure.ties, structure.couplings)
+    named: tuple[Sequence[Any], ...] = (
+        structure.bodies,
+        structure.bonds,
+        structure.joints,
+        structure.ties,
+        structure.couplings,
+        structure.places,
+    )
     names = Counter(item.name for items in named for item in items if item.name)
     names.update(structure.point_names.keys())
     for name, count in names.items():

@@ -16,17 +16,18 @@ from iota._core import Vec3
 from iota.arguments import SHORT, of_type
 from iota.builder.checks import label
 from iota.builder.contents import Contents
-from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
+from iota.builder.parts import Coupling, Joint, Place, RigidBody, SoftBond, Tie
 
 PARTS: dict[str, type[Any]] = {
     "bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie, "couplings": Coupling,
+    "places": Place,
 }  # fmt: skip
 PAIRS = ("hinges", "lines", "passing")
 PLAIN = ("nails", "groups", "point_names")
 COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
 # The fields of parts that are not numbers; the engine checks numbers.
 FIELDS: dict[str, type] = {
-    "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "law": str, "parameters": dict,
+    "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "body": int, "law": str, "parameters": dict,
     "options": dict, "terms": list, "shape": dict, "others": list, "touches": bool,
 }  # fmt: skip
 
@@ -43,8 +44,9 @@ def to_json(structure: Contents) -> dict[str, Any]:
         ]
     for name in (*PAIRS, *PLAIN):
         data[name] = _plain(getattr(structure, name), name)
-    if not structure.passing:  # as of files of before
-        del data["passing"]
+    for name in ("passing", "places"):  # those without are as of files of before
+        if not data[name]:
+            del data[name]
     data["looks"] = {name: looks.to_json(styles) for name, styles in structure.looks.items()}
     return data
 

@@ -49,6 +49,17 @@ class RigidBody:
 
 
 @dataclass
+class Place:
+    """A named place on a body with a shape, which moves with it: of a tool, a camera, a link without mass. position: m;
+    orientation: x y z w; both when it is realized, in the world."""
+
+    name: str
+    body: int
+    position: Vector
+    orientation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass
 class SoftBond:
     """A force between two points, see `System.bond`."""
 

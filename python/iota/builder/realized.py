@@ -15,13 +15,52 @@ import numpy as np
 from iota import _core
 from iota.builder.checks import label, problems
 from iota.builder.contents import Contents
-from iota.builder.parts import RigidBody
+from iota.builder.parts import Place, RigidBody
+from iota.frames import Quaternion, into_frame, one_after_another, relative_turn, turned
 
 if TYPE_CHECKING:
     from iota.builder.parts import Coupling, Joint, SoftBond, Tie
     from iota.world import World
 
 MOST_SHOWN = 5  # problems in one error
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceOnBody:
+    """A place that moves with a body, as long as that is not combined with another one.
+
+    lamp = arm["tool0"].attachment()
+    """
+
+    body: _core.Body
+    _offset: _core.Vec3  # in axes of the body
+    _turn: Quaternion
+
+    @property
+    def position(self) -> _core.Vec3:
+        """World, m."""
+        return self.body.position + turned(self.body.orientation, self._offset)
+
+    @property
+    def orientation(self) -> tuple[float, float, float, float]:
+        """Unit quaternion x y z w, in the world."""
+        x, y, z, w = one_after_another(self.body.orientation, self._turn)
+        return (x, y, z, w)
+
+    @property
+    def velocity(self) -> _core.Vec3:
+        """World, m/s."""
+        return self.body.velocity + self.body.angular_velocity.cross(self.position - self.body.position)
+
+    def attachment(self) -> _core.Particle:
+        """A new particle of the body there, for bonds, ropes and all else that takes particles."""
+        return self.body.attachment(self.position)
+
+
+def place_on(body: _core.Body, place: Place) -> PlaceOnBody:
+    """The place, on a body in the pose in which it was made."""
+    offset = into_frame(_core.Vec3(*place.position), body.position, body.orientation)
+    return PlaceOnBody(body, offset, relative_turn(body.orientation, place.orientation))
 
 
 @dataclass
@@ -38,7 +77,7 @@ class Realized:
     names: dict[str, Any] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Any:
-        """The point, body, bond, joint, tie or coupling of that name. Raises KeyError."""
+        """The point, body, place, bond, joint, tie or coupling of that name. Raises KeyError."""
         return self.names[name]
 
 
@@ -56,6 +95,7 @@ def realize(structure: Contents, system: _core.System, world: World | None = Non
         for name, members in structure.groups.items():
             made.groups[name] = known[name] if name in known else system.group(name)  # an empty one is False
             made.groups[name].add(*(made.points[member] for member in members))
+    made.names |= {place.name: place_on(made.bodies[place.body], place) for place in structure.places}
     made.names |= {name: made.points[point] for name, point in structure.point_names.items()}
     if world is not None:
         _draw(structure, world, made)

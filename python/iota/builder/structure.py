@@ -147,6 +147,7 @@ class Structure(Contents):
         twin.ties = [replace(tie) for tie in self.ties]
         twin.couplings = [replace(coupling, terms=list(coupling.terms)) for coupling in self.couplings]
         twin.passing = list(self.passing)
+        twin.places = [replace(place) for place in self.places]
         twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
         twin.groups = {name: list(members) for name, members in self.groups.items()}
         twin.point_names, twin.looks = dict(self.point_names), dict(self.looks)
@@ -161,6 +162,8 @@ class Structure(Contents):
             body.position = Vec3(*body.position) + way
             body.others = [(shape, Vec3(*at) + way, turn) for shape, at, turn in body.others] if body.others else ()
             body.center = None if body.center is None else Vec3(*body.center) + way
+        for place in moved.places:
+            place.position = Vec3(*place.position) + way
         for joint in moved.joints:
             if "at" in joint.options:
                 joint.options["at"] = Vec3(*joint.options["at"]) + way
@@ -194,6 +197,7 @@ class Structure(Contents):
         self.hinges += pairs(other.hinges)
         self.lines += pairs(other.lines)
         self.passing += [(a + bodies, b + bodies) for a, b in other.passing]
+        self.places += [replace(each, body=each.body + bodies, name=named(each.name)) for each in other.places]
         self.nails += [point + shift.points for point in other.nails]
         for bond in other.bonds:
             self.bonds.append(replace(bond, p=bond.p + shift.points, q=bond.q + shift.points, name=named(bond.name)))

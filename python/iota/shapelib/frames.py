@@ -123,6 +123,23 @@ def solid_of(mass: float, inertia: Array, at: Frame) -> LinkSolid:
     )
 
 
+def share_of(solid: LinkSolid, share: float) -> LinkSolid:
+    """A solid with that share of the mass and inertia, in the same place."""
+    return LinkSolid(share * solid.mass, solid.frame, solid.shape, solid.is_changed)
+
+
+def sum_of(solids: list[LinkSolid], frames: list[Frame]) -> LinkSolid:
+    """Solids that are rigidly connected, as one; frames: of each solid's link, in one frame, which is that of the sum."""
+    mass = math.fsum(solid.mass for solid in solids)
+    own = [frame @ solid.frame for solid, frame in zip(solids, frames, strict=True)]
+    center = sum((solid.mass / mass * at.place for solid, at in zip(solids, own, strict=True)), np.zeros(3))
+    inertia = np.zeros((3, 3))
+    for solid, at in zip(solids, own, strict=True):
+        arm = at.place - center
+        inertia += at.turn @ solid.inertia @ at.turn.T + solid.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return solid_of(mass, inertia, Frame(center))
+
+
 def look_in(frame: Frame, look: looks.Look, at: Frame) -> looks.Look:
     """A look in the link's frame, converted to the frame of the link's solid."""
     from dataclasses import replace

@@ -12,7 +12,7 @@ import numpy as np
 
 from iota import looks
 from iota._core import Shape
-from iota.builder.parts import BodyKind, Coordinate, JointKind, RigidBody
+from iota.builder.parts import BodyKind, Coordinate, JointKind, Place, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 
@@ -65,7 +65,7 @@ class JointCoupling:
 @dataclass
 class Mechanism:
     """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m. passing: names of links that do not
-    touch each other."""
+    touch each other. places: names of links that are parts of others, those others, and where they are in the world."""
 
     title: str
     links: list[Link] = field(default_factory=list)
@@ -73,6 +73,7 @@ class Mechanism:
     couplings: list[JointCoupling] = field(default_factory=list)
     ropes: list[tuple[str, tuple[str, Any], tuple[str, Any], float]] = field(default_factory=list)
     passing: list[tuple[str, str]] = field(default_factory=list)
+    places: list[tuple[str, str, Frame]] = field(default_factory=list)
     counts: dict[str, int | float | str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
@@ -86,7 +87,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
     def put(place: Any) -> tuple[float, ...]:
         return tuple((origin + scale * (Y_UP @ place)).tolist())
 
-    used = {link.name for link in mechanism.links}
+    used = {link.name for link in mechanism.links} | {name for name, _, _ in mechanism.places}
 
     def unused(name: str, what: str) -> str:
         """In files a link, a joint and a coupling may have one name."""
@@ -128,6 +129,9 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
 
     for link in mechanism.links:
         add(link)
+    for name, of, frame in mechanism.places:
+        turn = to_quaternion(Y_UP @ frame.turn)
+        structure.places.append(Place(name, number[of], put(frame.place), turn))
     passing = {(min(pair), max(pair)) for pair in (*mechanism.passing, *_neighbors(mechanism))}
     for one, other in sorted(passing):
         if one in number and other in number:

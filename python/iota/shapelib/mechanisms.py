@@ -30,7 +30,10 @@ def mechanism(
     shapes of the file, by which it touches, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
     of the file; a joint with the name of a link is "NAME joint". Files have z up, the structure has y up.
 
-    base: of URDF, whether root links are welded to the world ("fixed", the default) or free; MJCF files specify it.
+    Links without mass are parts of what they are fixed to, and their names are of places (`iota.builder.PlaceOnBody`).
+
+    base: of URDF, whether root links are held by the world ("fixed", the default), those without mass as static bodies, or free; MJCF
+    files specify it.
     scale: of lengths; masses are kept. at: place of the file's origin, m. Unsupported parts are left out and listed in
     `notes`: transmissions, actuators, coefficients of contacts, tendons over pulleys, nonlinear equalities, missing meshes. Joints that
     mimic others, equalities of joints and sums of joints (fixed tendons) become couplings. Raises `FileError` that names

@@ -14,10 +14,11 @@ from iota import looks
 from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
 from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
+from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
 from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
 from iota.shapelib.trees import Element, read_tree
-from iota.shapelib.urdf import LIGHTEST, X_TO_Z
+from iota.shapelib.urdf import X_TO_Z
 
 FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
 CONNECT, WELD, EQUAL_JOINTS, EQUAL_TENDONS = range(4)  # mjtEq
@@ -27,6 +28,7 @@ FOLDERS = ("meshdir", "texturedir", "assetdir")
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 MOST_MASKED = 1000  # bodies, pairs of which are compared
 Y_TO_Z = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # of land, whose heights are along y
+LIGHTEST = 1e-6  # kg: for movable bodies without mass
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
 
@@ -150,6 +152,7 @@ class _Reader:
         for number in range(m.ntendon):
             self.tendon(number)
         planes = int((m.geom_type == 0).sum())
+        self.fold()
         for count, what in (
             (self.armatures, "rotor inertias (armature)"), (m.nu, "actuators"), (m.nsensor, "sensors"), (m.nkey, "keyframes"),
             (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"),
@@ -162,6 +165,21 @@ class _Reader:
             "height of the center of mass": float(m.body_mass @ self.state.xipos[:, 2] / max(m.body_mass.sum(), 1e-300)),
         }  # fmt: skip
 
+    def fold(self) -> None:
+        """Makes bodies without mass parts of those that they are fixed to."""
+        m = self.model
+        number = {name: body for body, name in enumerate(self.names)}
+        links = [link for link in self.mechanism.links if self.moves[number.get(link.is_of or link.name, 0)]]
+        parent: dict[str, str | None] = {}
+        for link in links:
+            body = number[link.is_of or link.name]
+            parent[link.name] = self.name_of(int(m.body_parentid[body]))
+        fixed = {link.name for link in links if not link.is_of and m.body_jntnum[number[link.name]] == 0}
+        tree = Tree(links, parent, fixed, set())
+        for link in fold(self.mechanism, tree):
+            mark(link)
+        keep_names(self.mechanism, tree)
+
     def frame(self, body: int) -> Frame:
         return Frame(self.state.xpos[body].copy(), self.state.xmat[body].reshape(3, 3).copy())
 
@@ -170,11 +188,14 @@ class _Reader:
         link = Link(self.names[body], self.frame(body), None)
         if self.moves[body]:
             mass, inertia = float(m.body_mass[body]), np.diag(m.body_inertia[body])
-            if mass <= 0:
+            if mass <= 0 and m.body_jntnum[body] == 0:
+                mass = 0.0  # part of what it is fixed to
+            elif mass <= 0:
                 self.mechanism.notes.append(f"the body {link.name} has no mass; it is given {LIGHTEST} kg")
                 mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
             x, y, z, w = np.roll(m.body_iquat[body], -1)
-            link.solid = solid_of(mass, inertia, Frame(m.body_ipos[body].copy(), from_quaternion(x, y, z, w)))
+            at = Frame(m.body_ipos[body].copy(), from_quaternion(x, y, z, w))
+            link.solid = solid_of(mass, inertia, at) if mass > 0 else None
         for geom in range(m.body_geomadr[body], m.body_geomadr[body] + m.body_geomnum[body]):
             shape = self.shape(geom)
             if shape is not None:

@@ -14,6 +14,7 @@ from iota import looks
 from iota._core import Box, Cylinder, Mesh, Shape, Sphere
 from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, about, from_rpy, solid_of
 from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
 from iota.shapelib.surface_files import READERS, read_surface
@@ -25,7 +26,6 @@ READ = ("link", "joint", "material")
 MOST_LINKS = 10_000
 # The axis of a cylinder is z in URDF, and x in iota.
 X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
-LIGHTEST = 1e-6  # kg: for movable links without mass
 
 
 def read_urdf(path: PathLike, root: Element | None = None, base: str | None = None) -> Mechanism:
@@ -62,10 +62,15 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint) @ moved
         if name != "world":
             mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
+    roots = [] if base == "free" else [name for name in order if name not in joint_of and name != "world"]
+    tree = _tree_of(mechanism, joint_of, roots)
+    bare = fold(mechanism, tree)
     has_collisions = any(link.touching for link in mechanism.links)
     for link in mechanism.links:
         link.touches = bool(link.touching) or not has_collisions
         link.touching = link.touching or seen_shapes(link)
+    for link in bare:
+        mark(link)
     moving = 0
     for name in order:
         joint = joint_of.get(name)
@@ -74,14 +79,9 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             moving += joint.text("type") != "fixed"
             if made is not None:
                 mechanism.joints.append(made)
-        elif name != "world" and base != "free":
+        elif name in roots:
             mechanism.joints.append(LinkJoint("weld", f"{name} to the world", name, None, frames[name].place))
-    fixed = {"world"} if base == "free" else {"world", *(name for name in order if name not in joint_of)}
-    bare = [name for name in order if name not in fixed and links[name].first("inertial") is None]
-    if bare:
-        listed = ", ".join(bare[:5]) + (" ..." if len(bare) > 5 else "")
-        what = "1 link has" if len(bare) == 1 else f"{len(bare)} links have"
-        mechanism.notes.append(f"{what} no <inertial>, and {LIGHTEST} kg each: {listed}")
+    keep_names(mechanism, tree)
     if missing:
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
         what = "1 mesh is missing, and is" if len(missing) == 1 else f"{len(missing)} meshes are missing, and are"
@@ -129,6 +129,8 @@ def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element]
             raise joint.wrong(f"{child} has two parents ({both}): URDF must be a tree")
         joint_of[child] = joint
         children.setdefault(parent, []).append(child)
+    if "world" in joint_of:
+        raise joint_of["world"].wrong("the link world is that which stands still: no joint can have it as its child")
     world = "world" in children and "world" not in links
     order = (["world"] if world else []) + [name for name in links if name not in joint_of]
     for name in order:
@@ -140,6 +142,14 @@ def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element]
         if name not in reached:
             raise joint_of[name].wrong(f"the links round {name} form a loop without a root: URDF must be a tree")
     return joint_of, order, world
+
+
+def _tree_of(mechanism: Mechanism, joint_of: dict[str, Element], roots: list[str]) -> Tree:
+    """The links as a tree that can be folded. roots: those that the world holds."""
+    kinds = {name: joint.text("type") for name, joint in joint_of.items()}
+    above = {name: joint.need("parent").text("link") for name, joint in joint_of.items() if kinds[name] != "floating"}
+    parent = {name: None if link == "world" else link for name, link in above.items()}
+    return Tree(mechanism.links, parent, {name for name, kind in kinds.items() if kind == "fixed"}, set(roots))
 
 
 def _origin(element: Element) -> Frame:
@@ -168,15 +178,11 @@ def _link(
             inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     if mass < 0 or (np.linalg.eigvalsh(inertia) < -1e-9).any():
         raise (inertial or element).wrong(f"the link {name} has a negative mass or inertia")
-    if mass == 0:
-        if inertial is not None:
-            notes.append(f"the link {name} has no mass; it is given {LIGHTEST} kg")
-        mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
     try:
-        solid = solid_of(mass, inertia, at)
+        solid = solid_of(mass, inertia, at) if mass > 0 else None
     except ValueError as error:
         raise (inertial or element).wrong(f"the inertia of the link {name} fits no body: {error}") from None
-    if solid.is_changed:
+    if solid is not None and solid.is_changed:
         notes.append(f"the inertia of the link {name} is impossible for a rigid body; the nearest possible one is used")
     link = Link(name, frame, solid)
     for visual in element.all("visual"):
