@@ -23,11 +23,13 @@ from iota import shapelib
 from iota.shapelib import cif, files
 from iota.shapelib.convex import dual
 from iota.shapelib.johnson import johnson
+from iota.shapelib.mechanism_data import to_structure
 from iota.shapelib.molecule_files import read_molecule
 from iota.shapelib.named import named_polyhedron
 from iota.shapelib.nearest import near_pairs
 from iota.shapelib.surface import Surface
 from iota.shapelib.uniform import SNUB, UNIFORM, uniform
+from iota.shapelib.urdf import read_urdf
 
 WATER_XYZ = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
 
@@ -1067,6 +1069,33 @@ def test_links_of_a_urdf_file_touch_by_their_collisions_and_else_by_what_is_seen
         assert np.array(body.inertia) == pytest.approx(np.diag([0.02, 0.04, 0.03]), abs=1e-9)  # y up
         iota.World(system, ground=0.0).advance(360)
         assert body.center_of_mass.y == pytest.approx(height, abs=1e-4)
+
+
+def test_an_enlarged_mechanism_moves_as_before(write: Write) -> None:
+    """With masses and times kept and gravity as much larger, slides are as much larger and angles the same at all times."""
+    text = """<robot name="r"><link name="base"/>
+  <link name="cart"><inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <link name="arm"><inertial><origin xyz="0.3 0 0"/><mass value="1"/><inertia ixx="0.02" iyy="0.03" izz="0.02"/></inertial></link>
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="cart"/><axis xyz="0 0 1"/>
+    <limit lower="-0.15" upper="0.3"/><dynamics damping="3" friction="0.5"/></joint>
+  <joint name="hinge" type="revolute"><parent link="cart"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="2"/><dynamics damping="0.3" friction="0.2"/></joint>
+</robot>"""
+    path = write("lift.urdf", text)
+    ways = []
+    for scale in (1.0, 10.0):
+        data = read_urdf(path)
+        lift, hinge = (next(joint for joint in data.joints if joint.name == name) for name in ("lift", "hinge"))
+        lift.options["spring"], hinge.options["spring"] = (50.0, 3.0, 0.2), (2.0, 0.3, -0.1)
+        system = iota.System(gravity=(0, -9.81 * scale, 0))
+        made = to_structure(data, (0, 0, 0), scale).realize(system)
+        way = []
+        for _ in range(120):
+            system.step(1 / 240)
+            way.append((made["lift"].slide.value / scale, made["hinge"].angle.value))
+        ways.append(np.array(way))
+    assert np.ptp(ways[0], axis=0).min() > 0.1
+    assert ways[1] == pytest.approx(ways[0], abs=2e-4)
 
 
 BARE_ARM = """<robot name="r">

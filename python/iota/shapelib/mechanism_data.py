@@ -140,8 +140,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         options = dict(joint.options, at=put(joint.at))
         if joint.axis is not None:
             options["axis"] = tuple((Y_UP @ joint.axis).tolist())
-        if joint.kind == "prismatic" and "limits" in options:
-            options["limits"] = tuple(scale * limit for limit in options["limits"])
+        options |= _scaled_options(joint, scale)
         b = None if joint.b is None else number.get(joint.b)
         structure.joint(joint.kind, number[joint.a], b, name=unused(joint.name, "joint"), **options)
     joint_numbers = {joint.name: n for n, joint in enumerate(mechanism.joints)}
@@ -165,6 +164,27 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
             ends.append(end)
         structure.tie("rope", ends[0], ends[1], length=scale * length, name=unused(name, "rope"))
     return structure
+
+
+def _scaled_options(joint: LinkJoint, scale: float) -> dict[str, Any]:
+    """Limits, spring and friction of an enlarged joint. Masses and times are kept, so forces grow as lengths, torques as their squares,
+    and the stiffness and damping of a slide not at all."""
+    is_slide = joint.kind == "prismatic"
+    of_coordinate = scale if is_slide else 1.0
+    of_effort = scale if is_slide else scale**2
+    scaled: dict[str, Any] = {}
+    for name, value in joint.options.items():
+        if name == "limits":
+            scaled[name] = tuple(of_coordinate * limit for limit in value)
+        elif name == "spring":
+            stiffness, damping, rest = value
+            of_rate = of_effort / of_coordinate
+            scaled[name] = (of_rate * stiffness, of_rate * damping, of_coordinate * rest)
+        elif name == "friction":
+            scaled[name] = of_effort * value
+        else:
+            raise ValueError(f"the option {name} of a joint has no known dimension")
+    return scaled
 
 
 def _dress(link: Link, drawn: list[looks.Look], touching: int) -> looks.Look | list[looks.Look]:
