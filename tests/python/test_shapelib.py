@@ -9,7 +9,7 @@ import math
 import os
 import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
@@ -1096,6 +1096,68 @@ def test_an_enlarged_mechanism_moves_as_before(write: Write) -> None:
         ways.append(np.array(way))
     assert np.ptp(ways[0], axis=0).min() > 0.1
     assert ways[1] == pytest.approx(ways[0], abs=2e-4)
+
+
+ONE_LINK = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>
+{}</link></robot>"""
+CORNER = [(0, 0, 0), (0.3, 0, 0), (0, 0.2, 0), (0, 0, 0.1)]
+FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+
+
+def off(triangles: Sequence[Sequence[int]]) -> str:
+    rows = [" ".join(map(str, place)) for place in CORNER]
+    return "\n".join(["OFF", f"4 {len(triangles)} 0", *rows, *("3 " + " ".join(map(str, each)) for each in triangles)])
+
+
+def test_mirrored_and_open_meshes_of_a_urdf_are_taken(write: Write) -> None:
+    faces = FACES
+    write("whole.off", off(faces))
+    write("open.off", off(faces[:3]))
+    write("reversed.off", off([face[::-1] for face in faces]))
+    mesh = '<{0}><geometry><mesh filename="{1}.off" scale="{2}"/></geometry></{0}>'
+
+    def read(*parts: str) -> shapelib.Imported:
+        return shapelib.mechanism(write("m.urdf", ONE_LINK.format("".join(parts))), base="free")
+
+    def mesh_in(found: shapelib.Imported) -> iota.Mesh:
+        shape = found.bodies[0].shape
+        assert isinstance(shape, iota.Mesh)
+        return shape
+
+    found = read(mesh.format("collision", "whole", "1 -1 1"))
+    made = found.realize(iota.System())["a"]
+    assert found.notes == [] and mesh_in(found).mass_properties.volume == pytest.approx(1e-3)
+    assert np.array(mesh_in(found).vertices)[:, 1].min() == pytest.approx(-0.2)
+    assert tuple(made.center_of_mass) == pytest.approx((0, 0, 0))
+    found = read(mesh.format("collision", "reversed", "1 1 1"))
+    assert found.notes == ["the mesh reversed.off is inside out, and turned round"]
+    found = read(
+        mesh.format("visual", "open", "1 1 1"), '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    )
+    assert found.notes == [] and isinstance(found.bodies[0].shape, iota.Box)
+    look = found.looks["a"]
+    look = look[0] if isinstance(look, list) else look
+    assert isinstance(look, iota.looks.Look) and isinstance(look.shape, iota.Mesh) and not look.shape.closed
+    system = iota.System()
+    found.realize(system, iota.World(system, ground=None))
+    for kind in ("visual", "collision"):
+        found = read(mesh.format(kind, "open", "1 1 1"))
+        assert found.notes == ["the link a touches by the convex hull of an open mesh"]
+        assert mesh_in(found).mass_properties.volume == pytest.approx(1e-3)
+    found = read(mesh.format("collision", "open", "1 1 0"))
+    assert "does not touch by one of its shapes" in found.notes[0] and not found.bodies[0].touches
+    fixed = ONE_LINK.format(mesh.format("collision", "open", "1 1 1")).replace("inertial", "other")
+    found = shapelib.mechanism(write("m.urdf", fixed))
+    assert found.bodies[0].kind == "static" and not mesh_in(found).closed
+
+
+def test_a_capsule_of_a_urdf_lies_along_z(write: Write) -> None:
+    capsule = '<collision><geometry><capsule radius="0.1" length="0.6"/></geometry></collision>'
+    system = iota.System()
+    found = shapelib.mechanism(write("c.urdf", ONE_LINK.format(capsule)), base="free", at=(0, 1, 0))
+    found.realize(system)
+    hit = iota.World(system, ground=None).queries.ray((0, 3, 0), (0, -1, 0))
+    assert hit is not None and hit.point.y == pytest.approx(1.4)
 
 
 BARE_ARM = """<robot name="r">

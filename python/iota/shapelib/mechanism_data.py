@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from iota import looks
-from iota._core import Shape
+from iota._core import Mesh, Shape
 from iota.builder.parts import BodyKind, Coordinate, JointKind, Place, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
+from iota.shapelib.meshes import hull_of
 
 
 @dataclass
@@ -120,7 +121,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
                 position=put(frame.place),
                 orientation=to_quaternion(Y_UP @ frame.turn),
                 look=link.name,
-                touches=link.touches,
+                touches=link.touches and bool(shapes or not link.touching),
                 others=[(other, put(at.place), to_quaternion(Y_UP @ at.turn)) for other, at in others],
                 center=put(ellipsoid[1].place),
                 inertia=((inertia + inertia.T) / 2).tolist(),
@@ -228,10 +229,13 @@ def _usable(link: Link, notes: list[str]) -> list[tuple[Shape, Frame]]:
         try:
             if link.kind != "static":
                 shape.mass_properties  # noqa: B018
-        except ValueError as error:
-            notes.append(f"the link {link.name} does not touch by one of its shapes: {error}")
-        else:
             usable.append((shape, place))
+        except ValueError as error:
+            try:
+                usable.append((hull_of(shape) if isinstance(shape, Mesh) else shape, place))
+                notes.append(f"the link {link.name} touches by the convex hull of an open mesh")
+            except ValueError:
+                notes.append(f"the link {link.name} does not touch by one of its shapes: {error}")
     return usable
 
 

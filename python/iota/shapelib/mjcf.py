@@ -17,6 +17,7 @@ from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
 from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
+from iota.shapelib.meshes import mesh_of
 from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import X_TO_Z
 
@@ -238,7 +239,7 @@ class _Reader:
             vertices = m.mesh_vert[m.mesh_vertadr[mesh] : m.mesh_vertadr[mesh] + m.mesh_vertnum[mesh]]
             faces = m.mesh_face[m.mesh_faceadr[mesh] : m.mesh_faceadr[mesh] + m.mesh_facenum[mesh]]
             try:
-                return Mesh(vertices.astype(float), faces), np.eye(3)
+                return mesh_of(vertices, faces)[0], np.eye(3)
             except ValueError as error:
                 self.mechanism.notes.append(f"the mesh {m.mesh(mesh).name} is not drawn: {error}")
         return None

@@ -11,12 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from iota import looks
-from iota._core import Box, Cylinder, Mesh, Shape, Sphere
+from iota._core import Box, Capsule, Cylinder, Shape, Sphere
 from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, about, from_rpy, solid_of
 from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
+from iota.shapelib.meshes import mesh_of
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
 
@@ -186,21 +187,21 @@ def _link(
         notes.append(f"the inertia of the link {name} is impossible for a rigid body; the nearest possible one is used")
     link = Link(name, frame, solid)
     for visual in element.all("visual"):
-        found = _shape(visual.need("geometry"), path, missing)
+        found = _shape(visual.need("geometry"), path, missing, notes)
         if found is not None:
             shape, turn = found
             color = _color(visual, colors)
             where = _origin(visual)
             link.drawn.append((looks.Look(shape, "paint", color), Frame(where.place, where.turn @ turn)))
     for collision in element.all("collision"):
-        found = _shape(collision.need("geometry"), path, missing)
+        found = _shape(collision.need("geometry"), path, missing, notes)
         if found is not None:
             where = _origin(collision)
             link.touching.append((found[0], Frame(where.place, where.turn @ found[1])))
     return link
 
 
-def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape, np.ndarray] | None:
+def _shape(geometry: Element, path: PathLike, missing: list[str], notes: list[str]) -> tuple[Shape, np.ndarray] | None:
     """A shape and its rotation; None for a mesh that cannot be read, which is added to `missing`."""
     for child in geometry.children:
         try:
@@ -208,6 +209,8 @@ def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape
                 return Box(child.numbers("size", 3)), np.eye(3)
             if child.tag == "cylinder":
                 return Cylinder(child.number("radius"), child.number("length")), X_TO_Z
+            if child.tag == "capsule":
+                return Capsule(child.number("radius"), child.number("length")), X_TO_Z
             if child.tag == "sphere":
                 return Sphere(child.number("radius")), np.eye(3)
         except ValueError as error:
@@ -222,10 +225,13 @@ def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape
             surface.weld()
             scale = np.array(child.numbers("scale", 3, "1 1 1"))
             try:
-                return Mesh(surface.vertices * scale, surface.triangles()[0]), np.eye(3)
+                mesh, is_turned = mesh_of(surface.vertices, surface.triangles()[0], scale)
             except ValueError as error:
                 raise child.wrong(f"the mesh {name}: {error}") from None
-    raise geometry.wrong("a geometry is a box, cylinder, sphere or mesh")
+            if is_turned:
+                notes.append(f"the mesh {name} is inside out, and turned round")
+            return mesh, np.eye(3)
+    raise geometry.wrong("a geometry is a box, cylinder, capsule, sphere or mesh")
 
 
 def _find(name: str, path: Path) -> Path | None:
