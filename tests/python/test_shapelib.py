@@ -20,7 +20,7 @@ import pytest
 
 import iota
 from iota import shapelib
-from iota.shapelib import cif, files
+from iota.shapelib import cif, files, mjcf_notes
 from iota.shapelib.convex import dual
 from iota.shapelib.johnson import johnson
 from iota.shapelib.mechanism_data import to_structure
@@ -1344,7 +1344,7 @@ def test_joints_of_an_mjcf_file_that_are_equal_move_together(write: Write) -> No
     equal = '<joint name="gear" joint1="a" joint2="b" polycoef="0 -2 0 0 0"/>'
     for text in (equal, '<tendon name="gear" tendon1="turns" tendon2="sum" polycoef="0 -2 0 0 0"/>'):
         found = shapelib.mechanism(write("hands.xml", HANDS.format(text).replace("-0.1 0.65", "-100 100")))
-        assert found.notes == []
+        assert found.notes == ["the gravity of the file is left out, as the system has one: system.gravity = (0, 0, 0)"]
         system = iota.System(gravity=(0, 0, 0))
         made = found.realize(system)
         made["b joint"].angle.motor = (1.0, 1e3)
@@ -1368,6 +1368,140 @@ def test_limits_of_sums_of_joints_become_ours(write: Write) -> None:
         for _ in range(240):
             system.step(1 / 120)
         assert turn_about_up(made["b"], 1.0) == pytest.approx(end, abs=1e-3)
+
+
+SAID = """<mujoco>
+  <option timestep="0.005" density="1000" gravity="0 0 -1.6"><flag contact="disable" energy="enable"/></option>
+  <default><geom friction="0.3 0.005 0.0001"/></default>
+  <asset><material name="shiny" rgba="1 0 0 1" shininess="0.9"/></asset>
+  <worldbody>
+    <light/><camera name="eye"/>
+    <body name="b" gravcomp="1">
+      <joint name="j" axis="0 1 0" stiffness="5 2" armature="0.1" margin="0.01" solreflimit="0.1 1" actuatorfrcrange="-1 1"/>
+      <geom name="g" size="0.1" mass="1" pos="0.3 0 0" material="shiny" margin="0.02" condim="6"/><site name="s"/>
+      <body name="c" pos="1 0 0">
+        <joint name="k" type="ball" stiffness="50" damping="2" frictionloss="0.1" range="0 1" limited="true"/>
+        <geom name="h" size="0.1"/>
+        <site name="t"/>
+      </body>
+    </body>
+    <body name="f" pos="0 5 0"><joint name="f" type="free" damping="1"/><geom size="0.1"/></body>
+    <body name="m" mocap="true"><geom size="0.1"/></body>
+  </worldbody>
+  <tendon><fixed name="sum" stiffness="3"><joint joint="j" coef="1"/></fixed>
+    <spatial name="line" stiffness="100" range="0.2 2" limited="true" frictionloss="2"><site site="s"/><site site="t"/></spatial></tendon>
+  <contact><pair geom1="g" geom2="h"/></contact>
+  <actuator><motor joint="j"/></actuator>
+  <sensor><jointpos joint="j"/></sensor>
+  <custom><numeric name="number" data="1"/></custom>
+  <visual><global offwidth="10"/></visual>
+</mujoco>"""
+
+
+def test_all_that_an_mjcf_file_says_and_we_do_not_take_is_noted_with_its_line(write: Write) -> None:
+    notes = shapelib.mechanism(write("said.xml", SAID)).notes
+    assert shapelib.mechanism(write("said.mjcf", SAID)).notes == notes
+    for note in (
+        "the gravity of the file is left out, as the system has one: system.gravity = (0, -1.6, 0)",
+        "the limit of the ball joint k is left out",
+        "the least length of the tendon line is left out",
+        "gravcomp of body b, line 7 (1) is left out",
+        "mocap of body m, line 17 (true) is left out",
+        "armature of joint j, line 8 (0.1) is left out",
+        "stiffness of joint j, line 8, beyond the first coefficient, (5 2); joint k, line 11 (50) is left out",
+        "damping of joint k, line 11 (2); joint f, line 16 (1) is left out",
+        "frictionloss of joint k, line 11 (0.1) is left out",
+        "solreflimit of joint j, line 8 (0.1 1) is left out",
+        "actuatorfrcrange of joint j, line 8 (-1 1) is left out",
+        "condim of geom g, line 9 (6) is left out",
+        "margin of geom g, line 9 (0.02) is left out",
+        "shininess of material shiny, line 4 (0.9) is left out",
+        "stiffness of tendon sum, line 19 (3) is left out",
+        "frictionloss of tendon line, line 20 (2) is left out",
+        "options are left out: density 1000, line 2; timestep 0.005, line 2",
+        "flags of <option> are left out: contact off, energy on",
+        "settings of MuJoCo's view are left out: <visual>",
+        "1 pair is left out: pair 0, line 21",
+        "1 numeric is left out: numeric number, line 24",
+        "1 actuator is left out",
+        "1 sensor is left out",
+        "1 light is left out",
+        "1 camera is left out",
+    ):
+        assert note in notes, "\n".join([note, "is not in", *notes])
+    friction = next(note for note in notes if note.startswith("friction of"))
+    assert all(name in friction for name in ("geom g, line 9", "geom h, line 12", "0.3 0.005 0.0001"))
+    assert not any(note.startswith("stiffness of tendon") and "line 20" in note for note in notes)
+
+
+def test_no_attribute_of_mujoco_is_dropped_silently() -> None:
+    """Whatever MuJoCo's elements have, now and later: what the table does not take is noted when it is changed."""
+    import mujoco
+
+    changed = 0
+    for kind, table in mjcf_notes.TAKEN.items():
+        if kind == "Option":
+            continue
+        names = mjcf_notes._attribute_names(mjcf_notes._usual(spec := mujoco.MjSpec(), kind))
+        for name in names:
+            if name in mjcf_notes.NO_EFFECT or (name in table and table[name] is None):
+                continue
+            spec = mujoco.MjSpec()
+            element = mjcf_notes._usual(spec, kind)
+            if kind == "Joint":
+                element.type = mujoco.mjtJoint.mjJNT_BALL
+            value = getattr(element, name)
+            if isinstance(value, np.ndarray) or (isinstance(value, int | float) and not hasattr(value, "name")):
+                try:
+                    setattr(element, name, value + 1 if not isinstance(value, bool) else not value)
+                except TypeError:
+                    continue
+                notes = mjcf_notes.left_out(mujoco, spec, [], lambda *_: False)
+                called = mjcf_notes.IN_FILES.get(name, name.replace("_", ""))
+                assert any(note.startswith(f"{called} of ") for note in notes), (kind, name, notes)
+                changed += 1
+    assert changed > 40
+
+
+def test_a_tendon_between_two_places_of_an_mjcf_file_is_a_spring(write: Write) -> None:
+    """A mass on a vertical slide: x'' = -g + k (L - rest) / m, upwards where the spring is longer."""
+    text = """<mujoco><worldbody><site name="top" pos="0 0 1"/>
+      <body name="b"><joint type="slide" axis="0 0 1"/><geom size="0.1" mass="1"/><site name="s"/></body></worldbody>
+      <tendon><spatial name="line" stiffness="100" damping="2" {} limited="true" range="0 3"><site site="top"/><site site="s"/></spatial></tendon>
+    </mujoco>"""
+    for springlength, slack in (("", 0.0), ('springlength="0.2 1.05"', 0.05)):
+        found = shapelib.mechanism(write("line.xml", text.format(springlength)))
+        assert not any("tendon line" in note for note in found.notes)
+        system = iota.System()
+        made = found.realize(system)
+        for _ in range(240):
+            system.step(1 / 480)
+        height, speed, dt = 0.0, 0.0, 1e-5
+        for _ in range(50_000):
+            speed += dt * (-9.81 + 100 * max(-height - slack, 0.0) - 2 * speed)
+            height += dt * speed
+        assert made["b"].position.y == pytest.approx(height, abs=1e-3)
+
+
+def test_all_that_a_urdf_file_says_and_we_do_not_take_is_noted_with_its_line(write: Write) -> None:
+    text = """<robot name="r" extra="1"><link name="base"><contact/></link>
+  <link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial><visual><geometry><sphere radius="1"/></geometry>
+    <material name="m"><texture filename="a.png"/></material></visual></link>
+  <link name="plate"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 0" quat_xyzw="0 0 0 1"/>
+    <limit lower="-1" upper="1" effort="10" velocity="0"/><safety_controller k_velocity="1"/></joint>
+  <joint name="p" type="planar"><parent link="arm"/><child link="plate"/><axis xyz="0 1 0"/><dynamics damping="3"/></joint>
+</robot>"""
+    notes = shapelib.mechanism(write("said.urdf", text)).notes
+    assert notes == [
+        "extra of <robot> is left out (line 1)",
+        "<contact> in <link> is left out (line 1)",
+        "<texture> in <material> is left out (line 3)",
+        "quat_xyzw of <origin> is left out (line 5)",
+        "effort of <limit> is left out (line 6)",
+        "<safety_controller> in <joint> is left out (line 6)",
+        "<dynamics> of planar joints is left out (line 7)",
+    ]
 
 
 def test_couplings_of_an_mjcf_file_that_we_have_not_are_listed(write: Write) -> None:

@@ -134,6 +134,9 @@ def keep_names(mechanism: Mechanism, tree: Tree) -> None:
         if joint.kind != "weld" or (joint.a != joint.b and joint.a not in tree.static):
             kept.append(joint)
     mechanism.joints = kept
+    for spring in mechanism.springs:
+        (a, p), (b, q) = spring.ends
+        spring.ends = ((tree.host.get(a, a), p), (tree.host.get(b, b), q))
     mechanism.ropes = [
         (name, (tree.host.get(a, a), p), (tree.host.get(b, b), q), length)
         for name, (a, p), (b, q), length in mechanism.ropes

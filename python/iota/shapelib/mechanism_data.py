@@ -17,6 +17,9 @@ from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 from iota.shapelib.meshes import hull_of
 
+# Of a spring that neither pulls nor pushes between the lengths a and b.
+SLACK = "energy = 0.5*k*max(r - b, 0)^2 + 0.5*k*max(a - r, 0)^2; force = -c*v"
+
 
 @dataclass
 class Link:
@@ -64,6 +67,18 @@ class JointCoupling:
 
 
 @dataclass
+class LinkSpring:
+    """A spring and damper between two places: N/m, N s/m, and the shortest and longest length at which it is at rest, m. ends: links and
+    places in the world."""
+
+    name: str
+    ends: tuple[tuple[str, Any], tuple[str, Any]]
+    stiffness: float
+    damping: float
+    rest: tuple[float, float]
+
+
+@dataclass
 class Mechanism:
     """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m. passing: names of links that do not
     touch each other. places: names of links that are parts of others, those others, and where they are in the world."""
@@ -73,6 +88,7 @@ class Mechanism:
     joints: list[LinkJoint] = field(default_factory=list)
     couplings: list[JointCoupling] = field(default_factory=list)
     ropes: list[tuple[str, tuple[str, Any], tuple[str, Any], float]] = field(default_factory=list)
+    springs: list[LinkSpring] = field(default_factory=list)
     passing: list[tuple[str, str]] = field(default_factory=list)
     places: list[tuple[str, str, Frame]] = field(default_factory=list)
     counts: dict[str, int | float | str] = field(default_factory=dict)
@@ -154,16 +170,28 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         structure.couple(
             *terms, length=coupling.length, one_sided=coupling.one_sided, name=unused(coupling.name, "coupling")
         )
-    for name, (a, p), (b_link, q), length in mechanism.ropes:
-        ends: list[int] = []
-        for link_name, place in ((a, p), (b_link, q)):
-            end = structure.point(put(place), mass=0.0 if link_name in number else 1.0)
-            if link_name in number:
-                structure.bodies[number[link_name]].points.append(end)
-            else:
-                structure.nail(end)
-            ends.append(end)
-        structure.tie("rope", ends[0], ends[1], length=scale * length, name=unused(name, "rope"))
+
+    def held(end: tuple[str, Any]) -> int:
+        """A point at the end of a rope or spring."""
+        link_name, place = end
+        point = structure.point(put(place), mass=0.0 if link_name in number else 1.0)
+        if link_name in number:
+            structure.bodies[number[link_name]].points.append(point)
+        else:
+            structure.nail(point)
+        return point
+
+    for name, first, second, length in mechanism.ropes:
+        structure.tie("rope", held(first), held(second), length=scale * length, name=unused(name, "rope"))
+    for spring in mechanism.springs:
+        values: dict[str, Any]
+        shortest, longest = (scale * length for length in spring.rest)
+        if shortest == longest:
+            law, values = "spring", {"stiffness": spring.stiffness, "damping": spring.damping, "length": longest}
+        else:
+            law, values = SLACK, {"k": spring.stiffness, "c": spring.damping, "a": shortest, "b": longest}
+        ends = held(spring.ends[0]), held(spring.ends[1])
+        structure.bond(*ends, law, name=unused(spring.name, "spring"), **values)
     return structure
 
 

@@ -35,8 +35,9 @@ def mechanism(
     base: of URDF, whether root links are held by the world ("fixed", the default), those without mass as static bodies, or free; MJCF
     files specify it.
     scale: of lengths; masses and times are kept, so that forces grow as lengths, torques and inertia as their squares: springs, dampers
-    and friction let it move as before, where gravity, that of the system, is as much larger. at: place of the file's origin, m. Unsupported parts are left out and listed in
-    `notes`: transmissions, actuators, coefficients of contacts, tendons over pulleys, nonlinear equalities, missing meshes. Joints that
+    and friction let it move as before, where gravity, that of the system, is as much larger. at: place of the file's origin, m. What is left out is
+    listed in `notes`: gravity, transmissions, actuators, coefficients of contacts, tendons over pulleys, nonlinear equalities, missing
+    meshes, and every attribute that is not its default and has no counterpart. Joints that
     mimic others, equalities of joints and sums of joints (fixed tendons) become couplings. Raises `FileError` that names
     file and line, ImportError without MuJoCo for MJCF.
 

@@ -16,8 +16,9 @@ from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, LinkSpring, Mechanism, seen_shapes
 from iota.shapelib.meshes import mesh_of
+from iota.shapelib.mjcf_notes import gravity_note, left_out
 from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import X_TO_Z
 
@@ -49,6 +50,8 @@ def read_mjcf(path: PathLike) -> Mechanism:
     mujoco.set_mju_user_warning(lambda text: warnings.append(" ".join(str(text).split())))
     try:
         model = compiled(mujoco, path)
+        notes: list[str] = []
+        spec = said(mujoco, path, included, notes)
         state = mujoco.MjData(model)
         mujoco.mj_kinematics(model, state)
     except ValueError as error:
@@ -62,6 +65,13 @@ def read_mjcf(path: PathLike) -> Mechanism:
         raise
     except ValueError as error:
         raise FileError(path, f"has a size or an inertia that no body can have: {error}") from None
+    reader.mechanism.notes += notes
+    if spec is not None:
+        roots = [root, *included]
+        reader.mechanism.notes += [
+            *gravity_note(mujoco, spec),
+            *left_out(mujoco, spec, roots, reader.is_taken),
+        ]
     reader.mechanism.notes += [f"MuJoCo warns: {text}" for text in warnings]
     return reader.mechanism
 
@@ -76,6 +86,22 @@ def compiled(mujoco: Any, path: PathLike) -> Any:
     spec = mujoco.MjSpec.from_file(str(path))
     spec.compiler.LRopt.mode = int(mujoco.mjtLRMode.mjLRMODE_NONE)
     return spec.compile()
+
+
+def said(mujoco: Any, path: PathLike, included: list[Element], notes: list[str]) -> Any:
+    """The elements of the file as MuJoCo reads them, with defaults and lines; None, and a note, where it cannot."""
+    try:
+        if Path(path).suffix == ".xml":
+            return mujoco.MjSpec.from_file(str(path))
+        # MuJoCo 4 opens files of other endings as models only, not as elements.
+        folder = Path(path).parent
+        files = {str(Path(each.path).relative_to(folder)): Path(each.path).read_bytes() for each in included}
+        return mujoco.MjSpec.from_string(Path(path).read_text(), include=files)
+    except ValueError as error:
+        notes.append(
+            f"what is left out is not listed in full, as MuJoCo cannot read the elements: {error}".split("\n")[0]
+        )
+        return None
 
 
 def wrong(path: PathLike, text: str, included: list[Element]) -> FileError:
@@ -131,7 +157,7 @@ class _Reader:
     def __init__(self, model: Any, state: Any, title: str) -> None:
         self.model, self.state = model, state
         self.mechanism = Mechanism(title)
-        self.armatures = 0
+        self.springs: set[int] = set()  # tendons whose springs are taken
         self.names = [model.body(number).name or f"body {number}" for number in range(model.nbody)]
 
     def read(self) -> None:
@@ -155,7 +181,6 @@ class _Reader:
         planes = int((m.geom_type == 0).sum())
         self.fold()
         for count, what in (
-            (self.armatures, "rotor inertias (armature)"), (m.nu, "actuators"), (m.nsensor, "sensors"), (m.nkey, "keyframes"),
             (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"),
         ):  # fmt: skip
             if count:
@@ -181,6 +206,10 @@ class _Reader:
             mark(link)
         keep_names(self.mechanism, tree)
 
+    def is_taken(self, kind: str, number: int, attribute: str) -> bool:
+        """Whether it is of a spring of a tendon that became one of ours."""
+        return kind == "Tendon" and attribute in ("stiffness", "damping", "springlength") and number in self.springs
+
     def frame(self, body: int) -> Frame:
         return Frame(self.state.xpos[body].copy(), self.state.xmat[body].reshape(3, 3).copy())
 
@@ -201,7 +230,9 @@ class _Reader:
             shape = self.shape(geom)
             if shape is not None:
                 w, x, y, z = m.geom_quat[geom]
-                red, green, blue, _ = (round(255 * float(np.clip(v, 0, 1))) for v in m.geom_rgba[geom])
+                material = int(m.geom_matid[geom])
+                rgba = m.mat_rgba[material] if material >= 0 else m.geom_rgba[geom]
+                red, green, blue, _ = (round(255 * float(np.clip(v, 0, 1))) for v in rgba)
                 look = looks.Look(shape[0], "paint", f"#{red:02x}{green:02x}{blue:02x}")
                 where = Frame(m.geom_pos[geom].copy(), from_quaternion(x, y, z, w) @ shape[1])
                 link.drawn.append((look, where))
@@ -322,7 +353,6 @@ class _Reader:
                 options["limits"] = (low, high)
             else:
                 self.mechanism.notes.append(f"the limits of {name} exclude its initial pose: left out")
-        self.armatures += m.dof_armature[dof] > 0
         self.mechanism.joints.append(
             LinkJoint("prismatic" if kind == SLIDE else "revolute", name, a, b, at, axis, options)
         )
@@ -424,8 +454,6 @@ class _Reader:
         wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])
         total = self.sum_of_tendon(number)
         if total is not None:
-            if any(np.any(of[number] > 0) for of in (m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss)):
-                self.mechanism.notes.append(f"stiffness, damping and friction of {name} are left out")
             if m.tendon_limited[number]:
                 # Coordinates are 0 in the initial pose, where the tendon has a length of its own.
                 low, high = (float(v) - float(m.tendon_length0[number]) for v in m.tendon_range[number])
@@ -437,7 +465,9 @@ class _Reader:
                     self.mechanism.couplings.append(coupling)
             return
         is_plain = len(wraps) == 2 and all(int(m.wrap_type[wrap]) == WRAPPED_SITE for wrap in wraps)
-        if not (is_plain and m.tendon_limited[number]):
+        stiffness, damping = (np.ravel(of[number]) for of in (m.tendon_stiffness, m.tendon_damping))
+        has_spring = is_plain and (stiffness[0] > 0 or damping[0] > 0) and not any((*stiffness[1:], *damping[1:]))
+        if not (has_spring or (is_plain and m.tendon_limited[number])):
             what = "has no largest length" if is_plain else "runs over more than two places"
             self.mechanism.notes.append(f"{name} {what}: left out")
             return
@@ -446,4 +476,12 @@ class _Reader:
             site = int(m.wrap_objid[wrap])
             body = int(m.site_bodyid[site])
             ends.append((self.names[body], self.state.site_xpos[site].copy()))
-        self.mechanism.ropes.append((name, ends[0], ends[1], float(m.tendon_range[number][1])))
+        if has_spring:
+            shortest, longest = (float(v) for v in m.tendon_lengthspring[number])
+            rates = float(stiffness[0]), float(damping[0])
+            self.springs.add(number)
+            self.mechanism.springs.append(LinkSpring(f"{name} spring", (ends[0], ends[1]), *rates, (shortest, longest)))
+        if m.tendon_limited[number]:
+            if m.tendon_range[number][0] > 0:
+                self.mechanism.notes.append(f"the least length of {name} is left out")
+            self.mechanism.ropes.append((name, ends[0], ends[1], float(m.tendon_range[number][1])))

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -20,10 +19,10 @@ from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechani
 from iota.shapelib.meshes import mesh_of
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
+from iota.shapelib.urdf_notes import left_out
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ONE_COORDINATE = ("revolute", "continuous", "prismatic")
-READ = ("link", "joint", "material")
 MOST_LINKS = 10_000
 # The axis of a cylinder is z in URDF, and x in iota.
 X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
@@ -66,6 +65,8 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
     roots = [] if base == "free" else [name for name in order if name not in joint_of and name != "world"]
     tree = _tree_of(mechanism, joint_of, roots)
     bare = fold(mechanism, tree)
+    if "world" in links and any(each.tag in ("visual", "collision") for each in links["world"].children):
+        mechanism.notes.append(f"the shapes of the link world are left out (line {links['world'].line})")
     has_collisions = any(link.touching for link in mechanism.links)
     for link in mechanism.links:
         link.touches = bool(link.touching) or not has_collisions
@@ -87,26 +88,13 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
         what = "1 mesh is missing, and is" if len(missing) == 1 else f"{len(missing)} meshes are missing, and are"
         mechanism.notes.append(f"{what} not drawn: {listed}")
-    mechanism.notes += _left_out(robot)
+    mechanism.notes += left_out(robot)
     mechanism.counts = {
         "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
         "independent joints": moving - len(mimics),
         "mass": math.fsum(_mass(element) for element in links.values()), "missing meshes": len(missing),
     }  # fmt: skip
     return mechanism
-
-
-def _left_out(robot: Element) -> list[str]:
-    """Notes about elements that are not read: joints of other namespaces by name, as their links hang on nothing, the rest by number."""
-    notes = []
-    joints = [element for element in robot.children if element.tag.endswith("joint") and element.tag != "joint"]
-    if joints:
-        named = ", ".join(f"{each.text('name', '')} (<{each.tag}>, line {each.line})" for each in joints[:9])
-        more = f" and {len(joints) - 9} more" if len(joints) > 9 else ""
-        count = "1 joint is" if len(joints) == 1 else f"{len(joints)} joints are"
-        notes.append(f"{count} not of URDF and left out, so that links hang on nothing: {named}{more}")
-    others = Counter(each.tag for each in robot.children if each.tag not in READ and each not in joints)
-    return notes + [f"{number} <{tag}> {'is' if number == 1 else 'are'} left out" for tag, number in others.items()]
 
 
 def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element], list[str], bool]:
