@@ -1151,6 +1151,14 @@ def test_mirrored_and_open_meshes_of_a_urdf_are_taken(write: Write) -> None:
     assert found.bodies[0].kind == "static" and not mesh_in(found).closed
 
 
+def test_colors_of_a_urdf_have_their_opacity(write: Write) -> None:
+    seen = '<visual><geometry><box size="1 1 1"/></geometry><material name="{0}"><color rgba="1 0 0 {1}"/></material></visual>'
+    parts = seen.format("glass", 0.2) + seen.format("brick", 1)
+    look = shapelib.mechanism(write("c.urdf", ONE_LINK.format(parts)), base="free").looks["a"]
+    assert isinstance(look, list)
+    assert [each.color for each in look] == ["#ff000033", "#ff0000"]
+
+
 def test_a_capsule_of_a_urdf_lies_along_z(write: Write) -> None:
     capsule = '<collision><geometry><capsule radius="0.1" length="0.6"/></geometry></collision>'
     system = iota.System()

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
@@ -40,6 +40,12 @@ class Link:
 def seen_shapes(link: Link) -> list[tuple[Shape, Frame]]:
     """The shapes that are drawn, to touch by."""
     return [(look.shape, place) for look, place in link.drawn if look.shape is not None]
+
+
+def color_of(rgba: Iterable[float]) -> str:
+    """Red, green, blue and opacity, from 0 to 1, as "#rrggbb" or "#rrggbbaa"."""
+    parts = [round(255 * min(max(float(value), 0.0), 1.0)) for value in rgba]
+    return "#" + "".join(f"{part:02x}" for part in (parts if parts[3] < 255 else parts[:3]))
 
 
 @dataclass

@@ -16,7 +16,7 @@ from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, LinkSpring, Mechanism, seen_shapes
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, LinkSpring, Mechanism, color_of, seen_shapes
 from iota.shapelib.meshes import mesh_of
 from iota.shapelib.mjcf_notes import gravity_note, left_out
 from iota.shapelib.trees import Element, read_tree
@@ -232,8 +232,7 @@ class _Reader:
                 w, x, y, z = m.geom_quat[geom]
                 material = int(m.geom_matid[geom])
                 rgba = m.mat_rgba[material] if material >= 0 else m.geom_rgba[geom]
-                red, green, blue, _ = (round(255 * float(np.clip(v, 0, 1))) for v in rgba)
-                look = looks.Look(shape[0], "paint", f"#{red:02x}{green:02x}{blue:02x}")
+                look = looks.Look(shape[0], "paint", color_of(rgba))
                 where = Frame(m.geom_pos[geom].copy(), from_quaternion(x, y, z, w) @ shape[1])
                 link.drawn.append((look, where))
                 if m.geom_contype[geom] or m.geom_conaffinity[geom]:

@@ -15,7 +15,7 @@ from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, about, from_rpy, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, seen_shapes
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism, color_of, seen_shapes
 from iota.shapelib.meshes import mesh_of
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
@@ -260,8 +260,7 @@ def _color(visual: Element, colors: dict[str, str]) -> str | None:
 
 
 def _hex(color: Element) -> str:
-    red, green, blue, _ = (round(255 * min(max(value, 0.0), 1.0)) for value in color.numbers("rgba", 4))
-    return f"#{red:02x}{green:02x}{blue:02x}"
+    return color_of(color.numbers("rgba", 4))
 
 
 def _mimics(joint_of: dict[str, Element], notes: list[str]) -> tuple[list[JointCoupling], dict[str, float]]:
