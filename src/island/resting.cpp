@@ -36,7 +36,7 @@ void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& r
   put_to_rest(model);
 }
 
-// What joins in the midst of a step is in no list of bodies to wake: one that slept moved on as a sleeper, whose outline stayed behind.
+// Bodies that join in the midst of a step are in no list of those to wake: a sleeper moved on as one, and its outline stayed behind.
 void Island::look_whether_still(const Model& model) {
   const auto has = [&](BodyKind kind) {
     return std::ranges::any_of(nodes_.bodies, [&](std::uint32_t b) { return model.bodies[b].kind == kind; });

@@ -118,7 +118,7 @@ void Newton::add_impulses(Problem& problem) const {
   });
 }
 
-// Where a target changes its speed, or a rope becomes taut, the multipliers of the mid-point rule have twice what this takes, and the
+// The multipliers of the mid-point rule have twice what a target takes that changes its speed, or a rope that becomes taut. The
 // projection takes half of it back.
 void Newton::note_late_impulses(Problem& problem, double h) const {
   constexpr double little = 1e-3;  // of the impulse of a driven row

@@ -380,7 +380,7 @@ struct Problem {
   /// that in its multipliers.
   void begin_impulses();
   bool adds_impulses() const { return adds_impulses_; }
-  /// Those of the multipliers, for h seconds.
+  /// Adds the multipliers, for h seconds.
   void add_impulses(double h);
   /// The multipliers are not all that the rows give. Otherwise they stay, as they balance accelerations to round-off, and late impulses only
   /// to the turn within the step.

@@ -706,7 +706,8 @@ void ContactFinder::list_contacts_of(const model::Model& model, std::span<const 
   ingredient::sort_unique(contacts_);
 }
 
-// What was asleep when the step began has only contacts. Without them a tower that a ball wakes fell into itself for a step.
+// Bodies that were asleep when the step began have contacts, but no pairs. Without them a tower that a ball wakes fell into itself for
+// a step.
 void ContactFinder::add_pairs_of_woken(const model::Model& model) {
   const std::size_t known = pairs_.size();
   for (const std::uint32_t slot : contacts_) {

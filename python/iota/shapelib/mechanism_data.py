@@ -17,7 +17,7 @@ from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 from iota.shapelib.meshes import hull_of
 
-# Of a spring that neither pulls nor pushes between the lengths a and b.
+# A spring that neither pulls nor pushes between the lengths a and b.
 SLACK = "energy = 0.5*k*max(r - b, 0)^2 + 0.5*k*max(a - r, 0)^2; force = -c*v"
 
 

@@ -33,13 +33,13 @@ def _all(names: str) -> Taken:
     return dict.fromkeys(names.split(), None)
 
 
-# Those without effect on the world: names, order, and what MuJoCo has used up when the model is built.
+# Attributes without effect on the world: names, order, and what MuJoCo has used up when the model is built.
 NO_EFFECT = {
     "alt", "authored", "childclass", "classname", "compiler", "comment", "default", "frame", "fuse", "group", "ialt", "id", "info",
     "name", "parent", "signature", "simple", "userdata",
     "bodies", "cameras", "frames", "geoms", "joints", "lights", "sites",
 }  # fmt: skip
-# Of each kind: the attributes that are taken, some of them only where a condition holds. Ranges of ball joints and lengths of tendons
+# Attributes that are taken, of each kind, some of them only where a condition holds. Ranges of ball joints and lengths of tendons
 # have notes of their own, and tendons add their springs.
 TAKEN: dict[str, Taken] = {
     "Body": _all("pos quat ipos iquat mass inertia fullinertia explicitinertial"),
@@ -171,7 +171,7 @@ def _attribute_names(element: Any) -> list[str]:
 
 def _label(kind: str, number: int, element: Any) -> str:
     name = element.name or str(number)
-    # Of included files MuJoCo tells no lines.
+    # MuJoCo tells no lines of included files.
     line = element.info if str(element.info).startswith("line ") and element.info != "line 0" else ""
     return f"{kind.lower()} {name}" + (f", {line}" if line else "")
 

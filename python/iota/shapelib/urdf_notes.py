@@ -8,7 +8,7 @@ from collections import Counter
 from iota.shapelib.trees import Element
 
 MOST_NAMED = 5
-# Of each element: the attributes and the children that are taken.
+# Attributes and children that are taken, of each element.
 TAKEN: dict[str, tuple[str, str]] = {
     "robot": ("name version", "link joint material"),
     "link": ("name", "inertial visual collision"),
@@ -75,7 +75,7 @@ def _look(element: Element, found: dict[str, list[int]]) -> None:
     partly = PARTLY.get(element.attributes.get("type", ""), ()) if element.tag == "joint" else ()
     seen: set[str] = set()
     for child in element.children:
-        # Of elements that may stand there once only the first is read.
+        # Only the first is read of elements that may stand there once.
         is_second = child.tag in seen and (element.tag, child.tag) not in (("link", "visual"), ("link", "collision"))
         seen.add(child.tag)
         if child.tag in partly:
