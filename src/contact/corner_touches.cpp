@@ -202,7 +202,8 @@ struct Feature {
   std::uint32_t number;
   Vec3 center;
   double radius;
-  bool is_lowest = false;  ///< in the direction that was asked for; others are fixed on the body
+  bool is_lowest = false;       ///< in the direction that was asked for; others are fixed on the body
+  std::optional<Rim> rim = {};  ///< that lies, in the shape's frame
 };
 
 /// A circle around an axis, with a wire of some radius: of a disk's rim, of a torus.
@@ -216,9 +217,11 @@ void visit_rim(std::uint32_t number, const Vec3& center, const Vec3& axis, doubl
   const double least = 1e-3;
   if (across > least) visit({number, center + (radius / across) * (down - along * axis), wire, true});
   const Vec3 side = unit(any_perpendicular(axis)), third = cross(axis, side);
+  std::optional<Rim> lies;
+  if (!(across > least)) lies = Rim{center, radius * side, radius * third, number};
   for (std::uint32_t k = 0; k < points_of_rim; ++k) {
     const double turn = 2 * std::numbers::pi * k / points_of_rim;
-    visit({number + 1 + k, center + radius * (std::cos(turn) * side + std::sin(turn) * third), wire});
+    visit({number + 1 + k, center + radius * (std::cos(turn) * side + std::sin(turn) * third), wire, false, lies});
   }
 }
 
@@ -265,6 +268,7 @@ struct Ball {
   std::uint32_t part, feature;
   Vec3 center;
   double radius;
+  std::optional<Rim> rim = {};
 };
 
 /// The touches of a body with other parts, found part by part.
@@ -320,6 +324,7 @@ void CornerSearch::add(const Ball& ball, const Plane& plane) {
   touch.is_turned = names_.is_turned;
   touch.center = ball.center, touch.place = ball.center - ball.radius * plane.normal;
   touch.origin = plane.origin, touch.normal = plane.normal, touch.radius = ball.radius, touch.gap = gap;
+  touch.rim = ball.rim;
   const bool is_known = std::ranges::any_of(found(), [&](const Touch& one) {
     return one.part == touch.part && one.other_part == touch.other_part &&
            norm(one.normal - touch.normal) <= same_normal &&
@@ -386,7 +391,11 @@ void CornerSearch::find_of_shape(const Solid& solid, const Vec3& spin) {
   const auto visit_lowest_above = [&](const Plane& beneath, auto visit) {
     visit_features(shape, rotate(back, -1.0 * beneath.normal), turn, [&](const Feature& feature) {
       const Vec3 center = solid.position + rotate(solid.turn, feature.center);
-      visit(Ball{solid.number, feature.number, center, feature.radius}, feature.is_lowest);
+      Ball ball{solid.number, feature.number, center, feature.radius};
+      if (feature.rim)
+        ball.rim = Rim{solid.position + rotate(solid.turn, feature.rim->middle), rotate(solid.turn, feature.rim->first),
+                       rotate(solid.turn, feature.rim->second), feature.rim->name};
+      visit(ball, feature.is_lowest);
     });
   };
   visit_half_spaces(other_, [&](const Plane& plane) {

@@ -34,7 +34,7 @@ Vec3 outward_of_side(const ConvexPart& owner, std::uint32_t face, std::uint32_t 
 }  // namespace
 
 void TouchWriter::add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
-                           const FeatureName& of_point, const FeatureName& of_plane) {
+                           const FeatureName& of_point, const FeatureName& of_plane, const std::optional<Rim>& rim) {
   const ConvexPart& plane = is_turned ? first_ : second_;
   const double gap = apart - radius - plane.radius;
   if (!(gap <= within_)) return;
@@ -51,7 +51,8 @@ void TouchWriter::add_face(bool is_turned, const Vec3& center, double radius, co
                     .normal = normal,
                     .axis = {},
                     .radius = radius,
-                    .gap = gap});
+                    .gap = gap,
+                    .rim = rim});
 }
 
 void TouchWriter::add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal,
@@ -163,7 +164,9 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer, std::size_
   // The least gap is not larger than the distance: what is nearest may be beyond the face, or not on the clipped one.
   constexpr double nearly = 2e-5;
   // A whole rim: every other point.
-  if (!other.is_polytope() && points_.size() == corners_of_rim && polygon_.size() == corners_of_rim && !is_clipped_)
+  const bool is_rim =
+      !other.is_polytope() && points_.size() == corners_of_rim && polygon_.size() == corners_of_rim && !is_clipped_;
+  if (is_rim)
     for (std::size_t k = 1; k < points_.size(); ++k) points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(k));
   if (axis.is_farthest &&
       (polygon_.empty() || least > axis.most_apart + nearly * std::abs(axis.most_apart) + same_share * size)) {
@@ -176,8 +179,16 @@ void Clipper::add_face_touches(const Axis& axis, TouchWriter& writer, std::size_
     }
   }
   keep(most, size);
+  const std::size_t whole = points_.size();
+  std::optional<Rim> rim;
+  if (is_rim && whole == corners_of_rim / 2) {
+    Vec3 middle;
+    for (const FacePoint& point : points_) middle += (1.0 / static_cast<double>(whole)) * point.place;
+    rim = Rim{writer.anchor() + middle, other.half.y * other.axes[1], other.half.y * other.axes[2],
+              dot(middle - other.middle, other.axes[0]) > 0 ? 1u : 0u};
+  }
   for (const FacePoint& point : points_)
-    writer.add_face(is_turned, point.place, other.radius, normal, point.apart, point.of_point, point.of_plane);
+    writer.add_face(is_turned, point.place, other.radius, normal, point.apart, point.of_point, point.of_plane, rim);
 }
 
 bool Clipper::add_rod(const Axis& axis, const End& a, const End& b, const FeatureName& between, TouchWriter& writer) {

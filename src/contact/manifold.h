@@ -18,7 +18,7 @@ class TouchWriter {
 
   /// A ball of the one part against a plane of the other. apart: of its center, from the plane of the core.
   void add_face(bool is_turned, const Vec3& center, double radius, const Vec3& normal, double apart,
-                const FeatureName& of_point, const FeatureName& of_plane);
+                const FeatureName& of_point, const FeatureName& of_plane, const std::optional<Rim>& = {});
   /// Two edges that cross, with their points that are nearest to each other.
   void add_edges(const Vec3& on_first, const Vec3& on_second, const Vec3& normal, const FeatureName& of_first,
                  const FeatureName& of_second);
@@ -32,6 +32,7 @@ class TouchWriter {
 
   const ConvexPart& first() const { return first_; }
   const ConvexPart& second() const { return second_; }
+  const Vec3& anchor() const { return anchor_; }
   double within() const { return within_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <iota/vec3.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace iota::contact {
 
@@ -13,6 +14,12 @@ enum class TouchForm : std::uint8_t {
   edges,  ///< the same, with a normal that keeps its direction
   round,  ///< |d - (axis . d) axis| - radius, d = center - origin; the axis keeps its direction
   wires   ///< sqrt(d.d - bends_0 (axis . d)^2 - bends_1 (side . d)^2) - radius, side = normal x axis: wires that cross
+};
+
+/// A circle that lies on a plane, with a wire of the touch's radius.
+struct Rim {
+  Vec3 middle, first, second;  ///< two arms at right angles, as long as its radius
+  std::uint32_t name = 0;      ///< of those of a part
 };
 
 /// A place of one outline near the surface of another one, with the plane that touches that surface there. What is
@@ -31,6 +38,7 @@ struct Touch {
   double bends[2] = {1, 1};  ///< wires: 1 where they are straight, more where they bend around each other
   double radius = 0;         ///< m; round: of both together
   double gap = 0;            ///< m, negative: overlap
+  std::optional<Rim> rim;    ///< that the point is on, if all of it lies over the plane
 };
 
 }  // namespace iota::contact

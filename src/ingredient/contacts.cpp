@@ -2,6 +2,7 @@
 #include "ingredient/contacts.h"
 
 #include "base/text.h"
+#include "contact/rims.h"
 #include "ingredient/model.h"
 #include "math/mat3.h"
 #include "model/basis_weights.h"
@@ -234,6 +235,47 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   places.set_others(c, p, q, sides);
 }
 
+/// Where the weight of the upper one of two bodies meets the plane of a touch, from a point of it; zero if there is none.
+Vec3 weight_on(const Model& model, std::uint32_t p, std::uint32_t q, const Vec3& normal, const Vec3& point) {
+  const Vec3 gravity = model.acting_gravity();
+  const double down = -dot(gravity, normal);
+  const std::uint32_t upper = down > 0 ? p : q;
+  if (!(std::abs(down) > 0) || !has_points(model.bodies[upper])) return {};
+  const Vec3 center = model.center_of_mass(upper) - point;
+  return center + (dot(center, normal) / down) * gravity;
+}
+
+/// A rim that lies on a plane carries its load with fixed points at a sixth of a turn from each other, and its load was
+/// in the last step, and where its weight is: the support is a circle, not a hexagon.
+void add_loaded_points(const Model& model, std::uint32_t first, std::uint32_t second,
+                       std::span<const std::uint32_t> former, std::span<const contact::Touch> touches,
+                       std::vector<contact::Touch>& added) {
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const contact::Touch& t = touches[k];
+    const auto is_of_same = [&](const contact::Touch& other) { return contact::are_on_one_rim(other, t); };
+    if (!t.rim || std::any_of(touches.begin(), touches.begin() + static_cast<std::ptrdiff_t>(k), is_of_same)) continue;
+    const std::uint32_t p = t.is_turned ? second : first;
+    contact::PointsOfRim points(touches, t, added);
+    points.add_beside(weight_on(model, p, t.is_turned ? first : second, t.normal, t.rim->middle));
+    double push = 0;
+    Vec3 moment;
+    for (const std::uint32_t slot : former) {
+      const Contact& c = model.contacts[slot];
+      if (is_tie(c) || c.p != p || c.part != t.part || c.other_part != t.other_part || !(c.push > 0)) continue;
+      push += c.push, moment += c.push * (Contacts::place(model, c) - t.rim->middle);
+      points.add_again(t.is_turned ? c.other_feature : c.feature);
+    }
+    if (push > 0) points.add_beside((1 / push) * moment);
+  }
+}
+
+/// Whether a face carries its load along an edge of the polygon of its points.
+bool is_on_edge(const Model& model, std::span<const std::uint32_t> slots) {
+  constexpr std::size_t least = 5;  // a box on its edge has no other points
+  return slots.size() >= least &&
+         std::ranges::count_if(slots, [&](std::uint32_t slot) { return model.contacts[slot].push > 0; }) <= 2;
+}
+
 /// Whether it has a spin, or stands.
 bool has_orientation(const model::Body& body) { return !has_points(body) || body.rank == 4; }
 
@@ -349,7 +391,12 @@ void tell_that_it_is_buried(Model& model, std::uint32_t first, std::uint32_t sec
 }  // namespace
 
 void Contacts::take(Model& model, std::uint32_t first, std::uint32_t second, std::span<const std::uint32_t> former,
-                    std::span<const contact::Touch> touches, const Motion& motion) {
+                    std::span<const contact::Touch> found, const Motion& motion) {
+  thread_local std::vector<contact::Touch> added;
+  added.clear();
+  add_loaded_points(model, first, second, former, found, added);
+  if (!added.empty()) added.insert(added.begin(), found.begin(), found.end());
+  const std::span<const contact::Touch> touches = added.empty() ? found : added;
   const Meeting meeting(model, first, second, motion);
   thread_local std::vector<std::uint32_t> taken;
   taken.clear();
@@ -398,6 +445,7 @@ bool Contacts::renew(Model& model, std::uint32_t first, std::uint32_t second, st
   if (former.empty() ||
       std::ranges::any_of(former, [&](std::uint32_t slot) { return model.contacts[slot].is_off != 0; }))
     return false;
+  if (is_on_edge(model, former)) return false;
   const Meeting meeting(model, first, second, motion);
   for (const std::uint32_t slot : former) {
     Contact& c = model.contacts[slot];
