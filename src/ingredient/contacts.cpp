@@ -235,7 +235,7 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
   places.set_others(c, p, q, sides);
 }
 
-/// Where the weight of the upper one of two bodies meets the plane of a touch, from a point of it; zero if there is none.
+/// The place where the weight of the upper one of two bodies meets a plane, from a point of it; zero if there is none.
 Vec3 weight_on(const Model& model, std::uint32_t p, std::uint32_t q, const Vec3& normal, const Vec3& point) {
   const Vec3 gravity = model.acting_gravity();
   const double down = -dot(gravity, normal);
