@@ -245,8 +245,8 @@ Vec3 weight_on(const Model& model, std::uint32_t p, std::uint32_t q, const Vec3&
   return center + (dot(center, normal) / down) * gravity;
 }
 
-/// A rim that lies on a plane carries its load with fixed points at a sixth of a turn from each other, and its load was
-/// in the last step, and where its weight is: the support is a circle, not a hexagon.
+/// A rim that lies on a plane has fixed points at a sixth of a turn from each other. Points are added beside its load of the last
+/// step, and beside the place of its weight: the support is a circle, not a hexagon.
 void add_loaded_points(const Model& model, std::uint32_t first, std::uint32_t second,
                        std::span<const std::uint32_t> former, std::span<const contact::Touch> touches,
                        std::vector<contact::Touch>& added) {
