@@ -94,19 +94,23 @@ const double* Grips::find_felt_mass(std::uint32_t grip, std::uint32_t body) cons
   return found == felt_masses_.end() ? nullptr : &found->mass;
 }
 
+double Grip::stiffness_at(double distance) const {
+  const double omega = 2 * std::numbers::pi * frequency;
+  return std::min(omega * omega, max_acceleration / (distance + 1e-12));
+}
+
 void Grips::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   const double ahead = model.steps_to_end_point() ? 0 : h / 2;
   const std::span forces = problem.items_of<solver::GripForce>();
   arms_.resize(forces.size());
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Grip& g = model.grips[key.slot];
-    const double omega = 2 * std::numbers::pi * g.frequency, mass = *find_felt_mass(key.slot, g.body);
+    const double mass = *find_felt_mass(key.slot, g.body);
     forces[i].arm.origin = g.target - problem.origin;
     arms_[i] = forces[i].arm.value(problem.position.data());
-    // The stiffness gives the largest force at this distance if the body is far away; in the middle of a step by the mid-point rule.
-    const double distance = norm(arms_[i] + ahead * forces[i].arm.rate(problem.velocity.data()));
-    forces[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
-    forces[i].damping = 2 * mass * omega;
+    // In the middle of a step by the mid-point rule.
+    forces[i].stiffness = mass * g.stiffness_at(norm(arms_[i] + ahead * forces[i].arm.rate(problem.velocity.data())));
+    forces[i].damping = 2 * mass * (2 * std::numbers::pi * g.frequency);
   });
 }
 

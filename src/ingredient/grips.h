@@ -17,6 +17,9 @@ struct Grip {
   std::uint32_t client = 0, hold = 0;
   double frequency = 0, max_acceleration = 0;
   Vec3 force;  ///< in the last step, N
+
+  /// By the mass that it feels, 1/s^2: at this distance, m, from the target it gives the largest acceleration if that is far away.
+  double stiffness_at(double distance) const;
 };
 
 /// Grips of viewers: a damped spring of limited force from a point of a body to a target.

@@ -291,7 +291,8 @@ void for_each_item_of(std::uint8_t owner, const Problem& problem, Visit visit) {
 }
 
 /// Each number once, in order.
-inline void sort_unique(std::vector<std::uint32_t>& list) {
+template <class T>
+void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }

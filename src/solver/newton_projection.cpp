@@ -105,7 +105,7 @@ void Newton::give_back_momenta(Problem& problem) const {
 
 // An impact of the mid-point rule is complete only with the velocities at its end; so is the start of what a target drives.
 void Newton::add_impulses(Problem& problem) const {
-  if (impulses_.empty()) return;
+  if (impulses_.empty() || !(problem.adds_impulses() || problem.has_used<ContactConstraint>())) return;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     const auto add = [&](auto sum_of) {
       for (std::size_t k = 0; k < pool.items.size(); ++k)

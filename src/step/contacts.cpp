@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/contacts.h"
 
+#include "ingredient/contact_readings.h"
 #include "model/outline.h"
 #include "model/solid.h"
 #include "solver/heap.h"
@@ -130,9 +131,8 @@ double acceleration_by_others(const model::Model& model, std::uint32_t slot) {
     if (force != Vec3{}) sum += norm(force) / model.body_mass(slot);
   }
   model.grips.for_each_of(slot, [&](std::uint32_t, const ingredient::Grip& grip) {
-    const double omega = 2 * std::numbers::pi * grip.frequency;
     const double distance = norm(grip.target - ingredient::Grips::point(model, grip));
-    sum += std::min(omega * omega * distance, grip.max_acceleration);
+    sum += grip.stiffness_at(distance) * distance;
   });
   return sum;
 }
@@ -712,13 +712,12 @@ void ContactFinder::add_pairs_of_woken(const model::Model& model) {
   const std::size_t known = pairs_.size();
   for (const std::uint32_t slot : contacts_) {
     const ingredient::Contact& c = model.contacts[slot];
-    const Pair pair{c.p, c.q};
+    const auto [body, other] = ingredient::pair_of(model, c);
+    const Pair pair{body, other};
     if (!c.is_off && !std::binary_search(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(known), pair))
       pairs_.push_back(pair);
   }
-  if (pairs_.size() == known) return;
-  std::ranges::sort(pairs_);
-  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  if (pairs_.size() > known) ingredient::sort_unique(pairs_);
 }
 
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,

@@ -464,3 +464,25 @@ def test_a_tower_that_a_ball_wakes_within_a_step_moves_as_one_that_never_slept(
         places.append([np.array(body.position) for body in tower])
     # Half of g h^2 is 5.4 mm at 30 Hz, 0.3 mm at 120 Hz.
     assert np.abs(np.array(places[0]) - np.array(places[1])).max() < 1e-4
+
+
+@pytest.mark.parametrize("speed", [5, 20, 60])
+@pytest.mark.parametrize("height", [0.1, 0.3])
+def test_a_tower_that_is_hit_within_a_step_touches_at_each_place_once(speed: float, height: float) -> None:
+    """Contacts of what was awake were listed again in the parts of a step, where theirs had the bodies in another order."""
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.5)
+    system.obstacle(iota.Box((4, 0.2, 4)), (0, -0.1, 0))
+    random = np.random.default_rng(2)
+    for k in range(4):
+        aside, askew = random.uniform(-0.02, 0.02, 2), ("y", random.uniform(-5, 5))
+        place = (aside[0], 0.1 + 0.2 * k, aside[1])
+        system.body(shape=iota.Box((0.2, 0.2, 0.2)), density=500, position=place, orientation=askew)
+    for _ in range(10):
+        system.step(1 / 60)
+    ball = system.body(shape=iota.Sphere(0.05), density=7800, position=(-0.6, height, 0))
+    ball.velocity = (speed, 0, 0)
+    for _ in range(20):
+        system.step(1 / 60)
+        places = np.round(system.contacts.positions, 9)
+        assert len(np.unique(places, axis=0)) == len(places)
