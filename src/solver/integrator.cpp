@@ -142,6 +142,8 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
   if (may_sweep_) {
     const double burst = (heap_->has_joints() ? of_joints : 1) * settings.contact_burst(heap_->is_tree());
     iterations_left_ = std::min(iterations_left_, most_iterations(burst, cost));
+    if (!heap_->is_tree() && settings.max_error == 0)
+      settings_.max_depth = std::min(settings_.max_depth, IntegratorSettings::heap_depth(settings.scheme));
   }
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
@@ -730,8 +732,11 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
   limited.iterations_left = iterations_left_;
   limited.is_heap = may_sweep_ && !heap_->is_tree() && !stage.is_projection();
   const bool is_end_point = !stage.is_mid_point() && !stage.is_projection();
-  if (settings_.scheme == Scheme::end_point && is_end_point && !problem.items_of<ContactConstraint>().empty())
+  const bool has_contacts = !problem.items_of<ContactConstraint>().empty();
+  if (is_end_point && has_contacts && (limited.is_heap || settings_.scheme == Scheme::end_point))
     limited.max_iterations = IntegratorSettings::contact_iterations;
+  else if (limited.is_heap)
+    limited.max_iterations = IntegratorSettings::heap_iterations;
   problem.begin_forces(stage.h);
   const NewtonReport newton = newton_.solve(problem, limited);
   iterations_left_ -= newton.iterations;
