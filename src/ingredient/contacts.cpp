@@ -726,6 +726,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
     row.weights = c.weights;
+    row.find_turning();
     row.impulse = {}, row.share = 1;
     const double of_world = has_world_point(c) ? 1 : has_world_plane(c) ? -1 : 0;
     row.set_constant(0, c.center - of_world * problem.origin), row.set_constant(1, c.place - of_world * problem.origin);

@@ -17,7 +17,7 @@ template <class C, class Visit>
 void for_each_row_force(const C& row, const double* multipliers, bool midpoint, const Vec3* start, const Vec3* end,
                         Visit visit) {
   const solver::Gradients<C> at_end(row, end, 1);
-  const solver::MeanGradients<C> means(row, start, 0, end, 1);
+  const solver::MeanGradients<C> means(row, start, 0, at_end);
   for (int i = 0; i < row.node_count(); ++i) {
     Vec3 directions[C::rows], mean[C::rows], force;
     at_end.of_node(i, directions);

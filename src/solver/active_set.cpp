@@ -22,24 +22,34 @@ Bounds bounds_of(const RowLaw& law, const Stage& stage) {
   return {law.lower, law.upper};
 }
 
-/// Whether velocities differ from the rate of a rate row by more than the curvature of its coordinate explains within a
+/// Which rows have velocities that differ from their rates by more than the curvature of their coordinates explains within a
 /// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
 template <class C>
-bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
+std::array<bool, C::rows> are_off_speed(const Problem& problem, const C& c, const std::array<double, C::rows>& rates,
+                                        const Stage& stage) {
   constexpr double bent = 1e-3, still = 1e-9;
-  const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
   Vec3 mean;  // which an internal row does not notice
   for (int i = 0; i < c.node_count() && c.is_internal(); ++i)
     mean += (1.0 / c.node_count()) * problem.velocity[c.nodes[i]];
-  double speed = 0, largest = std::abs(rate);
+  const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
+  Vec3 rows[C::rows];
+  std::array<double, C::rows> speeds{};
   for (int i = 0; i < c.node_count(); ++i) {
-    Vec3 rows[C::rows];
     gradients.of_node(i, rows);
-    const Vec3 v = problem.velocity[c.nodes[i]] - mean;
-    speed += dot(rows[row], v);
-    largest += norm(rows[row]) * norm(v);
+    for (std::size_t r = 0; r < speeds.size(); ++r) speeds[r] += dot(rows[r], problem.velocity[c.nodes[i]] - mean);
   }
-  return std::abs(speed - rate) * stage.h > bent * largest * stage.h + still * c.reference_length();
+  std::array<bool, C::rows> are_off{};
+  for (std::size_t r = 0; r < speeds.size(); ++r) {
+    const double excess = std::abs(speeds[r] - rates[r]) * stage.h - still * c.reference_length();
+    if (!(excess > 0)) continue;
+    double largest = std::abs(rates[r]);
+    for (int i = 0; i < c.node_count(); ++i) {
+      gradients.of_node(i, rows);
+      largest += norm(rows[r]) * norm(problem.velocity[c.nodes[i]] - mean);
+    }
+    are_off[r] = excess > bent * largest * stage.h;
+  }
+  return are_off;
 }
 
 /// The displacement of each row by a multiplier of 1, if its points were free: sum |G|^2 / (inertia m).
@@ -82,12 +92,14 @@ void ActiveSet::begin_cone(ConstraintPool<C>& pool, std::size_t k, const Problem
   if (stage.is_projection() && state_before.mode != ConeState::Mode::open) state_before = {ConeState::Mode::slips, 1};
   if (state_before.mode == ConeState::Mode::open) std::fill_n(lambda, C::rows, 0.0);
   set_cone(pool, k, state_before);
+  std::array<double, C::rows> rates{};
+  if constexpr (BouncingConstraint<C>)
+    for (int r = 0; r < C::rows; ++r) rates[static_cast<std::size_t>(r)] = c.rate_of(r, stage.fraction_start);
+  const std::array<bool, C::rows> are_off = are_off_speed(problem, c, rates, stage);
   for (int r = 0; r < C::rows; ++r) {
     RowStates::Row& state = pool.states.rows_[k * C::rows + r];
     state.start = g[r] - c.compliance_of(r) * lambda[r], state.side_before = state.side, state.slips_on = 0;
-    double rate = 0;
-    if constexpr (BouncingConstraint<C>) rate = c.rate_of(r, stage.fraction_start);
-    state.off_speed = C::is_tangent(r) && is_off_speed(problem, c, r, rate, stage);
+    state.off_speed = C::is_tangent(r) && are_off[static_cast<std::size_t>(r)];
     if constexpr (BouncingConstraint<C>)
       if (c.meets && !C::is_tangent(r)) state.side_before = 1;
   }
@@ -128,6 +140,12 @@ void ActiveSet::begin(Problem& problem, const Stage& stage, const Vec3* x) {
       if (std::any_of(law, law + C::rows,
                       [](const RowLaw& l) { return !l.is_off() && (l.is_rate || l.is_compliant()); }))
         pool.value(k, problem.position.data(), stage.fraction_start, g);
+      std::array<bool, C::rows> are_off{};
+      if (std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.is_rate; })) {
+        std::array<double, C::rows> rates;
+        std::transform(law, law + C::rows, rates.begin(), [](const RowLaw& l) { return l.rate; });
+        are_off = are_off_speed(problem, pool.items[k], rates, stage);
+      }
       for (int r = 0; r < C::rows; ++r) {
         const Bounds bounds = bounds_of(law[r], stage);
         double& lambda = pool.multiplier(k)[r];
@@ -136,7 +154,7 @@ void ActiveSet::begin(Problem& problem, const Stage& stage, const Vec3* x) {
         state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
         if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
         state.side_before = state.side;
-        state.off_speed = law[r].is_rate && is_off_speed(problem, pool.items[k], r, law[r].rate, stage);
+        state.off_speed = law[r].is_rate && are_off[static_cast<std::size_t>(r)];
       }
     }
   });

@@ -15,7 +15,7 @@ namespace {
 constexpr double largest_noise = 1e-8;  // of the scaled force residual
 
 struct NoGradients {
-  NoGradients(const auto&, const Vec3*, double, const Vec3*, double) {}
+  NoGradients(const auto&, const Vec3*, double, const auto&) {}
 };
 /// Only the mid-point scheme takes means.
 template <Scheme S, class C>
@@ -130,11 +130,10 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         for (int r = 0; r < C::rows; ++r) unknowns_[pool.slots[k].unknown + r] = 0;
         continue;
       }
-    double g[C::rows];
-    pool.value(k, x, end, g);
-    double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, end);
-    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, x, end);
+    double g[C::rows], compliance = 0, compliances[C::rows] = {};
+    pool.value(k, gradients, g);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, gradients);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
@@ -186,7 +185,7 @@ void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool,
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const C& c = pool.items[k];
     const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, stage.fraction_start, x, stage.fraction);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, stage.fraction_start, gradients);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);
@@ -406,12 +405,12 @@ namespace {
 template <bool IsCone, class C>
 ConeEquations cone_equations([[maybe_unused]] const Problem& problem, [[maybe_unused]] const Stage& stage,
                              [[maybe_unused]] const ConstraintPool<C>& pool, [[maybe_unused]] std::size_t k,
-                             [[maybe_unused]] const Vec3* x, [[maybe_unused]] const Gradients<C>& gradients) {
+                             [[maybe_unused]] const Gradients<C>& gradients) {
   if constexpr (!IsCone) {
     return {};
   } else {
     double g[C::rows], mobilities[C::rows] = {};
-    pool.value(k, x, stage.fraction, g);
+    pool.value(k, gradients, g);
     for (int i = 0; i < pool.items[k].node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
@@ -444,8 +443,8 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
     constexpr bool is_cone = Laws && ConeConstraint<C>;
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, end);
-    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, x, end);
-    [[maybe_unused]] const ConeEquations cone = cone_equations<is_cone>(problem, stage, pool, k, x, gradients);
+    [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, gradients);
+    [[maybe_unused]] const ConeEquations cone = cone_equations<is_cone>(problem, stage, pool, k, gradients);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);

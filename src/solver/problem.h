@@ -122,6 +122,15 @@ struct ConstraintPool {
   /// The function whose root the solver finds: the constraint minus its offset.
   void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
     items[i].value(x, fraction, g);
+    subtract_offsets(i, g);
+  }
+  void value(std::size_t i, const Gradients<C>& at, double* g) const {
+    at.value(g);
+    subtract_offsets(i, g);
+  }
+
+ private:
+  void subtract_offsets(std::size_t i, double* g) const {
     if (offsets.empty()) return;
     for (int r = 0; r < C::rows; ++r) g[r] -= offsets[i * C::rows + r];
   }

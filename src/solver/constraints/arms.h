@@ -42,6 +42,16 @@ struct Arms {
     for (std::uint32_t i = 0; i < count; ++i) e += weights[a][i] * x[nodes[i]];
     return e;
   }
+  /// All of them.
+  std::array<Vec3, Count> arms(const Vec3* x, double fraction) const {
+    std::array<Vec3, Count> e;
+    for (std::size_t a = 0; a < Count; ++a) e[a] = constant_start[a] + fraction * (constant[a] - constant_start[a]);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 place = x[nodes[i]];
+      for (std::size_t a = 0; a < Count; ++a) e[a] += weights[a][i] * place;
+    }
+    return e;
+  }
   /// Whether all arms are differences of points, so that forces on them keep momentum.
   bool is_internal() const {
     return std::all_of(weights.begin(), weights.end(), [this](const auto& w) {
@@ -75,15 +85,12 @@ struct ArmConstraint : Arms<Count> {
   using Arms<Count>::max_nodes;
 
   void value(const Vec3* x, double fraction, double* g) const {
-    Vec3 e[Count];
-    calc_arms(x, fraction, e);
-    derived().calc_value(e, fraction, g);
+    derived().calc_value(this->arms(x, fraction).data(), fraction, g);
   }
   /// out[i * Rows + r] = dg_r / dx of node i.
   void gradients(const Vec3* x, double fraction, Vec3* out) const {
-    Vec3 e[Count], d[Rows][Count];
-    calc_arms(x, fraction, e);
-    derived().calc_gradient(e, d);
+    Vec3 d[Rows][Count];
+    derived().calc_gradient(this->arms(x, fraction).data(), d);
     for (std::uint32_t i = 0; i < this->count; ++i)
       for (int r = 0; r < Rows; ++r) {
         Vec3 sum;
@@ -93,10 +100,8 @@ struct ArmConstraint : Arms<Count> {
   }
   /// Blocks of sum_r lambda_r Hess(g_r) for the pairs of nodes (i, j), i <= j, row by row.
   void curvature(const Vec3* x, double fraction, const double* lambda, bool clamp, Mat3* blocks) const {
-    Vec3 e[Count];
     Mat3 h[Count][Count];
-    calc_arms(x, fraction, e);
-    derived().calc_hessian(e, lambda, clamp, h);
+    derived().calc_hessian(this->arms(x, fraction).data(), lambda, clamp, h);
     for (std::uint32_t i = 0; i < this->count; ++i)
       for (std::uint32_t j = i; j < this->count; ++j, ++blocks) {
         *blocks = {};
@@ -110,9 +115,6 @@ struct ArmConstraint : Arms<Count> {
 
  private:
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
-  void calc_arms(const Vec3* x, double fraction, Vec3* e) const {
-    for (int a = 0; a < Count; ++a) e[a] = this->arm(a, x, fraction);
-  }
 };
 
 }  // namespace iota::solver

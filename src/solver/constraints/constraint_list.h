@@ -80,19 +80,26 @@ double strain_energy(const C& c, const double* multipliers) {
   return energy;
 }
 
-/// Gradients of a constraint at x, node by node. Those of the general ones and of distances are evaluated before the
-/// visits: otherwise the compiler must assume that the caller's writes change their inputs.
+/// Gradients by arms, of which those of the nodes are multiples: see ContactConstraint.
+template <class C>
+concept SharedGradientConstraint = GeneralConstraint<C> && requires { typename C::ByArms; };
+
+/// Values and gradients of a constraint at x, gradients node by node. Those of the general ones and of distances are evaluated
+/// before the visits: otherwise the compiler must assume that the caller's writes change their inputs.
 template <class C>
 class Gradients {
   static constexpr bool all_at_once = GeneralConstraint<C> || C::max_nodes <= 2;
 
  public:
-  Gradients(const C& c, const Vec3* x, double fraction) : constraint_(c), x_(x) {
+  Gradients(const C& c, const Vec3* x, double fraction) : constraint_(c), x_(x), fraction_(fraction) {
     if constexpr (GeneralConstraint<C>)
       c.gradients(x, fraction, rows_.data());
     else if constexpr (all_at_once)
       for (int i = 0; i < C::max_nodes; ++i) c.gradient(x, i, rows_.data() + i * C::rows);
   }
+  void value(double* g) const { constraint_.value(x_, fraction_, g); }
+  const Vec3* places() const { return x_; }
+  double fraction() const { return fraction_; }
   void of_node(int i, Vec3* out) const {
     if constexpr (all_at_once)
       for (int r = 0; r < C::rows; ++r) out[r] = rows_[i * C::rows + r];
@@ -103,7 +110,24 @@ class Gradients {
  private:
   const C& constraint_;
   const Vec3* x_;
+  double fraction_;
   std::array<Vec3, all_at_once ? C::max_nodes * C::rows : 0> rows_;
+};
+
+template <SharedGradientConstraint C>
+class Gradients<C> {
+ public:
+  Gradients(const C& c, const Vec3* x, double fraction)
+      : constraint_(c), fraction_(fraction), arms_(c.arms(x, fraction)), by_arms_(c.by_arms(arms_)) {}
+  void value(double* g) const { constraint_.calc_value(arms_.data(), fraction_, g); }
+  void of_node(int i, Vec3* out) const { constraint_.gradient(by_arms_, i, out); }
+  const auto& arms() const { return arms_; }
+
+ private:
+  const C& constraint_;
+  double fraction_;
+  std::array<Vec3, C::arm_count> arms_;
+  typename C::ByArms by_arms_;
 };
 
 /// Has its own discrete gradient for the mid-point scheme, as the mean of the gradients at both ends of a step does not
@@ -112,12 +136,13 @@ template <class C>
 concept DiscreteGradientConstraint =
     GeneralConstraint<C> && requires(const C& c, const Vec3* x, Vec3* rows) { c.mean_gradients(x, 0.0, x, 1.0, rows); };
 
-/// The gradients of the mid-point scheme: the mean over a step from x0 to x1.
+/// The gradients of the mid-point scheme: the mean over a step from x0 to where `at_end` is.
 template <class C>
 class MeanGradients {
  public:
-  MeanGradients(const C& c, const Vec3* x0, double start, const Vec3* x1, double end) : at_start_(c, x0, start) {
-    if constexpr (DiscreteGradientConstraint<C>) c.mean_gradients(x0, start, x1, end, rows_.data());
+  MeanGradients(const C& c, const Vec3* x0, double start, const Gradients<C>& at_end) : at_start_(c, x0, start) {
+    if constexpr (DiscreteGradientConstraint<C>)
+      c.mean_gradients(x0, start, at_end.places(), at_end.fraction(), rows_.data());
   }
   /// at_end: the gradients of the node at the end of the step.
   void of_node(int i, const Vec3* at_end, Vec3* out) const {
@@ -135,6 +160,18 @@ class MeanGradients {
   };
   std::conditional_t<DiscreteGradientConstraint<C>, Unused, Gradients<C>> at_start_;
   std::array<Vec3, DiscreteGradientConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
+};
+
+template <SharedGradientConstraint C>
+class MeanGradients<C> {
+ public:
+  MeanGradients(const C& c, const Vec3* x0, double start, const Gradients<C>& at_end)
+      : constraint_(c), by_arms_(c.mean_by_arms(c.arms(x0, start), at_end.arms())) {}
+  void of_node(int i, const Vec3* /*at_end*/, Vec3* out) const { constraint_.gradient(by_arms_, i, out); }
+
+ private:
+  const C& constraint_;
+  typename C::ByArms by_arms_;
 };
 
 /// The list of constraint types; pools, sparsity, assembly and reports are folds over it.

@@ -48,6 +48,8 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   double ball = 0;             ///< how far the point of the first body is from the center, against the normal, m
   std::uint32_t of_first = 0;  ///< the number of nodes of the first body
   bool first_turns = false, second_turns = false;  ///< four nodes that move by themselves
+  std::uint32_t turning_begin = 0,
+                turning_end = max_nodes;  ///< the nodes with which arms 2 to 4 turn; see find_turning
   std::array<double, 3> impulse{};  ///< of the rows in the step so far, with that of the velocities at its end, N s
   double rebound = 0;               ///< the normal speed at which an impact ends, while impacts are solved, m/s
   double drags[2] = {};         ///< friction of an impulse along the tangents, in parts of its normal one, meanwhile
@@ -66,30 +68,60 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
     for (int k = 0; k < 3; ++k) set_constant(2 + k, of[static_cast<std::size_t>(k)]);
   }
 
+  /// After the weights are set.
+  void find_turning() {
+    const auto turns = [&](std::uint32_t i) { return weights[2][i] != 0 || weights[3][i] != 0 || weights[4][i] != 0; };
+    turning_begin = 0, turning_end = count;
+    while (turning_begin < turning_end && !turns(turning_begin)) ++turning_begin;
+    while (turning_end > turning_begin && !turns(turning_end - 1)) --turning_end;
+  }
+
   double reference_length() const { return reference; }
   /// d without its parts along which the distance does not grow.
   Vec3 off(const Vec3& d, const Vec3& axis, const Vec3& side) const {
     if (!has_wires) return d - dot(axis, d) * axis;
     return d - bends[0] * dot(axis, d) * axis - bends[1] * dot(side, d) * side;
   }
+  void value(const Vec3* x, double fraction, double* g) const { calc_value(arms(x, fraction).data(), fraction, g); }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const {
     g[0] = (is_round ? (dot(off(e[0], e[2], e[3]), e[0]) / radius - radius) / 2 : dot(e[2], e[0]) - radius) - floor;
     g[1] = dot(e[3], e[1]), g[2] = dot(e[4], e[1]);
   }
-  /// The functions of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
-  void gradients(const Vec3* x, double fraction, Vec3* out) const {
-    const std::array<Vec3, 5> e = arms(x, fraction);
-    write_gradients(e, dot(e[2], e[0]), dot(e[3], e[0]), out);
+  /// d g_0 by arms 0, 2 and 3, and d g_k by arm 1 and by arm 2 + k, which is `place`.
+  struct ByArms {
+    Vec3 center, turn, side, first, second, place;
+  };
+  ByArms by_arms(const std::array<Vec3, 5>& e) const { return by_arms(e, dot(e[2], e[0]), dot(e[3], e[0])); }
+  std::array<Vec3, 5> arms(const Vec3* x, double fraction) const {
+    std::array<Vec3, 5> e;
+    for (std::size_t a = 0; a < 5; ++a) e[a] = constant_start[a] + fraction * (constant[a] - constant_start[a]);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 place = x[nodes[i]];
+      e[0] += weights[0][i] * place, e[1] += weights[1][i] * place;
+      for (std::size_t a = 2; a < 5 && turns(i); ++a) e[a] += weights[a][i] * place;
+    }
+    return e;
   }
   /// They are exact (J. C. Simo, N. Tarnow and K. K. Wong, 1992) and make no torque: by the arms in the middle, and for
   /// (axis . d)^2 by the mean of axis . d.
-  void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
-    std::array<Vec3, 5> e = arms(x0, start);
-    const std::array<Vec3, 5> last = arms(x1, end);
-    const double along = (dot(e[2], e[0]) + dot(last[2], last[0])) / 2,
-                 beside = (dot(e[3], e[0]) + dot(last[3], last[0])) / 2;
-    for (std::size_t a = 0; a < 5; ++a) e[a] = 0.5 * (e[a] + last[a]);
-    write_gradients(e, along, beside, out);
+  ByArms mean_by_arms(const std::array<Vec3, 5>& first, const std::array<Vec3, 5>& last) const {
+    const double along = (dot(first[2], first[0]) + dot(last[2], last[0])) / 2,
+                 beside = (dot(first[3], first[0]) + dot(last[3], last[0])) / 2;
+    std::array<Vec3, 5> middle;
+    for (std::size_t a = 0; a < 5; ++a) middle[a] = 0.5 * (first[a] + last[a]);
+    return by_arms(middle, along, beside);
+  }
+  void gradient(const ByArms& by, int node, Vec3* out) const {
+    const auto i = static_cast<std::uint32_t>(node);
+    out[0] = weights[0][i] * by.center, out[1] = weights[1][i] * by.first, out[2] = weights[1][i] * by.second;
+    if (!turns(i)) return;
+    out[0] += weights[2][i] * by.turn, out[1] += weights[3][i] * by.place, out[2] += weights[4][i] * by.place;
+    if (has_wires) out[0] += weights[3][i] * by.side;
+  }
+  /// The function of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
+  void gradients(const Vec3* x, double fraction, Vec3* out) const {
+    const ByArms by = by_arms(arms(x, fraction));
+    for (int i = 0; i < node_count(); ++i) gradient(by, i, out + 3 * i);
   }
   void curvature(const Vec3* x, double /*fraction*/, const double* lambda, bool clamp, Mat3* blocks) const {
     const double pull = is_round ? (clamp ? std::max(0.0, lambda[0]) : lambda[0]) / radius : 0;
@@ -162,22 +194,18 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
   ConeEquations equations(ConeState, const double* multipliers, const double* g, const double* natural) const;
 
  private:
-  std::array<Vec3, 5> arms(const Vec3* x, double fraction) const {
-    return {arm(0, x, fraction), arm(1, x, fraction), arm(2, x, fraction), arm(3, x, fraction), arm(4, x, fraction)};
-  }
+  bool turns(std::uint32_t node) const { return node >= turning_begin && node < turning_end; }
   /// along, beside: of d with arms 2 and 3
-  void write_gradients(const std::array<Vec3, 5>& e, double along, double beside, Vec3* out) const {
+  ByArms by_arms(const std::array<Vec3, 5>& e, double along, double beside) const {
     along *= bends[0], beside *= bends[1];
-    Vec3 by_center = is_round ? (1 / radius) * (e[0] - along * e[2]) : e[2], by_side;
-    const Vec3 by_turn = is_round ? (-along / radius) * e[0] : e[0];
-    if (has_wires) by_center -= (beside / radius) * e[3], by_side = (-beside / radius) * e[0];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto w = [&](std::size_t arm) { return weights[arm][i]; };
-      out[3 * i] = w(0) * by_center + w(2) * by_turn;
-      if (has_wires) out[3 * i] += w(3) * by_side;
-      out[3 * i + 1] = w(1) * e[3] + w(3) * e[1];
-      out[3 * i + 2] = w(1) * e[4] + w(4) * e[1];
-    }
+    ByArms by{is_round ? (1 / radius) * (e[0] - along * e[2]) : e[2],
+              is_round ? (-along / radius) * e[0] : e[0],
+              {},
+              e[3],
+              e[4],
+              e[1]};
+    if (has_wires) by.center -= (beside / radius) * e[3], by.side = (-beside / radius) * e[0];
+    return by;
   }
 };
 

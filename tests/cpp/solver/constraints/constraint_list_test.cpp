@@ -361,7 +361,7 @@ TEST(Constraints, clamped_have_no_negative_curvature) {
 template <class C>
 double change_by_mean_gradient(const C& c, const std::vector<Vec3>& x0, const std::vector<Vec3>& x1) {
   static_assert(DiscreteGradientConstraint<C>);
-  const MeanGradients<C> means(c, x0.data(), 0, x1.data(), 1);
+  const MeanGradients<C> means(c, x0.data(), 0, {c, x1.data(), 1});
   double change = 0;
   for (int i = 0; i < c.node_count(); ++i) {
     Vec3 mean;

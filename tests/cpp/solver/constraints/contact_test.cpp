@@ -302,7 +302,8 @@ TEST(ContactRows, have_the_gradients_and_the_curvature_of_their_values) {
     // The mean gradients give the change of the values exactly, and no torque.
     double first[3], last[3];
     c.value(x.data(), 1, first), c.value(moved.data(), 1, last);
-    c.mean_gradients(x.data(), 1, moved.data(), 1, mean.data());
+    const MeanGradients<ContactConstraint> means(c, x.data(), 1, {c, moved.data(), 1});
+    for (int i = 0; i < 8; ++i) means.of_node(i, nullptr, mean.data() + 3 * i);
     for (std::size_t r = 0; r < 3; ++r) {
       double change = 0;
       Vec3 torque;
