@@ -59,7 +59,7 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   const Timed timed(times_, &StepTimes::forces);
   add_momentum(problem, stage, x, u);
   if (has_extreme_masses()) resistance_.assign(problem.mass.begin(), problem.mass.end());
-  worst_ = violation_ = largest_multiplier_ = 0;
+  worst_ = violation_ = largest_multiplier_ = redundancy_ = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
     if (pool.items.empty()) return;
     const auto add = [&]<Scheme S> {
@@ -120,7 +120,8 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
   const double start = stage.fraction_start, end = stage.fraction;
   const double give = row_compliance(stage);
   const bool gives = stage.compliance != 0;
-  double largest_multiplier = largest_multiplier_;
+  double largest_multiplier = largest_multiplier_, redundancy = redundancy_;
+  const double* const reciprocal_pivots = factor_.diagonals();
   Largest worst{worst_}, violation{violation_};
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const Kept<C> c = pool.items[k];
@@ -167,6 +168,12 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       } else {
         value = g[r] - compliance * lambda[r];
       }
+      if constexpr (!ConeConstraint<C>) {
+        const auto& slots = pool.slots[k];
+        const double reciprocal = std::abs(reciprocal_pivots[slots.diagonal + r * (slots.stride + 1)]);
+        if (!Laws || pool.is_equation(k, r))
+          redundancy = std::max(redundancy, reciprocal * (Laws ? compliances[r] * give : compliance));
+      }
       unknowns_[pool.slots[k].unknown + r] = value;
       worst.add(std::abs(value) * per_length);
       violation.add(std::abs(gap) * per_length);
@@ -176,6 +183,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     }
   }
   worst_ = worst.value, violation_ = violation.value, largest_multiplier_ = largest_multiplier;
+  redundancy_ = redundancy;
 }
 
 // The stiffness of rows against the motion of their points: see weigh.
@@ -195,6 +203,36 @@ void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool,
             std::abs(pool.multiplier(k)[r]) * norm(is_mid_point ? directions[r] : rows[r]) * inverse_scale(stage);
     }
   }
+}
+
+bool Assembly::load_redundant_shares(const Problem& problem, const Stage& stage, const Vec3* x) {
+  constexpr double little = 0.1;  // of the tolerance
+  if (stage.compliance > exact_rows) return false;
+  const double give = row_compliance(stage);
+  std::fill(unknowns_.begin(), unknowns_.end(), 0.0);
+  bool are_strained = false;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if constexpr (ConeConstraint<C>) return;
+    are_strained = are_strained || !pool.offsets.empty();
+    for (std::size_t k = 0; k < pool.items.size() && !are_strained; ++k) {
+      const C& c = pool.items[k];
+      const Gradients<C> gradients(c, x, stage.fraction);
+      double mobilities[C::rows] = {};
+      for (int i = 0; i < c.node_count(); ++i) {
+        Vec3 rows[C::rows];
+        gradients.of_node(i, rows);
+        for (int r = 0; r < C::rows; ++r) mobilities[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
+      }
+      for (int r = 0; r < C::rows; ++r) {
+        if (pool.has_laws() && (!pool.is_equation(k, r) || pool.law(k)[r].is_rate || pool.law(k)[r].is_compliant()))
+          continue;
+        const double strain = give * mobilities[pool.has_laws() ? r : 0] * pool.multiplier(k)[r];
+        unknowns_[pool.slots[k].unknown + r] = -strain;
+        are_strained = are_strained || !(std::abs(strain) <= little * stage.tolerance * c.reference_length());
+      }
+    }
+  });
+  return !are_strained;
 }
 
 Strain Assembly::strain_released(const Problem& problem, const Stage& stage, const Vec3* x,

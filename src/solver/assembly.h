@@ -58,6 +58,12 @@ class Assembly {
   /// Whether every unbalanced force in that residual is round-off of the forces of stiff laws, that is, at most their
   /// stiffness times the round-off of the places.
   bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
+  /// Whether rows may hold the same, by the latest factors and residual. So it also seems where rows are eliminated before one of
+  /// the bodies that they hold, as in a chain of hinges.
+  bool may_have_redundant_rows() const { return redundancy_ > 0.05; }
+  /// Loads what takes out of the multipliers by how much rows press against each other: see Newton::find_shares. False if
+  /// they are strained by more than round-off.
+  bool load_redundant_shares(const Problem&, const Stage&, const Vec3* x);
   /// The elastic energy that compliant rows have released on the way to a solution at x. They had stored what the multipliers
   /// before this (sub-)step, N, have done on the gaps that it starts from, however long the steps then were.
   Strain strain_released(const Problem&, const Stage&, const Vec3* x, std::span<const double> multipliers_before) const;
@@ -162,6 +168,8 @@ class Assembly {
   std::vector<double> blur_;   ///< of each node: round-off of the laws' forces, N; only if Newton's method stalls
   double row_compliance_ = 1;  ///< a factor of the stage's, below 1 for extreme masses
   double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, during the sum of a residual
+  /// The largest compliance of a row in parts of its pivot: near 1 if others hold the same, else near 0.
+  double redundancy_ = 0;
 };
 
 }  // namespace iota::solver

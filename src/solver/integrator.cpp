@@ -109,6 +109,7 @@ void begin_strain(Problem& problem) {
 
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
   const AdvanceReport report = advance_within_limits(problem, h, settings);
+  if (solves_part_ && report.converged && !report.is_approximate) newton_.share_among_redundant(problem);
   // Accelerations are means then, too. Corrections of the end-point rule are not by rows.
   if (problem.end_impulses(report.converged && !report.is_approximate ? h : 0)) {
     is_instant_ = false;

@@ -44,6 +44,8 @@ class Newton {
   std::span<const Vec3> solution() const { return x_; }
   /// The forces that the latest solution leaves in the equation of each node, N.
   void get_unbalanced_forces(std::span<Vec3> forces) const;
+  /// After a step: takes out of the multipliers how much rows that hold the same press against each other.
+  void share_among_redundant(Problem&);
   /// See Assembly.
   Strain strain_released(const Problem& problem, const Stage& stage, std::span<const double> multipliers_before) const {
     return assembly_.strain_released(problem, stage, x_.data(), multipliers_before);
@@ -119,6 +121,7 @@ class Newton {
   bool is_balanced() const;
   /// Factor of round-off for links far from the origin; at least 1.
   double blur_of_places(const Problem& problem) const;
+  void find_shares(Problem&, const Stage&);
   /// Reduces a residual within tolerance to round-off.
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void take_step(Problem&, const Stage&);
@@ -159,6 +162,7 @@ class Newton {
   Residual residual_;                  // of the iterate
   std::vector<Vec3> x_, u_, u_saved_;  // saved: at the start of the latest step, as its multipliers
   std::vector<double> impulses_, multipliers_saved_, merit_weights_;
+  std::vector<double> shares_;  // changes of multipliers after the latest solve, or none
   std::vector<Vec3> mean_place_,
       mean_velocity_;  // over the last step; only if rows keep their rates
   struct Turn {
@@ -166,9 +170,10 @@ class Newton {
     ConeState state;  // by the step
     bool acts = false, has_acted = false;
   };
-  std::vector<Turn> turns_;                     // of impacts,
-  std::vector<Vec3> after_step_, end_of_step_;  // velocities and places, meanwhile
-  bool has_laws_ = false;
+  std::vector<Turn> turns_;                      // of impacts,
+  std::vector<Vec3> after_step_, end_of_step_;   // velocities and places, meanwhile
+  bool has_laws_ = false, has_stepped_ = false;  // in the latest solve
+  std::optional<bool> has_loops_;                // if it was asked
   Solver* external_ = nullptr;
 };
 

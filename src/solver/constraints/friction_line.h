@@ -18,6 +18,9 @@ namespace iota::solver {
 struct FrictionLineConstraint : PlaceConstraint<FrictionLineConstraint, 3> {
   double friction = 0;  ///< mu
   double reference = 1;
+  /// Of a row's natural compliance. Guides that hold the same would press against each other by the round-off of places, and so by
+  /// friction hold what should fall.
+  static constexpr double softness_across = 1e-8;
 
   double reference_length() const { return reference; }
   void calc_place_value(const Vec3& xi, double /*fraction*/, double* g) const { g[0] = xi.y, g[1] = xi.z, g[2] = xi.x; }
@@ -54,6 +57,10 @@ struct FrictionLineConstraint : PlaceConstraint<FrictionLineConstraint, 3> {
   ConeEquations equations(ConeState state, const double* multipliers, const double* g, const double* natural) const {
     const double softness = natural[2];
     ConeEquations e{.value = {g[0], g[1], g[2]}, .by_value = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double give = softness_across * natural[k];
+      e.value[k] -= give * multipliers[k], e.by_multiplier[k][k] = -give;
+    }
     if (!state.slips()) return e;
     const double size = std::hypot(multipliers[0], multipliers[1]), edge = state.direction * friction;
     e.value[2] = softness * (edge * size - multipliers[2]);
