@@ -94,7 +94,7 @@ const drawLess = (draws: Draws) => {
 };
 
 export const launchOptions = {
-  executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium-headless-shell",
+  executablePath: path.join(import.meta.dirname, "quiet_chromium.ts"),
   args: flags,
   env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1" },
 };
