@@ -11,7 +11,7 @@ let tab: Tab;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/cover_probe.py"], await freePort());
-  browser = await Browser.start({ width: 1280, height: 720, density: 0.5, draws: "always" });
+  browser = await Browser.start({ width: 1280, height: 720, density: 0.5 });
   tab = await browser.open(server.url);
   await tab.page.locator("#panel").waitFor();
 });
