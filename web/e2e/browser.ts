@@ -41,7 +41,7 @@ export interface BrowserOptions {
   /** Draws shadows, for tests that look at pictures: software takes most of a frame for them. */
   readonly shadows?: boolean;
   /** Which pictures of the world are drawn: those that the page shows ("always"), those that a test draws and reads ("asked"), these and
-   * what frames keep for them ("kept": surroundings that surfaces mirror, and shadows), or none, which is usual. All else of a page goes on
+   * what frames keep for them ("kept": surroundings that surfaces mirror, and shadows five times a second), or none, which is usual. All else of a page goes on
    * without them. Software takes most of two cores for them, and some seconds for a frame where the machine is busy. */
   readonly draws?: Draws;
 }
@@ -62,6 +62,24 @@ const drawLess = (draws: Draws) => {
   const nextFrame = globalThis.requestAnimationFrame;
   // Nobody sees the frames: a third as many do.
   const betweenFramesMs = 33;
+  // What a test draws has shadows of its own, but for those on the ground below things; a page draws for longer than this after a change.
+  const betweenShadowsMs = 200;
+  let hasShadows = false;
+  let shadowsAt = -Infinity;
+  let mirrors: IotaDebug["page"]["viewer"]["stage"] | null = null;
+  let isMirroring = false;
+  /** Surroundings are drawn once after a change: never left out. */
+  const keepMirrors = () => {
+    const stage = globalThis.iota?.page.viewer.stage;
+    if (stage === undefined || stage === mirrors) return;
+    mirrors = stage;
+    const own = stage.drawReflections.bind(stage);
+    stage.drawReflections = () => {
+      isMirroring = true;
+      own();
+      isMirroring = false;
+    };
+  };
   const calledOff = new Set<number>();
   let asked = 0;
   globalThis.requestAnimationFrame = (callback) => {
@@ -69,6 +87,9 @@ const drawLess = (draws: Draws) => {
     setTimeout(() => nextFrame((time) => {
       if (calledOff.delete(handle)) return;
       inFrame = true;
+      keepMirrors();
+      hasShadows = time >= shadowsAt + betweenShadowsMs;
+      if (hasShadows) shadowsAt = time;
       try {
         callback(time);
       } finally {
@@ -84,7 +105,7 @@ const drawLess = (draws: Draws) => {
     isOnScreen = framebuffer === null;
     bind.call(this, target, framebuffer);
   };
-  const isLeftOut = () => globalThis.drawsFrames !== true && (draws === "never" || (inFrame && (isOnScreen || draws === "asked")));
+  const isLeftOut = () => globalThis.drawsFrames !== true && (draws === "never" || (inFrame && (isOnScreen || draws === "asked" || !(hasShadows || isMirroring))));
   for (const name of ["clear", "drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"] as const) {
     const own = context[name] as (...given: number[]) => void;
     context[name] = function (this: WebGL2RenderingContext, ...given: number[]) {
@@ -158,7 +179,7 @@ export class Tab {
   readonly page: Page;
   /** Errors that the page's scripts threw, and what its console complained about. */
   readonly complaints: string[] = [];
-  private touch_: CDPSession | null = null;
+  private devtools_: CDPSession | null = null;
   private fingers_ = 0;
   private readonly draws_: Draws;
   /** When the world was back at its start, ms. */
@@ -335,10 +356,14 @@ export class Tab {
     await this.pause(false);
   }
 
-  /** Presses the mouse and lets it go at once, without waiting for the page in between: on a busy machine that takes longer than a click. */
-  async clickAt(at: Place): Promise<void> {
-    await this.page.mouse.move(...at);
-    await Promise.all([this.page.mouse.down(), this.page.mouse.up()]);
+  /** Presses the mouse and lets it go at once, by the times that the events have: a busy machine takes longer for both than a click. */
+  async clickAt([x, y]: Place): Promise<void> {
+    await this.page.mouse.move(x, y);
+    this.devtools_ ??= await this.page.context().newCDPSession(this.page);
+    const timestamp = Date.now() / 1000;
+    for (const type of ["mousePressed", "mouseReleased"] as const) {
+      await this.devtools_.send("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1, timestamp });
+    }
   }
 
   /** Fingers on the screen. */
@@ -353,8 +378,8 @@ export class Tab {
   }
 
   private async sendTouch_(type: "touchStart" | "touchMove" | "touchEnd", fingers: readonly Place[]): Promise<void> {
-    this.touch_ ??= await this.page.context().newCDPSession(this.page);
-    await this.touch_.send("Input.dispatchTouchEvent", { type, touchPoints: fingers.map(([x, y], id) => ({ x, y, id })) });
+    this.devtools_ ??= await this.page.context().newCDPSession(this.page);
+    await this.devtools_.send("Input.dispatchTouchEvent", { type, touchPoints: fingers.map(([x, y], id) => ({ x, y, id })) });
   }
 
   /** A file for people to look at. */

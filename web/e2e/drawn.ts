@@ -50,6 +50,7 @@ export async function drawn(tab: Tab, what: readonly (typeof everything)[number]
       else for (const [{ shadow }, intensity] of intensities) shadow.intensity = on ? intensity : 0;
     };
     renderer.shadowMap.autoUpdate = false;
+    renderer.shadowMap.needsUpdate = true;
     const shown = take();
     show(false);
     const hidden = take();
