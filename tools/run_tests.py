@@ -16,8 +16,8 @@ Amounts: tests that sample (random scenes, edits, damaged bytes) try a tenth of 
 IOTA_TEST_ALL (tests/cpp/amount.h, tests/python/amount.py). A suite with `inputs` runs when one of them has changed since
 it passed, when it is named, and with --all; the others run always.
 
-A browser test that fails is repeated once with its file, in a fresh browser: it draws in software on a few busy cores,
-so that some of its time limits pass by chance. What passed only then is named in the closing lines, and a defect of
+A browser test that fails is repeated once in a fresh browser, with its file unless it has a page of its own: it draws in
+software on a few busy cores, so that some of its time limits pass by chance. What passed only then is named in the closing lines, and a defect of
 that kind is to be found too. With more than a few failed files nothing is repeated.
 """
 
@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -149,6 +150,8 @@ class Suite:
     folder: Path = ROOT
     #: At most so many files with failed tests are run once more, each `FILE: TITLE` in the failures of `read`.
     repeats: int = 0
+    #: Its tests rely on none before them, so that failed ones are run once more without the others of their files.
+    alone: bool = False
     #: About how long it takes on two cores: the longest begins first.
     about_s: float = 1
     #: How many cores it keeps busy.
@@ -236,7 +239,7 @@ SUITES = [
     ),
     Suite(
         "pictures", vitest(*BROWSER, *PICTURES), 1200, read_vitest, WEB,
-        repeats=2, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
+        repeats=2, alone=True, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite(
         "packages", vitest(*BROWSER, *PACKAGES), 600, read_vitest, WEB,
@@ -329,13 +332,33 @@ def wait(process: subprocess.Popen[bytes], limit_s: float) -> int | None:
     return process.poll()
 
 
+def without_skipped(read: Callable[[Path], Count] | None) -> Callable[[Path], Count]:
+    """The tests of a run that was told which ones."""
+
+    def read_ran(result: Path) -> Count:
+        count = read(result) if read else Count()
+        count.failures = [failure for failure in count.failures if not failure.startswith("skipped: ")]
+        count.failed = len(count.failures)
+        return count
+
+    return read_ran
+
+
 def run_with_repeats(suite: Suite) -> Count:
-    """Runs a suite, and its files with failed tests once more if they are few."""
+    """Runs a suite, and its files with failed tests once more if they are few, or these tests alone."""
     count = run(suite)
     files = sorted({failure.split(":")[0] for failure in count.failures})
     if not 0 < len(files) <= suite.repeats:
         return count
-    again = run(replace(suite, name=f"{suite.name}-again", command=[*suite.command, *files]))
+    repetition = replace(suite, name=f"{suite.name}-again", command=[*suite.command, *files])
+    if suite.alone:
+        titles = "|".join(re.escape(failure.partition(": ")[2]) for failure in count.failures)
+        repetition = replace(
+            repetition,
+            command=[*repetition.command, f"--testNamePattern=^({titles})$"],
+            read=without_skipped(suite.read),
+        )
+    again = run(repetition)
     repeated = [failure for failure in count.failures if failure not in again.failures]
     if again.passed < len(repeated):
         return count

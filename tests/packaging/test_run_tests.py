@@ -8,8 +8,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -149,7 +151,7 @@ def vitest(**states: str) -> dict[str, object]:
     }
 
 
-def repeating(runner: ModuleType, first: object, again: object) -> object:
+def repeating(runner: ModuleType, first: object, again: object) -> Any:
     """A suite with these results, the second ones if files are named in its arguments."""
     script = f"import sys\nif len(sys.argv) > 1: {writes(again)}\nelse: {writes(first)}"
     return runner.Suite("made-up", [sys.executable, "-c", script], 60, runner.read_vitest, ROOT, repeats=2)
@@ -162,6 +164,17 @@ def test_a_file_that_fails_once_is_repeated_and_named(runner: ModuleType, capsys
     lines = capsys.readouterr().out.splitlines()
     assert "  failed once, passed when repeated: made-up: b.test.ts: draws" in lines
     assert lines[-1] == "2 passed, 1 only when repeated, 0 failed"
+
+
+def test_a_test_that_relies_on_no_other_is_repeated_alone(
+    runner: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = repeating(runner, vitest(a="passed", b="failed"), vitest(a="skipped", b="passed"))
+    given = tmp_path / "given"
+    script = f"{made.command[2]}\nopen({str(given)!r}, 'w').write(' '.join(sys.argv[1:]))"
+    made = replace(made, alone=True, command=[sys.executable, "-c", script])
+    assert closing_line(runner, made, capsys) == (0, "2 passed, 1 only when repeated, 0 failed")
+    assert given.read_text() == "b.test.ts --testNamePattern=^(draws)$"
 
 
 def test_a_file_that_fails_twice_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
