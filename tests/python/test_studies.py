@@ -72,18 +72,6 @@ def test_it_goes_on_and_nothing_passes_through_anything(name: str) -> None:
     assert np.isfinite(places).all() and np.abs(places).max() < 100, "nothing flies away"
 
 
-@pytest.mark.parametrize("name", studies.names())
-def test_something_moves_within_two_seconds(name: str) -> None:
-    world = studies.module(name).build()
-    begin = {particle: particle.position for particle in world.system.particles}
-    size = float(np.linalg.norm(np.ptp([tuple(place) for place in begin.values()], axis=0)))
-    farthest = 0.0
-    while world.system.time < 2 and farthest < 0.02 * size:
-        world.step()
-        farthest = max(abs(particle.position - place) for particle, place in begin.items() if particle.alive)
-    assert farthest >= 0.02 * size, f"{farthest / size:.3f} of its size"
-
-
 def goes_on_from(log: Log, system: iota.System, step: Callable[[], object], count: int) -> int | None:
     """The first of so many steps after which another system that was restored before them is in another state."""
     log.take()
@@ -120,14 +108,22 @@ def test_its_states_go_on_with_the_same_bits_in_another_system(name: str) -> Non
     log.stop()
 
 
-@pytest.mark.parametrize("name", studies.names())
-def test_its_title_says_how_large_it_is(name: str) -> None:
-    assert re.search(r": .*\b\d+(\.\d+)? (nm|mm|cm|m)\b", studies.module(name).build().title)
+@pytest.fixture(scope="module")
+def built(request: pytest.FixtureRequest) -> iota.World:
+    """A study, which the last of its tests steps."""
+    world: iota.World = studies.module(request.param).build()
+    return world
 
 
-@pytest.mark.parametrize("name", sorted(set(studies.names()) - {"bucky"}))  # whose nail is the middle of the ball
-def test_every_nail_is_at_something_visible(name: str) -> None:
-    world = studies.module(name).build()
+@pytest.mark.parametrize("built", studies.names(), indirect=True)
+def test_its_title_says_how_large_it_is(built: iota.World) -> None:
+    assert re.search(r": .*\b\d+(\.\d+)? (nm|mm|cm|m)\b", built.title)
+
+
+# But for the one whose nail is the middle of the ball.
+@pytest.mark.parametrize("built", sorted(set(studies.names()) - {"bucky"}), indirect=True)
+def test_every_nail_is_at_something_visible(built: iota.World) -> None:
+    world = built
     cages = next(
         (group for group in world.system.groups if group.name == "cages"), ()
     )  # of the museum: its bucky balls
@@ -136,6 +132,18 @@ def test_every_nail_is_at_something_visible(name: str) -> None:
     for thing in held:
         near = world.queries.overlap(iota.Sphere(0.03), thing.position)
         assert not set(world.system.obstacles).isdisjoint(near), thing
+
+
+@pytest.mark.parametrize("built", studies.names(), indirect=True)
+def test_something_moves_within_two_seconds(built: iota.World) -> None:
+    world = built
+    begin = {particle: particle.position for particle in world.system.particles}
+    size = float(np.linalg.norm(np.ptp([tuple(place) for place in begin.values()], axis=0)))
+    farthest = 0.0
+    while world.system.time < 2 and farthest < 0.02 * size:
+        world.step()
+        farthest = max(abs(particle.position - place) for particle, place in begin.items() if particle.alive)
+    assert farthest >= 0.02 * size, f"{farthest / size:.3f} of its size"
 
 
 def test_the_scripts_of_the_thesis_are_less_than_half_as_long_and_their_table_is_up_to_date() -> None:

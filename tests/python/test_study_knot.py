@@ -68,5 +68,7 @@ def test_two_hands_tie_a_knot_that_holds_a_ring_by_friction_alone(tied: knot.Kno
     for rod in tied.rods:
         rod.material = iota.Material(friction=0.0)
     tied._take("other", tied.rods[0], -1, [(knot.HANG[1], (-0.2, knot.TOP, 0.0))])
-    run(tied, knot.TIED + 2)
+    run(tied, knot.HANG[1])
+    while tied.ring.position.y >= 0.06 and tied.system.time < tied.begun + knot.TIED + 2:
+        tied.world.step()
     assert tied.ring.position.y < 0.06
