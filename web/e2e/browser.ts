@@ -51,7 +51,7 @@ type Draws = "always" | "kept" | "asked" | "never";
 /** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
 export const small: BrowserOptions = { width: 640, height: 360 };
 
-/** For a page that draws less than always: leaves out the commands that fill pixels, the blur of what is behind a panel, and two of three
+/** For a page that draws less than always: leaves out the commands that fill pixels, the blur of what is behind a panel, and most
  * frames. What the processor does for a picture stays. */
 const drawLess = (draws: Draws) => {
   const sheet = new CSSStyleSheet();
@@ -60,8 +60,8 @@ const drawLess = (draws: Draws) => {
   let inFrame = false;
   let isOnScreen = true;
   const nextFrame = globalThis.requestAnimationFrame;
-  // Nobody sees the frames: a third as many do.
-  const betweenFramesMs = 33;
+  // Nobody sees the frames: a fifth as many do.
+  const betweenFramesMs = 60;
   // What a test draws has shadows of its own, but for those on the ground below things; a page draws for longer than this after a change.
   const betweenShadowsMs = 200;
   let hasShadows = false;
