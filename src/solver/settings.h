@@ -55,7 +55,7 @@ struct IntegratorSettings {
   /// The same by the mid-point rule, of loose bodies that touch in loops, and how often their steps are halved before sweeps move
   /// them. Of 80 steps that were halved more often 7 found a solution; of 540 solves with more iterations 90 did, where
   /// halves take less.
-  static constexpr int heap_iterations = 20;
+  static constexpr int heap_iterations = 24;
   static constexpr int heap_depth(Scheme scheme) { return scheme == Scheme::mid_point ? 3 : 2; }
 
   /// Multiplications of all factors of a step of bodies that only contacts connect. What would need more is solved
