@@ -236,7 +236,7 @@ namespace {
 /// Rows that keep their average rate of the last step.
 template <class C>
 bool keeps_mean_rate(const ConstraintPool<C>& pool, std::size_t item) {
-  if (std::is_same_v<C, CouplingConstraint>) return true;
+  if (std::is_same_v<C, CouplingConstraint>) return !pool.has_laws() || !pool.states.has_been_met(item);
   if (!pool.has_laws()) return false;
   const RowLaw* const law = pool.law(item);
   return std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.is_rate && l.rate != 0; });

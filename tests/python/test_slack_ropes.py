@@ -57,6 +57,29 @@ def test_a_rope_that_catches_a_mass_makes_no_energy(
         assert 0.5 * 10 * abs(mass.velocity) ** 2 == pytest.approx(before, rel=1e-6), "a spring gives back what it took"
 
 
+@pytest.mark.parametrize("mode", ["energy_keeping", "accurate"])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
+def test_a_rope_over_several_points_catches_a_load_as_a_plain_one_does(mode: Mode, dt: float) -> None:
+    """Its load kept a part of its speed for another step, and what that took was told as lost."""
+    ends = []
+    for is_plain in (True, False):
+        system = iota.System(mode=mode)
+        nail, drum, load = (system.body().particle((0, y, 0)) for y in (0, -1, -1.7))
+        nail.nail()
+        drum.nail()
+        rope = system.rope(nail, load) if is_plain else system.rope([drum, nail, load])
+        rope.length += 0.3
+        forces = []
+        for _ in range(round(0.5 / dt)):
+            system.step(dt)
+            forces.append(abs(rope.force))
+        energy = system.energy
+        assert energy.dissipated == pytest.approx(0.3 * 9.81, rel=1e-8) and energy.lost == pytest.approx(0, abs=1e-8)
+        assert sum(force > 10 for force in forces) == 1, "caught in one step"
+        ends.append((max(forces), forces[-1]))
+    assert ends[0] == pytest.approx(ends[1], rel=5e-3)
+
+
 @pytest.mark.parametrize("seed", sorted({*range(sampled(200)), 98, 101}))  # two once took minutes for a step
 def test_random_ropes_and_tackles_of_changing_length_make_no_energy(seed: int) -> None:
     """Masses on ropes that yield and on a tackle, of which some are hauled, in any mode and step."""
