@@ -473,7 +473,8 @@ void bind_handle(nb::module_& module) {
           [](const ConstraintHandle& self, double length) {
             self.use().joints().set_length(self.id, finite(length, "length"));
           },
-          "Of a rod or rope, m. Of a coupling: the sum of ratio times coordinate.")
+          "Of a rod or rope, m. Of a coupling: the sum of ratio times coordinate. A change runs evenly within the next step;\n"
+          "one of more than a tenth closes as a gap, at no velocity.")
       .def_prop_ro(
           "terms",
           [](const ConstraintHandle& self) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/constraints.h"
 
+#include "ingredient/coupling_form.h"
+#include "ingredient/distance_form.h"
 #include "ingredient/joint_readings.h"
 #include "ingredient/joint_rows.h"
 #include "ingredient/pin_form.h"
+#include "ingredient/strides.h"
 #include "math/checks.h"
 #include "math/mat3.h"
 #include "shape/shape.h"
@@ -335,14 +338,31 @@ void apply(Editor& e, const SetLength& c) {
         text("a ", ingredient::info(kind).name, " has no length; rods, ropes and couplings have"));
   else if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
-  constexpr double jump = 0.1;  // of the length: a winch changes it by less in each step
+  constexpr double most = 0.1;  // of the length: a winch changes it by less in each step
+  constexpr double met = 1e-6;
   ingredient::Constraint& constraint = model.constraints[slot];
-  const double before = std::exchange(constraint.length, c.value);
-  // The multiplier is the tension in parts of |d| / L, unless the row yields.
-  if ((kind == ConstraintKind::rod || kind == ConstraintKind::rope) && constraint.compliance.is_exact())
-    constraint.multipliers[0] *= c.value / before;
-  if (std::abs(c.value - before) > jump * c.value) note_jump(model, slot);
+  const double before = std::exchange(constraint.length, c.value), way = c.value - (before - constraint.way);
+  const bool is_line = kind == ConstraintKind::rod || kind == ConstraintKind::rope;
+  const double size =
+      kind == ConstraintKind::coupling ? ingredient::joint::CouplingForm::size_of(model, constraint) : c.value;
+  const bool is_jump = std::abs(way) > most * size;
+  // In a conflict the old length was not reached: what ran on from there would do work on no motion.
+  const bool is_met = constraint.gap <= met * size;
+  const bool runs = !is_jump && is_met && !constraint.is_new && constraint.active;
+  constraint.way = runs ? way : 0;
+  if (is_jump) note_jump(model, slot);
   model.changed_constraints.note(slot);
+  for_each_joint_of(model, slot, [&](const ingredient::Constraint& joint) {
+    for (const int side : {0, 1})
+      if (const std::uint32_t body = body_of_side(model, joint, side); body != none)
+        ingredient::Strides::disturb(model, body);
+  });
+  if (is_line && runs && !constraint.is_hauled) {
+    constraint.is_hauled = 1;
+    return constraint_changed(e, slot);
+  }
+  // The multiplier is the tension in parts of |d| / L.
+  if (is_line && !ingredient::joint::DistanceForm::has_span(constraint)) constraint.multipliers[0] *= c.value / before;
   wake(e, slot);
 }
 

@@ -43,7 +43,8 @@ IOTA_FIELDS(ingredient::CoupledTerm, coupling, joint, next, next_at_joint, ratio
 IOTA_FIELDS(ingredient::Constraint::Bits, bits)
 IOTA_FIELDS(ingredient::Constraint, kind, active, broken, owned, in_world, alignment, lock, aligned, line_side, carries,
             told, is_part, particles, next, previous, fixed, scale, cosines, length, curve, first_term, coupled,
-            surfaces, nearest, options, coordinate, breaks, compliance, multipliers, efforts, gap)
+            surfaces, nearest, options, coordinate, breaks, compliance, multipliers, efforts, gap, is_new, is_hauled,
+            way, rate)
 IOTA_FIELDS(ingredient::Emitter, source, active, rate, position, velocity, orientation, velocity_spread, lifetime,
             lifetime_spread, mass, damping, max_count, key_count, keys, seed, draws, due, alive, born)
 IOTA_FIELDS(ingredient::IgnoredPair, a, b)

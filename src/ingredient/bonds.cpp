@@ -61,7 +61,7 @@ solver::SpanConstraint row_of(const Bond& bond, std::uint32_t p, std::uint32_t q
   solver::SpanConstraint row;
   row.add(0, p, -1), row.add(0, q, 1);
   row.first_side = 1;
-  row.target = row.reference = spring_of(bond).length;
+  row.target_start = row.target = row.reference = spring_of(bond).length;
   return row;
 }
 
@@ -119,9 +119,10 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
   auto& rows = problem.pool_of<solver::SpanConstraint>();
   for_each_item_of<solver::SpanConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Bond& bond = model.bonds[key.slot];
-    rows.items[i].target = rows.items[i].reference = spring_of(bond).length;
+    solver::SpanConstraint& row = rows.items[i];
+    row.target_start = row.target = row.reference = spring_of(bond).length;
     *rows.law(i) = law_of(bond);
-    rows.multipliers[i] = tension(bond, rows.items[i].arm(0, problem.position.data(), 0));
+    rows.multipliers[i] = tension(bond, row.arm(0, problem.position.data(), 0));
   });
 }
 

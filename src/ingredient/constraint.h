@@ -129,8 +129,10 @@ struct Constraint {
     void set(int bit, bool on) { bits = static_cast<std::uint8_t>((bits & ~(1 << bit)) | on << bit); }
     bool operator[](int bit) const { return bits >> bit & 1; }
   };
-  Bits carries, told;                                  ///< at present; and at the last report
-  std::uint8_t is_part = 0;                            ///< 1: a span made by a tackle and destroyed with it
+  Bits carries, told;          ///< at present; and at the last report
+  std::uint8_t is_part = 0;    ///< 1: a span made by a tackle and destroyed with it
+  std::uint8_t is_new = 1;     ///< no step has held it yet
+  std::uint8_t is_hauled = 0;  ///< its length has run in a step: a rod's or rope's row is then a span, for good
   std::array<std::uint32_t, place_count> particles{};  ///< `none` if a place is not needed, or in the world
   /// Each particle lists its places, as links place_count * slot + place.
   std::array<std::uint32_t, place_count> next{}, previous{};
@@ -147,6 +149,8 @@ struct Constraint {
   /// After the last step, rad (counted through full turns) and m.
   std::array<double, joint_coordinates.size()> coordinate{};
   BreakLimits breaks;
+  double way = 0;   ///< of the length in the next step, where it runs evenly from length - way to length
+  double rate = 0;  ///< that of the length in the last step, 1/s
   Compliance compliance;
   std::array<double, 8> multipliers{};  ///< of the rows that hold it, N; warm start and reaction
   /// Multipliers of limit, motor, friction and spring.

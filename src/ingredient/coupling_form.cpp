@@ -71,16 +71,23 @@ void CouplingForm::load(solver::CouplingConstraint& row, const Model& model, con
 }
 
 Violation CouplingForm::calc_violation(const Model& model, const Constraint& c) {
-  double off = -c.length, size = 0;
+  double off = -c.length;
   for_each_term(model, c, [&](const CoupledTerm& term) {
     off += term.ratio * calc_coordinate(model, term.joint, term.coordinate).first;
+  });
+  const int sign = info(c.kind).sign;
+  const double violation = sign == 0 ? std::abs(off) : std::max(0.0, sign * off);
+  return {violation, violation / size_of(model, c)};
+}
+
+double CouplingForm::size_of(const Model& model, const Constraint& c) {
+  double size = 0;
+  for_each_term(model, c, [&](const CoupledTerm& term) {
     const bool is_slide = term.coordinate == JointCoordinate::slide;
     const auto& scale = model.constraints[term.joint].scale;
     size = std::max(size, std::abs(term.ratio) * (is_slide ? std::max(scale[0], scale[1]) : 1));
   });
-  const int sign = info(c.kind).sign;
-  const double violation = sign == 0 ? std::abs(off) : std::max(0.0, sign * off);
-  return {violation, violation / size};
+  return size;
 }
 
 // ----------------------------------------------------------------------------------------------------- its two lists

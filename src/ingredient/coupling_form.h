@@ -20,6 +20,8 @@ struct CouplingForm : PlainForm {
   using PlainForm::load;
   static void load(solver::CouplingConstraint&, const Model&, const Constraint&, double*);
   static Violation calc_violation(const Model&, const Constraint&);
+  /// The size of the largest term: of a radian, or the length of the slide's directions.
+  static double size_of(const Model&, const Constraint&);
 
   /// Removes the terms from the lists of their joints.
   static void remove_terms(Model&, std::uint32_t coupling);

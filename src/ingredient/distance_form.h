@@ -5,7 +5,7 @@
 
 namespace iota::ingredient::joint {
 
-inline void set_target(solver::SpanConstraint& row, double, double target) { row.target = target; }
+inline void set_target(solver::SpanConstraint& row, double, double target) { row.target_start = row.target = target; }
 
 /// A rod, a rope, or the distance of two particles as a coordinate. Its places are the origins, without directions.
 struct DistanceForm : PlainForm {
@@ -14,7 +14,8 @@ struct DistanceForm : PlainForm {
   template <class Sink>
   static void build(const JointArms& j, RowSink<Sink>& out) {
     if (j.c.kind == ConstraintKind::span) return out.coordinate(slide, span_row(j));
-    if (!j.c.compliance.is_exact()) return out.hold(span_row(j));  // its stretch is not only nearly the distance
+    // Its stretch is not only nearly the distance, and a length that runs evenly is no square that does.
+    if (has_span(j.c)) return out.hold(span_row(j));
     if (j.c.kind == ConstraintKind::rod && joins_nodes(j)) return out.hold(rod_row(j));
     out.hold(square_row(j));
   }
@@ -33,7 +34,11 @@ struct DistanceForm : PlainForm {
   static void load(solver::BilinearConstraint& row, const Model&, const Constraint& c, double*) {
     set_length(row, c.length);
   }
-  static void load(solver::SpanConstraint& row, const Model&, const Constraint& c, double*) { row.target = c.length; }
+  static void load(solver::SpanConstraint& row, const Model&, const Constraint& c, double*) {
+    set_target(row, c.length, c.length);
+  }
+  /// Whether a rod or rope has the distance itself as its row, whose multiplier is the tension.
+  static bool has_span(const Constraint& c) { return c.is_hauled || !c.compliance.is_exact(); }
 
  private:
   /// Whether each end is a node of its own.

@@ -192,6 +192,8 @@ struct NoAnswers {
   bool prescribes_motion(const Model&, const IslandNodes&) const { return false; }
   /// The largest difference between a velocity in the problem and the prescribed one, m/s.
   double velocity_jump(const Problem&, double /*h*/) const { return 0; }
+  /// The largest change of the speed at which a row's target moves, from the last step to this one, m/s.
+  double rate_jump() const { return 0; }
   void impose_velocities(Problem&, double /*h*/) const {}
   void impose_positions(Problem&) const {}
   ///@}
@@ -275,6 +277,7 @@ concept IslandIngredient =
       fixed.accept_assigned(model, nodes);
       { fixed.prescribes_motion(seen, nodes) } -> std::same_as<bool>;
       { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
+      { fixed.rate_jump() } -> std::same_as<double>;
       fixed.impose_velocities(problem, h);
       fixed.impose_positions(problem);
       { fixed.keeps_awake(seen, solved) } -> std::same_as<bool>;

@@ -207,9 +207,10 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
 
 namespace {
 
-/// visit(row, law, value): the rows of a constraint, except a coupling, at the present places of its particles.
+/// visit(row, law, value): the rows of a constraint, except a coupling, at the present places of its particles. A length that
+/// is to run in the next step is as at this part of its way.
 template <class Visit>
-void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
+void for_each_held_value(const Model& model, std::uint32_t slot, double fraction, Visit visit) {
   const Constraint& c = model.constraints[slot];
   const JointPlaces places(model, c);
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
@@ -217,7 +218,8 @@ void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
     Row loaded = row;
     double multipliers[Row::rows], g[Row::rows];
     load_hold(loaded, model, c, use, multipliers);
-    loaded.value(places.position.data(), 1, g);
+    move_target(loaded, c.way);
+    loaded.value(places.position.data(), fraction, g);
     for (int r = 0; r < Row::rows; ++r) visit(loaded, law_of_hold(c, use, loaded, r), g[r]);
   };
   build_rows({c, model.geometry(slot), places.arms}, sink);
@@ -231,7 +233,7 @@ Violation calc_violation(const Model& model, std::uint32_t slot) {
     if constexpr (requires { F::calc_violation(model, model.constraints[slot]); })
       worst = F::calc_violation(model, model.constraints[slot]);
     else
-      for_each_held_value(model, slot, [&](const auto& row, const solver::RowLaw& law, double value) {
+      for_each_held_value(model, slot, 1, [&](const auto& row, const solver::RowLaw& law, double value) {
         const double off = law.violation(value);
         worst.absolute = std::max(worst.absolute, off);
         worst.relative = std::max(worst.relative, off / row.reference_length());
@@ -246,7 +248,7 @@ double friction_of_line(const Constraint& c) {
 
 double calc_energy_of_holds(const Model& model, std::uint32_t slot) {
   double energy = 0;
-  for_each_held_value(model, slot,
+  for_each_held_value(model, slot, 0,
                       [&](const auto&, const solver::RowLaw& law, double value) { energy += law.energy(value); });
   return energy;
 }

@@ -189,6 +189,12 @@ struct PlainForm {
 template <class Row>
 void set_target(Row&, double, double) {}
 
+/// Lets the target of a row that is loaded arrive where it is at the end of the step: an even way from its start.
+template <class Row>
+void move_target(Row& row, double way) {
+  if constexpr (requires { row.target_start = row.target - way; }) row.target_start = row.target - way;
+}
+
 /// The value of a row that holds an angle, over that angle, m.
 inline double lever_of(const solver::BilinearConstraint& row) { return row.reference; }
 template <class Row>

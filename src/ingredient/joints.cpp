@@ -128,6 +128,7 @@ void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, R
 }
 
 void Joints::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
+  rate_jump_ = 0;
   if (joints_.empty()) return;
   for (auto& [angle, key] : problem.counted_angles)
     set_target(angle, model.constraints[key.slot].coordinate[use_of(key).coordinate], 0);
@@ -138,6 +139,10 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
       C& row = pool.items[item];
       if (use.role == Role::hold) {
         load_hold(row, model, c, use, pool.multiplier(item));
+        if (h > 0 && (c.way != 0 || c.rate != 0)) {
+          move_target(row, c.way);
+          rate_jump_ = std::max(rate_jump_, std::abs(c.way / h - c.rate));
+        }
         for (int r = 0; r < C::rows && pool.has_laws(); ++r) pool.law(item)[r] = law_of_hold(c, use, row, r);
         return;
       }
@@ -196,11 +201,23 @@ void Joints::store(Model& model, const IslandNodes&, double, const Problem& prob
   }
 }
 
-// A motor that turns, however slowly. One at its largest force stands, or moves as fast as that.
+bool Joints::prescribes_motion(const Model& model, const IslandNodes&) const {
+  return std::ranges::any_of(joints_, [&](std::uint32_t slot) { return model.constraints[slot].way != 0; });
+}
+
+void Joints::end_step(Model& model, double h) {
+  model.constraints.for_each([&](std::uint32_t, Constraint& c) {
+    c.is_new = 0;
+    if (c.way == 0 && c.rate == 0) return;
+    c.rate = c.way / h, c.way = 0;
+  });
+}
+
+// A motor that turns or a length that runs, however slowly. A motor at its largest force stands, or moves as fast as that.
 bool Joints::keeps_awake(const Model& model, const Problem&) const {
   return std::any_of(joints_.begin(), joints_.end(), [&](std::uint32_t slot) {
     const Constraint& c = model.constraints[slot];
-    bool turns = false;
+    bool turns = c.way != 0;
     for (std::size_t k = 0; k < c.options.size(); ++k) {
       const CoordinateOptions& o = c.options[k];
       turns = turns || (std::isnan(o.servo) && o.motor_speed != 0 &&

@@ -61,6 +61,7 @@ class Joints : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static void clean_up(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static void end_step(Model&, double h);
   static void tell(Model&, Outcome&);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
@@ -78,6 +79,9 @@ class Joints : public NoAnswers {
   void refresh(Model&, const IslandNodes&, bool moved) const;
   bool meets_pinned(const Model&) const;
   bool keeps_awake(const Model&, const Problem&) const;
+  /// A length that a script changes moves rows, as a nail that it moves: see Constraint::way.
+  bool prescribes_motion(const Model&, const IslandNodes&) const;
+  double rate_jump() const { return rate_jump_; }
   std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
@@ -87,6 +91,7 @@ class Joints : public NoAnswers {
 
   std::vector<std::uint32_t> joints_;
   std::vector<std::uint32_t> pinned_;  // joints with left-out rows, whose nodes are all pinned
+  double rate_jump_ = 0;               // of the lengths that run, from the last step to this one, m/s
 };
 
 }  // namespace iota::ingredient

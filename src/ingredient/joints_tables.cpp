@@ -6,6 +6,7 @@
 #include "model/restructure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace iota::ingredient {
@@ -247,6 +248,8 @@ void Joints::check_links(const Model& model, model::Audit& audit) {
     const bool known = static_cast<std::size_t>(c.kind) < constraint_kinds.size() && c.alignment <= Alignment::axes &&
                        c.lock <= Lock::third_of_a && c.aligned <= 2 && c.line_side <= 1;
     audit.require(known, "constraint ", slot, " is of no kind");
+    const bool runs_well = c.is_new <= 1 && c.is_hauled <= 1 && std::isfinite(c.way) && std::isfinite(c.rate);
+    audit.require(runs_well, "the length of constraint ", slot, " runs without an end");
     for (int place = 0; place < place_count; ++place) {
       const std::uint32_t p = c.particles[place];
       audit.require(p == none ? (c.owned >> place & 1) == 0 : model.particles.is_alive(p), "constraint ", slot,

@@ -237,6 +237,12 @@ double Island::velocity_jump(double h) const {
   return largest;
 }
 
+double Island::rate_jump() const {
+  double largest = 0;
+  for_each_ingredient([&](const auto& i) { largest = std::max(largest, i.rate_jump()); });
+  return largest;
+}
+
 void Island::impose_velocities(double h) {
   for_each_ingredient([&](const auto& i) { i.impose_velocities(problem_, h); });
 }
@@ -290,7 +296,10 @@ Island::Tried Island::try_motion(const Model& model, double h, const Limits& lim
   use_solver(model.solver);
   double given = 0;  // by jumps of prescribed velocities, J
   // With the mid-point rule a jump of a prescribed velocity would cause a permanent oscillation of the reactions.
-  if (velocity_jump(h) * h > 1e-10 * integrator_->reference_length()) {
+  const double little = 1e-10 * integrator_->reference_length();
+  const bool speeds_up = rate_jump() * h > little;
+  if (speeds_up || velocity_jump(h) * h > little) {
+    if (speeds_up) problem_.begin_impulses(), problem_.note_late_impulses();  // a winch that starts pulls by that
     given -= problem_.kinetic_energy();
     impose_velocities(h);
     integrator_->project_velocities(problem_, h);

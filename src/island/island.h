@@ -198,6 +198,7 @@ class Island {
   Tried try_motion(const model::Model&, double h, const Limits&);
   void commit_motion(model::Model&, double h);
   double velocity_jump(double h) const;  ///< see ingredient::NoAnswers
+  double rate_jump() const;
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
   void store_step(model::Model&, double h, bool is_instant) const;

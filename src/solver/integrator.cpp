@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <type_traits>
 #include <utility>
 
@@ -23,6 +24,12 @@ template <class C>
 constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CouplingConstraint> ||
                            std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
                            std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
+
+/// Its target is a length or an angle. That of others is a place, to which nails move with what hangs on them.
+template <class C>
+constexpr bool has_length = requires(const C& c) {
+  { c.target } -> std::convertible_to<double>;
+};
 
 constexpr int unlimited = std::numeric_limits<int>::max();
 constexpr auto never = std::chrono::steady_clock::time_point::max();
@@ -206,10 +213,12 @@ void Integrator::begin_like_the_latest() {
 
 // Finds out how the world outside may act on the problem during the step.
 void Integrator::look_at(Problem& problem) {
-  bool moves_rows = false, has_rates = false, drives = false;
+  bool moves_rows = false, moves_points = false, has_rates = false, drives = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (pool.items.empty()) return;  // as nearly all are: of many small problems each look at one waits for memory
-    for (const C& c : pool.items) moves_rows = moves_rows || c.is_moving();
+    bool moves = false;
+    for (const C& c : pool.items) moves = moves || c.is_moving();
+    moves_rows = moves_rows || moves, moves_points = moves_points || (moves && !has_length<C>);
     for (const RowLaw& law : pool.laws) {
       if (!law.is_rate || law.is_off() || ConeConstraint<C>) continue;
       has_rates = true, drives = drives || law.rate != 0;
@@ -217,7 +226,7 @@ void Integrator::look_at(Problem& problem) {
   });
   drives_rows_ = moves_rows || drives;
   const bool may_meet = problem.has_laws() && (!may_sweep_ || heap_->has_joints());
-  if ((has_rates || may_meet) && !moves_rows) problem.begin_impulses();
+  if ((has_rates || may_meet || moves_rows) && !moves_points && !problem.adds_impulses()) problem.begin_impulses();
   find_holds(problem);
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
   // The push of a law has no energy: its work is not a gain.

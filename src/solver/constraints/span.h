@@ -6,15 +6,18 @@
 namespace iota::solver {
 
 /// The distance of two points: limits, motors, friction and springs along it, and the pieces of a rope over several points.
-///   constraint  g(x) = |d| - target   (m);   arm 0: d
+///   constraint  g(x) = |d| - target(fraction)   (m);   arm 0: d
 ///   gradient    dg/dd = n = d / |d|;   Hessian (I - n n') / |d|
 /// The multiplier is the tension, N. If the points coincide the direction is undefined, and no force acts.
 struct SpanConstraint : ArmConstraint<SpanConstraint, 1, 1> {
-  double target = 0;     ///< m
-  double reference = 1;  ///< reference length of violations, m
+  double target_start = 0, target = 0;  ///< m; it moves linearly during the step
+  double reference = 1;                 ///< reference length of violations, m
 
   double reference_length() const { return reference; }
-  void calc_value(const Vec3* e, double /*fraction*/, double* g) const { g[0] = norm(e[0]) - target; }
+  bool is_moving() const { return target != target_start || Arms::is_moving(); }
+  void calc_value(const Vec3* e, double fraction, double* g) const {
+    g[0] = norm(e[0]) - (target_start + fraction * (target - target_start));
+  }
   void calc_gradient(const Vec3* e, Vec3 (*d)[1]) const {
     const double length = norm(e[0]);
     d[0][0] = length > 0 ? (1 / length) * e[0] : Vec3{};

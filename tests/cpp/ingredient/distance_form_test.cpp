@@ -38,6 +38,32 @@ TEST(DistanceForm, a_row_follows_a_changed_length) {
   EXPECT_EQ(rod.length, 3);
   EXPECT_EQ(rope.product, 9);
   EXPECT_EQ(compliant.target, 3);
+  EXPECT_FALSE(compliant.is_moving());
+  joint::move_target(compliant, -0.5);
+  EXPECT_EQ(compliant.target_start, 3.5);
+  EXPECT_TRUE(compliant.is_moving());
+}
+
+TEST(DistanceForm, a_line_that_was_hauled_has_the_distance_itself_as_its_row) {
+  for (const ConstraintKind kind : {ConstraintKind::rod, ConstraintKind::rope}) {
+    TwoBlocks blocks;
+    Model& model = blocks.m.model;
+    const std::uint32_t joint = make_constraint(
+        model, DistanceSpec{.kind = kind, .p = blocks.particle(blocks.a, 0), .q = blocks.particle(blocks.b, 0)});
+    model.constraints[joint].is_hauled = 1, model.constraints[joint].length = 4;
+    EXPECT_NEAR(values_of(model, joint).worst(), 1, 1e-12);
+  }
+}
+
+TEST(DistanceForm, a_length_that_is_to_run_stores_energy_as_where_it_starts) {
+  TwoBlocks blocks;
+  Model& model = blocks.m.model;
+  const std::uint32_t joint = make_constraint(
+      model,
+      DistanceSpec{.kind = ConstraintKind::rod, .p = blocks.particle(blocks.a, 0), .q = blocks.particle(blocks.b, 0)});
+  Constraint& c = model.constraints[joint];
+  c.compliance.linear = 0.5, c.length = 4.5, c.way = 0.25;
+  EXPECT_NEAR(calc_energy_of_holds(model, joint), 0.75 * 0.75, 1e-12) << "half of 2 N/m, 0.75 m beyond 4.25 m";
 }
 
 TEST(DistanceForm, a_span_holds_nothing_and_is_a_slide) {

@@ -279,6 +279,26 @@ TEST(Rope, can_be_hauled_in) {
   EXPECT_NEAR(system.particles().position(q).y, -0.505, 1e-3);
 }
 
+TEST(Rope, that_is_hauled_moves_what_hangs_on_it_at_its_speed) {
+  for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust,
+                                     IntegrationMode::plausible, IntegrationMode::accurate})
+    for (const ConstraintKind kind : {ConstraintKind::rope, ConstraintKind::rod}) {
+      System system(SystemOptions{.mode = mode});
+      const BodyId anchor = system.bodies().create({.kind = BodyKind::static_}), ball = system.bodies().create();
+      const ParticleId p = system.particles().create(anchor, {}), q = system.particles().create(ball, {0, -1, 0}, 2);
+      const ConstraintId line = system.joints().create(DistanceSpec{.kind = kind, .p = p, .q = q});
+      (void)system.step(0.01);
+      for (int i = 1; i <= 50; ++i) {
+        system.joints().set_length(line, 1 - 0.005 * i);
+        (void)system.step(0.01);
+        ASSERT_NEAR(system.particles().velocity(q).y, 0.5, 1e-9) << i;
+        if (i > 1) ASSERT_NEAR(norm(system.joints().state(line).force), 2 * g, 1e-6) << i;
+      }
+      EXPECT_NEAR(system.energy().external_work, 2 * g * 0.25 + 0.25, 1e-6);
+      EXPECT_NEAR(system.energy().balance(), 0, 1e-9);
+    }
+}
+
 TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
   for (const double strength : {100.0, 0.5}) {
     System system;
