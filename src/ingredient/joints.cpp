@@ -166,12 +166,14 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
   });
 }
 
-void Joints::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+void Joints::store(Model& model, const IslandNodes&, double h, const Problem& problem) const {
   if (joints_.empty()) return;
   for (const auto& [angle, key] : problem.counted_angles)
     model.constraints[key.slot].coordinate[use_of(key).coordinate] = angle.near;
   for (const std::uint32_t slot : joints_) {
-    model.constraints[slot].gap = 0;
+    Constraint& c = model.constraints[slot];
+    c.gap = 0, c.is_new = 0;
+    if (c.way != 0 || c.rate != 0) c.rate = c.way / h, c.way = 0;
     refresh_coordinates(model, slot);
   }
   problem.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
@@ -203,14 +205,6 @@ void Joints::store(Model& model, const IslandNodes&, double, const Problem& prob
 
 bool Joints::prescribes_motion(const Model& model, const IslandNodes&) const {
   return std::ranges::any_of(joints_, [&](std::uint32_t slot) { return model.constraints[slot].way != 0; });
-}
-
-void Joints::end_step(Model& model, double h) {
-  model.constraints.for_each([&](std::uint32_t, Constraint& c) {
-    c.is_new = 0;
-    if (c.way == 0 && c.rate == 0) return;
-    c.rate = c.way / h, c.way = 0;
-  });
 }
 
 // A motor that turns or a length that runs, however slowly. A motor at its largest force stands, or moves as fast as that.

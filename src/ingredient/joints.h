@@ -61,7 +61,6 @@ class Joints : public NoAnswers {
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);
   static void clean_up(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
-  static void end_step(Model&, double h);
   static void tell(Model&, Outcome&);
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);

@@ -248,8 +248,11 @@ void Joints::check_links(const Model& model, model::Audit& audit) {
     const bool known = static_cast<std::size_t>(c.kind) < constraint_kinds.size() && c.alignment <= Alignment::axes &&
                        c.lock <= Lock::third_of_a && c.aligned <= 2 && c.line_side <= 1;
     audit.require(known, "constraint ", slot, " is of no kind");
-    const bool runs_well = c.is_new <= 1 && c.is_hauled <= 1 && std::isfinite(c.way) && std::isfinite(c.rate);
-    audit.require(runs_well, "the length of constraint ", slot, " runs without an end");
+    const bool is_line =
+        c.kind == ConstraintKind::rod || c.kind == ConstraintKind::rope || c.kind == ConstraintKind::tackle;
+    const bool may_run = is_line ? std::abs(c.way) <= c.length : c.kind == ConstraintKind::coupling || c.way == 0;
+    audit.require(c.is_new <= 1 && c.is_hauled <= is_line && may_run && std::isfinite(c.way) && std::isfinite(c.rate),
+                  "the length of constraint ", slot, " runs without an end");
     for (int place = 0; place < place_count; ++place) {
       const std::uint32_t p = c.particles[place];
       audit.require(p == none ? (c.owned >> place & 1) == 0 : model.particles.is_alive(p), "constraint ", slot,

@@ -18,8 +18,8 @@ namespace iota::solver {
 struct FrictionLineConstraint : PlaceConstraint<FrictionLineConstraint, 3> {
   double friction = 0;  ///< mu
   double reference = 1;
-  /// Of a row's natural compliance. Guides that hold the same would press against each other by the round-off of places, and so by
-  /// friction hold what should fall.
+  /// The compliance of rows across the line, in parts of their natural one. Guides that hold the same would press against each other
+  /// by the round-off of places, and so by friction hold what should fall.
   static constexpr double softness_across = 1e-8;
 
   double reference_length() const { return reference; }
