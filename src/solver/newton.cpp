@@ -373,25 +373,35 @@ void Newton::find_shares(Problem& problem, const Stage& stage) {
     Largest left, largest;
     for (std::uint32_t i = 0; i < problem.size(); ++i)
       left.add(stage.inertia * problem.mass[i] * largest_component(assembly_.step_of(i)));
+    bool are_within = true;
     problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
       for (std::size_t k = 0; k < pool.items.size(); ++k)
         for (int r = 0; r < C::rows; ++r) {
-          const bool is_equation = !pool.has_laws() || pool.is_equation(k, r);
-          shares_.push_back(is_equation ? assembly_.step()[pool.slots[k].unknown + r] : 0);
-          largest.add(std::abs(pool.multiplier(k)[r]));
+          const double multiplier = pool.multiplier(k)[r];
+          double share = !pool.has_laws() || pool.is_equation(k, r) ? assembly_.step()[pool.slots[k].unknown + r] : 0;
+          largest.add(std::abs(multiplier));
+          if constexpr (ConeConstraint<C>) {
+            left.add(std::abs(share)), share = 0;  // it yields by far more, and its rows depend on each other
+          } else if (share != 0 && pool.has_laws()) {
+            const RowLaw& law = pool.law(k)[r];
+            are_within = are_within && multiplier - share >= law.lower && multiplier - share <= law.upper;
+          }
+          shares_.push_back(share);
         }
     });
-    if (!(left.value <= unbalanced * largest.value)) shares_.clear();
+    if (!are_within || !(left.value <= unbalanced * largest.value)) shares_.clear();
   }
-  measure(problem, stage);  // in the place of which the shares were found
+  measure(problem, stage);  // again, as the shares were found in the place of the residuals
 }
 
 void Newton::share_among_redundant(Problem& problem) {
-  if (shares_.size() != problem.multiplier_count()) return;
-  auto share = shares_.begin();
-  problem.for_each_constraint_pool([&](auto& pool) {
-    for (double& multiplier : pool.multipliers) multiplier -= *share++;
-  });
+  if (shares_.size() == problem.multiplier_count()) {
+    auto share = shares_.begin();
+    problem.for_each_constraint_pool([&](auto& pool) {
+      for (double& multiplier : pool.multipliers) multiplier -= *share++;
+    });
+  }
+  shares_.clear();
 }
 
 // Another solver finds the root for the present sides of rows, and rows change sides between its calls.

@@ -15,6 +15,7 @@ void Newton::find_accelerations(Problem& problem, std::span<Vec3> accelerations)
   (void)assembly_.factor_and_solve(problem, Stage::projection(), problem.position.data(), Hessian::none);
   for (std::size_t i = 0; i < problem.size(); ++i) accelerations[i] = -assembly_.step_of(static_cast<std::uint32_t>(i));
   const std::span<const double> step = assembly_.step();
+  shares_.clear();  // rows of accelerations have no gaps
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k)
       for (int r = 0; r < C::rows; ++r) pool.multiplier(k)[r] = -step[pool.slots[k].unknown + r];
