@@ -5,6 +5,7 @@
 #include "solver/row_equation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,24 @@ using MeanGradientsOf = std::conditional_t<S == Scheme::mid_point, MeanGradients
 /// A small constraint is copied, so that the compiler knows that writes do not change it.
 template <class C>
 using Kept = std::conditional_t<sizeof(C) <= 32, const C, const C&>;
+
+/// sum |G|^2 / m of each row.
+template <class C>
+std::array<double, C::rows> mobilities_of(const Problem& problem, const C& c, const Gradients<C>& gradients) {
+  std::array<double, C::rows> sum{};
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
+  }
+  return sum;
+}
+
+/// Neither at a bound, nor with a rate or a compliance of its own.
+template <class C>
+bool is_rigid(const ConstraintPool<C>& pool, std::size_t k, int r) {
+  return !pool.has_laws() || (pool.is_equation(k, r) && !pool.law(k)[r].is_rate && !pool.law(k)[r].is_compliant());
+}
 
 }  // namespace
 
@@ -216,17 +235,11 @@ bool Assembly::load_redundant_shares(const Problem& problem, const Stage& stage,
     are_strained = are_strained || !pool.offsets.empty();
     for (std::size_t k = 0; k < pool.items.size() && !are_strained; ++k) {
       const C& c = pool.items[k];
-      const Gradients<C> gradients(c, x, stage.fraction);
-      double mobilities[C::rows] = {};
-      for (int i = 0; i < c.node_count(); ++i) {
-        Vec3 rows[C::rows];
-        gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) mobilities[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
-      }
+      const auto mobilities = mobilities_of(problem, c, Gradients<C>(c, x, stage.fraction));
       for (int r = 0; r < C::rows; ++r) {
-        if (pool.has_laws() && (!pool.is_equation(k, r) || pool.law(k)[r].is_rate || pool.law(k)[r].is_compliant()))
-          continue;
-        const double strain = give * mobilities[pool.has_laws() ? r : 0] * pool.multiplier(k)[r];
+        if (!is_rigid(pool, k, r)) continue;
+        const double mobility = mobilities[pool.has_laws() ? static_cast<std::size_t>(r) : 0];
+        const double strain = give * mobility * pool.multiplier(k)[r];
         unknowns_[pool.slots[k].unknown + r] = -strain;
         are_strained = are_strained || !(std::abs(strain) <= little * stage.tolerance * c.reference_length());
       }
@@ -243,20 +256,13 @@ Strain Assembly::strain_released(const Problem& problem, const Stage& stage, con
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
-      double before[C::rows], after[C::rows], mobility[C::rows] = {};
+      double before[C::rows], after[C::rows];
       pool.value(k, problem.position.data(), stage.fraction_start, before);
       pool.value(k, x, stage.fraction, after);
-      const Gradients<C> gradients(c, x, stage.fraction);
-      for (int i = 0; i < c.node_count(); ++i) {
-        Vec3 rows[C::rows];
-        gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) mobility[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
-      }
+      const auto mobilities = mobilities_of(problem, c, Gradients<C>(c, x, stage.fraction));
       for (int r = 0; r < C::rows; ++r, ++lambda) {
-        const bool is_soft =
-            pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].is_rate || !pool.is_equation(k, r));
-        if (is_soft) continue;
-        const double compliance = give * mobility[r] + 1e-300;
+        if (!is_rigid(pool, k, r)) continue;
+        const double compliance = give * mobilities[static_cast<std::size_t>(r)] + 1e-300;
         const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;
         strain.released += (at_start - at_end) / 2;
         strain.of_stored += (std::min(at_start, std::abs(*lambda * before[r])) - at_end) / 2;
@@ -447,14 +453,9 @@ ConeEquations cone_equations([[maybe_unused]] const Problem& problem, [[maybe_un
   if constexpr (!IsCone) {
     return {};
   } else {
-    double g[C::rows], mobilities[C::rows] = {};
+    double g[C::rows];
     pool.value(k, gradients, g);
-    for (int i = 0; i < pool.items[k].node_count(); ++i) {
-      Vec3 rows[C::rows];
-      gradients.of_node(i, rows);
-      for (int r = 0; r < C::rows; ++r) mobilities[r] += dot(rows[r], rows[r]) / problem.mass[pool.items[k].nodes[i]];
-    }
-    return equations_of(pool, k, g, mobilities, stage);
+    return equations_of(pool, k, g, mobilities_of(problem, pool.items[k], gradients).data(), stage);
   }
 }
 

@@ -118,7 +118,7 @@ struct ContactConstraint : ArmConstraint<ContactConstraint, 3, 5> {
     out[0] += weights[2][i] * by.turn, out[1] += weights[3][i] * by.place, out[2] += weights[4][i] * by.place;
     if (has_wires) out[0] += weights[3][i] * by.side;
   }
-  /// The function of ArmConstraint, without its zeros: they are a quarter of the time of a heap.
+  /// The gradients of all nodes, which the solver takes one by one: see Gradients.
   void gradients(const Vec3* x, double fraction, Vec3* out) const {
     const ByArms by = by_arms(arms(x, fraction));
     for (int i = 0; i < node_count(); ++i) gradient(by, i, out + 3 * i);
