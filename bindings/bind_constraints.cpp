@@ -204,18 +204,11 @@ std::variant<Shape, SurfaceFunction> to_surface_shape(SystemObject& self, nb::ha
     return to_shape(value);
   }
   const double size = finite_positive(given_size.value_or(1), "size", "m");
-  auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface", {}});
+  auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface"});
   self.keep(function);
   self.new_surfaces.push_back(function);
   return SurfaceFunction{
       [&self, function = std::move(function)](const Vec3& r) { return self.call_surface(function, r); }, size};
-}
-
-Quaternion to_surface_orientation(nb::handle value) {
-  std::vector<double> q;
-  if (!nb::try_cast(value, q) || q.size() != 4)
-    throw nb::type_error(("orientation must be four numbers x y z w, not " + describe(value)).c_str());
-  return {q[0], q[1], q[2], q[3]};
 }
 
 /// Frame of a surface: the given one, otherwise that of the body or of the world.
@@ -227,10 +220,32 @@ Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::hand
   else if (body)
     surface.position = body->use().bodies().center_of_mass(body->id);
   if (!orientation.is_none())
-    surface.orientation = to_surface_orientation(orientation);
+    surface.orientation = to_quaternion(orientation, "orientation");
   else if (body)
     surface.orientation = body->use().bodies().orientation(body->id);
   return surface;
+}
+
+nb::list surfaces_of(const ConstraintHandle& self) {
+  std::vector<nb::object> functions;
+  nb::list given;
+  std::size_t next = 0;
+  const std::vector<Surface> surfaces = self.use().joints().surfaces(self.id);
+  for (const auto& script : self.system->functions)
+    if (script->constraint == self.id) functions.push_back(script->function);
+  for (const Surface& surface : surfaces) {
+    nb::dict arguments;
+    if (const auto* shape = std::get_if<Shape>(&surface.shape)) {
+      arguments["surface"] = from_shape(*shape);
+    } else {
+      arguments["surface"] = next < functions.size() ? functions[next++] : nb::object(nb::none());
+      arguments["size"] = std::get<SurfaceFunction>(surface.shape).size;
+    }
+    const Quaternion& q = surface.orientation;
+    arguments["at"] = nb::cast(surface.position), arguments["orientation"] = nb::make_tuple(q.x, q.y, q.z, q.w);
+    given.append(arguments);
+  }
+  return given;
 }
 
 // --- coordinates ------------------------------------------------------------------------------------------------------
@@ -501,6 +516,10 @@ void bind_handle(nb::module_& module) {
           nb::sig("def path(self) -> dict[str, Any]"),
           "Of `System.on_path`: its arguments path, closed, smooth and rounding, where the points are now. Raises\n"
           "ValueError for other kinds.")
+      .def_prop_ro(
+          "surfaces", &surfaces_of, nb::sig("def surfaces(self) -> list[dict[str, Any]]"),
+          "Of surface constraints: the arguments surface, at, orientation and, of a function, size of each surface,\n"
+          "where it is now; that of a before that of b. Empty for other kinds.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
       .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
       .def_prop_ro(

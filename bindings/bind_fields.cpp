@@ -143,7 +143,7 @@ FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::ha
     if (name.empty()) options.name = function_name(field).substr(0, 31);
     auto function = std::make_shared<ScriptFunction>(ScriptFunction{field, "field " + options.name});
     system->keep(function);
-    id = engine.fields().create(make_field_function(system, function), options);
+    id = function->field = engine.fields().create(make_field_function(system, function), options);
   } else {
     throw nb::type_error(
         ("field must be a predefined field, an expression or a function of arrays, not " + describe(field)).c_str());
@@ -289,6 +289,28 @@ void bind_field(nb::module_& module) {
            make_field_doc);
   def_force(type);
   type.def_prop_ro("name", [](const FieldHandle& self) { return self.use().fields().name(self.id); })
+      .def_prop_ro(
+          "kind", [](const FieldHandle& self) { return self.use().fields().kind(self.id); },
+          nb::sig("def kind(self) -> typing.Literal['predefined', 'expression', 'function']"), "What it was made of.")
+      .def_prop_ro(
+          "text", [](const FieldHandle& self) { return self.use().fields().text(self.id); },
+          "The name of the predefined one, or the expression; empty for code.")
+      .def_prop_ro(
+          "function",
+          [](const FieldHandle& self) -> nb::object {
+            self.use();
+            for (const auto& script : self.system->functions)
+              if (script->field == self.id) return script->function;
+            return nb::none();
+          },
+          nb::sig("def function(self) -> collections.abc.Callable[[ParticleBatch], numpy.typing.ArrayLike] | None"),
+          "The function of the script, or None.")
+      .def_prop_ro(
+          "group", [](const FieldHandle& self) { return sibling_or_none(self, self.use().fields().group(self.id)); },
+          nb::sig("def group(self) -> Group | None"), "The particles that it acts on; None: all.")
+      .def_prop_ro(
+          "replaces_gravity", [](const FieldHandle& self) { return self.use().fields().replaces_gravity(self.id); },
+          "Whether the system's gravity does not act while it is active.")
       .def(
           "set",
           [](const FieldHandle& self, const nb::kwargs& keywords) { set_all(self, to_field_parameters(keywords)); },
@@ -317,6 +339,15 @@ void bind_pair_force(nb::module_& module) {
           "law", [](const PairsHandle& self) { return sibling(self, self.use().pairs().law(self.id)); }, "Its Law.")
       .def_prop_ro(
           "cutoff", [](const PairsHandle& self) { return self.use().pairs().cutoff(self.id); }, "m")
+      .def_prop_ro(
+          "group", [](const PairsHandle& self) { return sibling_or_none(self, self.use().pairs().group(self.id)); },
+          nb::sig("def group(self) -> Group | None"), "The particles that it acts on; None: all.")
+      .def_prop_ro(
+          "other", [](const PairsHandle& self) { return sibling_or_none(self, self.use().pairs().other(self.id)); },
+          nb::sig("def other(self) -> Group | None"), "Set: only pairs of one of `group` and one of this group.")
+      .def_prop_ro(
+          "shifted", [](const PairsHandle& self) { return self.use().pairs().is_shifted(self.id); },
+          "Whether its energy and force are zero at the cut-off and do not jump there.")
       .def_prop_ro(
           "energy", [](const PairsHandle& self) { return self.use().pairs().energy(self.id); },
           "Of all pairs within the cut-off at present, J; part of `System.energy.potential`.")

@@ -89,6 +89,12 @@ auto all_of(Read read) {
   };
 }
 
+/// As `sibling`, or None.
+template <class Other, class IdType>
+nb::object sibling_or_none(const Other& handle, const std::optional<IdType>& id) {
+  return id ? nb::cast(sibling(handle, *id)) : nb::object(nb::none());
+}
+
 /// `alive` and `survivor`, for kinds that can be absorbed.
 template <class HandleType>
 void def_survival(nb::class_<HandleType>& type, const char* survivor_signature) {
@@ -98,8 +104,7 @@ void def_survival(nb::class_<HandleType>& type, const char* survivor_signature) 
       .def_prop_ro(
           "survivor",
           [](const HandleType& self) -> nb::object {
-            const auto id = view_of(self.system->use(), self.id).survivor_of(self.id);
-            return id ? nb::cast(sibling(self, *id)) : nb::object(nb::none());
+            return sibling_or_none(self, view_of(self.system->use(), self.id).survivor_of(self.id));
           },
           nb::sig(survivor_signature), "Itself if alive, the object that absorbed it, or None if it was destroyed.");
 }

@@ -26,6 +26,7 @@ struct ScriptFunction {
   nb::object function;
   std::string what;         ///< "law wind", "field current"
   ConstraintId constraint;  ///< of the surface that it defines; else null
+  FieldId field;            ///< that it is; else null
 };
 
 /// The function of one scripted bond.

@@ -6,6 +6,7 @@
 #include <iota/view.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,10 @@ class Fields : public View {
   std::vector<FieldId> ids() const;
 
   std::string name(FieldId) const;
+  std::string_view kind(FieldId) const;  ///< "predefined", "expression" or "function"
+  std::string text(FieldId) const;       ///< the predefined one or the expression that it was made of; empty for code
+  std::optional<GroupId> group(FieldId) const;
+  bool replaces_gravity(FieldId) const;
   bool is_active(FieldId) const;
   void set_active(FieldId, bool);
   std::vector<LawParameter> parameters(FieldId) const;
@@ -60,6 +65,9 @@ class Pairs : public View {
 
   LawId law(PairsId) const;
   double cutoff(PairsId) const;  ///< m
+  std::optional<GroupId> group(PairsId) const;
+  std::optional<GroupId> other(PairsId) const;
+  bool is_shifted(PairsId) const;
   double energy(PairsId) const;  ///< of all pairs within the cut-off, now, J; a part of System::energy().potential
   bool is_active(PairsId) const;
   void set_active(PairsId, bool);

@@ -32,6 +32,7 @@ class Joints : public View {
   std::vector<CoupledCoordinate> terms(ConstraintId) const;  ///< of a coupling or tackle; otherwise empty
   /// How it was made, with the points where they are now. Throws std::invalid_argument for another kind.
   PathSpec path(ConstraintId) const;
+  std::vector<Surface> surfaces(ConstraintId) const;  ///< of a and b, where they are now; empty for other kinds
   /// True repairs a broken one, with the relative pose in which its bodies were joined.
   void set_active(ConstraintId, bool);
   /// Moves a coordinate to a value (rad, m), with the rest of the mechanism. If the joint is in no loop, everything

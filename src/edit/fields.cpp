@@ -31,6 +31,11 @@ void apply(Editor& e, const SetMember& c) {
   ++model.members_revision;
 }
 
+std::optional<GroupId> group_at(const model::Model& model, std::uint32_t slot) {
+  if (slot == model::none) return std::nullopt;
+  return model.groups.id(slot);
+}
+
 void apply(Editor& e, const Destroy<GroupId>& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.id);

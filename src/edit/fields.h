@@ -62,4 +62,7 @@ void apply(Editor&, const SetPairsParameter&);
 void apply(Editor&, const SetPairsActive&);
 void apply(Editor&, const Destroy<PairsId>&);
 
+/// The group of a record of a field or a pairwise force; unset for all particles.
+std::optional<GroupId> group_at(const model::Model&, std::uint32_t slot);
+
 }  // namespace iota::edit

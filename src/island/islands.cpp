@@ -648,8 +648,8 @@ void Islands::wake_stirred(Model& model, double h) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
         // A free body that is awake hears its force itself.
         if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
-        // Other than held forces, which a stride takes as they are at its begin, this is a motion of its own.
-        if constexpr (!std::is_same_v<I, ingredient::Pushes>)
+        // Other than forces, which a stride takes as they are at its begin, this is a motion of its own.
+        if constexpr (std::is_same_v<I, ingredient::Nails>)
           ingredient::Strides::disturb(model, model.particles[p].body);
       });
     });

@@ -30,6 +30,22 @@ void Fields::set_active(FieldId id, bool active) { core_.execute(edit::SetFieldA
 
 std::string Fields::name(FieldId id) const { return core_.model.fields[core_.slot(id)].name.data(); }
 
+std::string_view Fields::kind(FieldId id) const {
+  constexpr std::string_view words[] = {"predefined", "expression", "function"};
+  return words[static_cast<std::size_t>(core_.model.fields[core_.slot(id)].kind)];
+}
+
+std::string Fields::text(FieldId id) const {
+  const ingredient::Field& field = core_.model.fields[core_.slot(id)];
+  return field.kind == ingredient::FieldKind::listed ? laws::field_law_name(field.number) : field.text.data();
+}
+
+std::optional<GroupId> Fields::group(FieldId id) const {
+  return edit::group_at(core_.model, core_.model.fields[core_.slot(id)].group);
+}
+
+bool Fields::replaces_gravity(FieldId id) const { return core_.model.fields[core_.slot(id)].replaces_gravity != 0; }
+
 std::vector<LawParameter> Fields::parameters(FieldId id) const {
   const ingredient::Field& field = core_.model.fields[core_.slot(id)];
   return edit::list_parameters(field.names, field.parameter_count, field.parameters.data());

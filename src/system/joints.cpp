@@ -24,6 +24,20 @@ ingredient::PlacedSurface place(Core& core, const Surface& surface) {
   return placed;
 }
 
+/// The frame in which a side of a constraint has its curve or surface, in the world.
+struct SideFrame {
+  Vec3 origin, x, y, z;
+};
+
+SideFrame frame_of(const model::Model& m, const ingredient::Constraint& c, int side) {
+  using namespace ingredient;
+  const bool is_b = side == 1;
+  const Vec3 origin = position_of(m, c, is_b ? b_origin : a_origin);
+  const auto direction = [&](int place) { return (1 / c.scale[side]) * (position_of(m, c, place) - origin); };
+  return {origin, direction(is_b ? b_side : a_side), direction(is_b ? b_third : a_third),
+          direction(is_b ? b_axis : a_axis)};
+}
+
 template <class Specify>
 ConstraintId create_with_functions(Core& core, Specify specify) {
   const std::uint64_t first = core.held.functions.next_key;
@@ -155,15 +169,32 @@ PathSpec Joints::path(ConstraintId id) const {
   if (const std::uint32_t body = body_of_side(m, c, 1); body != model::none) spec.body = m.bodies.id(body);
   spec.curve = c.curve.kind, spec.closed = c.curve.closed != 0, spec.rounding = c.curve.rounding;
   spec.slide = c.options[static_cast<std::size_t>(JointCoordinate::slide)], spec.breaks = c.breaks;
-  using ingredient::b_axis, ingredient::b_origin, ingredient::b_side, ingredient::b_third;
-  const Vec3 origin = position_of(m, c, b_origin);
-  const auto direction = [&](int place) { return (1 / c.scale[1]) * (position_of(m, c, place) - origin); };
-  const Vec3 x = direction(b_side), y = direction(b_third), z = direction(b_axis);
+  const SideFrame b = frame_of(m, c, 1);
   for (std::uint32_t i = 0; i < c.curve.count; ++i) {
     const Vec3& p = m.curve_points[c.curve.first + i];
-    spec.points.push_back(origin + p.x * x + p.y * y + p.z * z);
+    spec.points.push_back(b.origin + p.x * b.x + p.y * b.y + p.z * b.z);
   }
   return spec;
+}
+
+std::vector<Surface> Joints::surfaces(ConstraintId id) const {
+  const model::Model& m = core_.model;
+  const ingredient::Constraint& c = m.constraints[core_.slot(id)];
+  using Form = ingredient::ConstraintKindInfo::Form;
+  const Form form = ingredient::info(c.kind).form;
+  std::vector<Surface> found;
+  if (form != Form::surface && form != Form::surface_pair) return found;
+  for (int side = form == Form::surface ? 1 : 0; side < 2; ++side) {
+    const SideFrame frame = frame_of(m, c, side);
+    Surface surface{{}, frame.origin, from_axes(frame.x, frame.y, frame.z)};
+    const ingredient::SurfaceData& data = c.surfaces[side];
+    if (data.function == 0)
+      surface.shape = shape::from_data(data.shape);
+    else if (const auto function = m.surface_functions.find(data.function); function != m.surface_functions.end())
+      surface.shape = function->second;
+    found.push_back(std::move(surface));
+  }
+  return found;
 }
 
 std::vector<ConstraintId> Joints::ids() const { return core_.model.constraints.ids(); }

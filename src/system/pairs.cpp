@@ -33,6 +33,16 @@ LawId Pairs::law(PairsId id) const {
 
 double Pairs::cutoff(PairsId id) const { return core_.model.pairs[core_.slot(id)].cutoff; }
 
+std::optional<GroupId> Pairs::group(PairsId id) const {
+  return edit::group_at(core_.model, core_.model.pairs[core_.slot(id)].group);
+}
+
+std::optional<GroupId> Pairs::other(PairsId id) const {
+  return edit::group_at(core_.model, core_.model.pairs[core_.slot(id)].other);
+}
+
+bool Pairs::is_shifted(PairsId id) const { return core_.model.pairs[core_.slot(id)].shifted != 0; }
+
 std::vector<LawParameter> Pairs::parameters(PairsId id) const {
   const model::Model& m = core_.model;
   const ingredient::PairForce& pairs = m.pairs[core_.slot(id)];

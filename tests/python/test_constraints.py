@@ -373,8 +373,8 @@ REFUSED = {
         "normal of a half-space must be finite and not of zero length",
     ),
     "skew frame": (
-        lambda s, a, b: s.on_surface(a.particles[0], iota.HalfSpace(), orientation=(0, 0, 0, 2)),
-        "unit quaternion x y z w, got length 2",
+        lambda s, a, b: s.on_surface(a.particles[0], iota.HalfSpace(), orientation=(0, 0, 0, 0)),
+        "orientation must be finite and not zero",
     ),
     "zero axis": (lambda s, a, b: s.revolute(a, b, at=(0, 0, 0), axis=(0, 0, 0)), "axis must have a direction"),
     "nan place": (lambda s, a, b: s.ball(a, b, at=(math.nan, 0, 0)), "at must be finite"),
@@ -491,3 +491,32 @@ def test_a_universal_joint_tells_both_axes_and_a_path_where_it_is_now() -> None:
     assert again.slide.limits == pytest.approx(wire.slide.limits) and np.allclose(again.second_axis, 0)
     with pytest.raises(ValueError, match="only a particle on a path has one"):
         _ = cross.path
+
+
+def test_surfaces_tell_where_they_are_now_and_make_the_same_ones() -> None:
+    def bowl(x: float, y: float, z: float) -> float:
+        return math.sqrt(x * x + y * y + z * z) - 2
+
+    system = iota.System(gravity=(0, 0, 0))
+    carrier = system.body(shape=iota.Box((1, 1, 1)), position=(5, 0, 0))
+    ball = iota.Sphere(1.5)
+    point = system.body().particle((5, 1.5, 0))
+    held = system.on_surface(point, ball, carrier, orientation=("z", 30))
+    within = system.inside(point, bowl, carrier, at=(5, 0, 1), size=2.0)
+    turn = math.radians(15)
+    (given,) = held.surfaces
+    assert given["surface"].radius == 1.5 and np.allclose(given["at"], (5, 0, 0))
+    assert np.allclose(given["orientation"], (0, 0, math.sin(turn), math.cos(turn)))
+    assert within.surfaces[0]["surface"] is bowl and within.surfaces[0]["size"] == 2.0
+    carrier.set_pose((5, 4, 0), ("z", 90))
+    (moved,) = held.surfaces
+    assert np.allclose(moved["at"], (5, 4, 0))
+    assert np.allclose(moved["orientation"], (0, 0, math.sin(4 * turn), math.cos(4 * turn)))
+    other = iota.System()
+    again = other.on_surface(other.body().particle((5, 5.5, 0)), **moved)
+    assert np.allclose(again.surfaces[0]["at"], (5, 4, 0)) and "size" not in again.surfaces[0]
+    wheel = system.body(shape=iota.Sphere(0.5), position=(0, 3, 0))
+    rolls = system.surface_to_surface(wheel, iota.Sphere(0.5), None, iota.Ellipsoid((4, 5, 4)), at_b=(0, 0, 0))
+    of_a, of_b = rolls.surfaces
+    assert of_a["surface"].radius == 0.5 and np.allclose(of_a["at"], (0, 3, 0)) and np.allclose(of_b["at"], 0)
+    assert system.ball(wheel, at=(0, 3, 0)).surfaces == []

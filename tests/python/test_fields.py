@@ -339,6 +339,29 @@ def test_forces_on_many_are_saved_and_restored(space: iota.System) -> None:
     assert hashes[0] == hashes[1]
 
 
+def test_forces_on_many_tell_what_makes_the_same_ones_of_another_system(space: iota.System) -> None:
+    def push(batch: iota.types.ParticleBatch) -> np.ndarray:
+        return np.zeros((len(batch), 3))
+
+    left, right = space.group("left"), space.group("right")
+    wind = space.field("wind", velocity=(3, 0, 1), drag=0.2, group=left, name="breeze")
+    swing = space.field("energy = k*x*t", k=2.0, replaces_gravity=True)
+    pushed = space.field(push, group=right)
+    assert [f.kind for f in space.fields] == ["predefined", "expression", "function"]
+    assert [f.text for f in space.fields] == ["wind", "energy = k*x*t", ""]
+    assert [f.group for f in space.fields] == [left, None, right]
+    assert [f.replaces_gravity for f in space.fields] == [False, True, False]
+    assert pushed.function is push and wind.function is None and swing.function is None
+    other = iota.System(gravity=(0, 0, 0))
+    again = other.field(wind.text, name=wind.name, **wind.parameters)
+    assert again.parameters == wind.parameters and again.name == "breeze"
+    assert other.field(swing.text, **swing.parameters).parameters == {"k": 2.0}
+    between = space.pair_force("lennard_jones", cutoff=2.5, shifted=True, group=left, other=right)
+    within = space.pair_force("soft_repulsion", cutoff=0.5)
+    assert (between.group, between.other, between.shifted) == (left, right, True)
+    assert (within.group, within.other, within.shifted) == (None, None, False)
+
+
 def test_pairs_between_two_groups_are_those_of_one_and_the_other() -> None:
     system = iota.System(gravity=(0, 0, 0))
     a, b, both, none = (system.body().particle(place) for place in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))

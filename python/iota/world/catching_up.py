@@ -11,15 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Particle, Places, System, Vec3
+from iota.errors import ForceError
+from iota.world.acting import Force, can_copy_force, copy_forces, forces_on, pushed_places
 from iota.world.stand_ins import put
 from iota.world.ties import Tie, can_be_copied, copy_ties, needed_particles
 
 Floats = NDArray[np.float64]
 STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass through each other
-WORK, MOST_STEPS = 1600, 400  # particles times steps of a copy that takes more steps, as a pendulum does
+WORK, MOST_STEPS = (
+    1600,
+    400,
+)  # particles times steps of a copy that takes more steps: of a pendulum, of what drifts in a current
 GAIN = 1e-3  # of the kinetic energy, J: a copy with more has come into something
 MOST_DAMPING = 3.0  # 1/s: what swings is at rest at the end
 AT_ONCE = 4  # bodies that are copied in a piece
+MOST_POINTS = (
+    200  # of what fields act on: a step of more takes too long, and a flag flutters in the wind before and after
+)
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
 
 
@@ -32,9 +40,9 @@ def catch_up(system: System, bodies: Sequence[Body], seconds: float, ties: Seque
 
 class CatchUp:
     """Moves bodies on by `seconds`, in pieces: `go_on` until it is done, then `finish`. places: of the system. ties: all that connect them to each other and to the
-    world but for hinges and nails. Takes up to STEPS steps of LONGEST, or more of few bodies that are held; what lasts longer counts as that,
-    but what is held has lost as much energy by damping as in all the time. Others do not meet the bodies on their way. Functions of the
-    script, fields, paths, surfaces, and what stands on something that may move cannot be copied."""
+    world but for hinges and nails. Takes up to STEPS steps of LONGEST, or more of few bodies that are held or that fields act on; what lasts longer counts as
+    that, but what is held has lost as much energy by damping as in all the time. Others do not meet the bodies on their way. What stands on
+    something that may move cannot be copied, nor functions of the script but for surfaces and fields, and a field only with all of its group."""
 
     def __init__(
         self, system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places
@@ -42,11 +50,12 @@ class CatchUp:
         self._system = system
         self._copy: _Copy | None = None
         self._places: list[Vec3] = []
-        self._parts: list[Body | Tie] = [*bodies, *ties]
         self._pieces: Iterator[None] = iter(())
-        if seconds > 0 and _can_be_copied(system, bodies) and all(can_be_copied(tie) for tie in ties):
+        forces = forces_on(system, bodies)
+        self._parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
+        if seconds > 0 and _can_be_copied(bodies, ties, forces):
             self._places = _places_of(bodies)
-            self._pieces = self._work(bodies, seconds, ties, places)
+            self._pieces = self._work(bodies, seconds, ties, forces, places)
 
     def go_on(self, until: float = math.inf) -> bool:
         """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended."""
@@ -54,19 +63,28 @@ class CatchUp:
             self._pieces = iter(())
         return not any(time.process_time() > until for _ in self._pieces)
 
-    def _work(self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], places: Places) -> Iterator[None]:
+    def _work(
+        self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], forces: Sequence[Force], places: Places
+    ) -> Iterator[None]:
         self._copy = copy = _Copy(self._system, bodies)
-        yield from copy.copy_bodies(ties)
-        yield from copy.copy_obstacles(places, seconds)
-        copy.move_as_before()
+        yield from copy.copy_bodies(needed_particles(ties) | pushed_places(forces, bodies))
+        copy.is_held |= bool(ties)
         points = sum(len(twin.particles) for twin in copy.twins)
-        most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held else STEPS
+        most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held or forces else STEPS
         steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
         length = min(seconds / steps, LONGEST)
+        copy.copy_what_acts(ties, forces, self._system.time - steps * length)
+        yield
+        yield from copy.copy_obstacles(places, seconds)
+        copy.move_as_before()
         if copy.is_held:
             copy.raise_damping(seconds / (steps * length))
         for _ in range(steps):
-            copy.system.step(length)
+            try:
+                copy.system.step(length)
+            except ForceError:  # of a function of the script, which the world tells when it fails there
+                self._copy = None
+                return
             yield
 
     def finish(self) -> bool:
@@ -85,8 +103,10 @@ def _places_of(bodies: Sequence[Body]) -> list[Vec3]:
     return [p.position for body in bodies for p in body.particles]
 
 
-def _can_be_copied(system: System, bodies: Sequence[Body]) -> bool:
-    if len(system.fields) > 0 or len(system.pair_forces) > 0:
+def _can_be_copied(bodies: Sequence[Body], ties: Sequence[Tie], forces: Sequence[Force]) -> bool:
+    if not (all(can_be_copied(tie) for tie in ties) and all(can_copy_force(force, bodies) for force in forces)):
+        return False
+    if forces and sum(len(body.particles) for body in bodies) > MOST_POINTS:
         return False
     own = set(bodies)
     if any(contact.other not in own and contact.other.particles for body in bodies for contact in body.contacts):
@@ -99,26 +119,31 @@ class _Copy:
 
     def __init__(self, system: System, bodies: Sequence[Body]) -> None:
         self.bodies = list(bodies)
-        self.system = System(gravity=system.gravity, damping=system.damping, mode="energy_keeping")
+        is_replaced = any(field.active and field.replaces_gravity for field in system.fields)
+        gravity = Vec3() if is_replaced else system.gravity
+        self.system = System(gravity=gravity, damping=system.damping, mode="energy_keeping")
         self.system.usual_material = system.usual_material
         self.twin_of: dict[Particle, Particle] = {}
         self.twins: list[Body] = []
         self.energy = 0.0
         self.is_held = False
 
-    def copy_bodies(self, ties: Sequence[Tie]) -> Iterator[None]:
-        """Copies the bodies and what connects them."""
-        needed = needed_particles(ties)
+    def copy_bodies(self, needed: set[Particle]) -> Iterator[None]:
+        """Copies the bodies and their hinges. needed: particles of which others need copies."""
         for body in self.bodies:
             self.twins.append(self._copy(body, needed))
             if len(self.twins) % AT_ONCE == 0:
                 yield
         yield
         yield from self._copy_hinges()
-        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
-        copy_ties(ties, self.system, twin_bodies, self.twin_of)
-        self.is_held = bool(ties) or any(p.is_nailed for p in self.twin_of)
+        self.is_held = any(p.is_nailed for p in self.twin_of)
         yield
+
+    def copy_what_acts(self, ties: Sequence[Tie], forces: Sequence[Force], begin: float) -> None:
+        """Copies what ties the bodies, and the forces on them. begin: s, the time from which the copy goes on."""
+        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
+        copy_ties(ties, self.system, twin_bodies, self.twin_of, begin)
+        copy_forces(forces, self.system, twin_bodies, self.twin_of, begin)
 
     def move_as_before(self) -> None:
         """The copy gets the velocities of the bodies. energy: J, then."""

@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from iota._core import AngleSpring, Body, Bond, Constraint, JointCoordinate, Particle, System
+from iota._core import AngleSpring, Body, Bond, Constraint, JointCoordinate, Law, Particle, System
 
 Tie = Constraint | Bond | AngleSpring
 
 ANGLES, SLIDES = ("revolute", "planar", "cylindrical"), ("prismatic", "cylindrical")  # kinds of joints with an axis
 WITH_PLACE, PLAIN, BETWEEN_PARTICLES = ("ball", "weld"), ("orientation",), ("rod", "rope", "span")
 SCREW, UNIVERSAL, PATH = "screw", "universal", "path"
+ON_SURFACE, SURFACES = {"surface": "on_surface", "inside": "inside", "outside": "outside"}, ("apart", "touching")
 COUPLINGS = ("coupling", "tackle")  # of coordinates of other joints: gears, and ropes over pulleys, which are one-sided
 LAWS = ("predefined", "expression")  # other ones are functions of the script
 
@@ -66,7 +68,8 @@ def can_be_copied(tie: Tie) -> bool:
         return all(can_be_copied(coordinate.joint) for coordinate, _ in tie.terms)
     if tie.kind in BETWEEN_PARTICLES:
         return True
-    return tie.a.kind != "static" and tie.kind in (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, SCREW, UNIVERSAL, PATH)
+    known = (*ANGLES, *SLIDES, *WITH_PLACE, *PLAIN, SCREW, UNIVERSAL, PATH, *ON_SURFACE, *SURFACES)
+    return tie.a.kind != "static" and tie.kind in known
 
 
 def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
@@ -74,19 +77,22 @@ def needed_particles(ties: Iterable[Tie]) -> set[Particle]:
     found: set[Particle] = set()
     for tie in ties:
         if isinstance(tie, Constraint):
-            found.update(
-                tie.particles if tie.kind in BETWEEN_PARTICLES else tie.particles[:1] if tie.kind == PATH else []
-            )
+            is_of_one = tie.kind == PATH or tie.kind in ON_SURFACE
+            found.update(tie.particles if tie.kind in BETWEEN_PARTICLES else tie.particles[:1] if is_of_one else [])
         else:
             found.update(tie.ends)
     return found
 
 
 def copy_ties(
-    ties: Iterable[Tie], system: System, body_of: Mapping[Body, Body], particle_of: Mapping[Particle, Particle]
+    ties: Iterable[Tie],
+    system: System,
+    body_of: Mapping[Body, Body],
+    particle_of: Mapping[Particle, Particle],
+    begin: float,
 ) -> None:
     """Makes the same ones of a system between copies of their bodies, at the same places; static bodies are the world there, and nails
-    hold their particles. They do not break. Couplings are made last, of the copies of their joints."""
+    hold their particles. They do not break. Couplings are made last, of the copies of their joints. begin: see `at_time`."""
     particle_of = _Ends(system, particle_of)
     joint_of: dict[Constraint, Constraint] = {}
     couplings: list[Constraint] = []
@@ -97,8 +103,7 @@ def copy_ties(
         elif isinstance(tie, Bond):
             if tie.active:
                 p, q = (particle_of[end] for end in tie.ends)
-                law = tie.law.name if tie.law.kind == "predefined" else tie.law.text
-                system.bond(p, q, law, implicit=tie.implicit, **tie.parameters)
+                system.bond(p, q, copy_of_law(tie.law, begin), implicit=tie.implicit, **tie.parameters)
         elif tie.kind in COUPLINGS:
             couplings.append(tie)
         elif tie.active:
@@ -109,6 +114,16 @@ def copy_ties(
     for tie, copy in joint_of.items():
         if any(tie.compliance):
             copy.compliance = tie.compliance
+
+
+def copy_of_law(law: Law, begin: float) -> str:
+    """The name or the text of the same law in another system: see `at_time`."""
+    return law.name if law.kind == "predefined" else at_time(law.text, begin)
+
+
+def at_time(text: str, begin: float) -> str:
+    """An expression whose time is `begin`, s, when that of its system is 0."""
+    return re.sub(r"\bt\b", f"({begin!r} + t)", text)
 
 
 class _Ends(dict[Particle, Particle]):
@@ -152,6 +167,16 @@ def _copy_joint(
         made = system.on_path(particle_of[joint.particles[0]], body=b, **joint.path)
         _copy_coordinate(joint.slide, made.slide)
         return made
+    if joint.kind in ON_SURFACE:
+        hold: Any = getattr(system, ON_SURFACE[joint.kind])
+        made = hold(particle_of[joint.particles[0]], body=b, **joint.surfaces[0])
+        return made
+    if joint.kind in SURFACES:
+        of_a, of_b = joint.surfaces
+        return system.surface_to_surface(
+            a, of_a["surface"], b, of_b["surface"], one_sided=joint.kind == "apart",
+            at_a=of_a["at"], orientation_a=of_a["orientation"], at_b=of_b["at"], orientation_b=of_b["orientation"],
+        )  # fmt: skip
     make: Any = getattr(system, joint.kind)
     if joint.kind in PLAIN:
         made = make(a, b)
