@@ -146,6 +146,13 @@ void bind_settings(nb::class_<SystemObject>& type) {
           "and exactly; 0: unlimited. A heap that would take more is solved approximately, contact by contact, in time\n"
           "that is linear in its size: `StepReport.approximate` counts that. Results are repeatable.")
       .def_prop_rw(
+          "contacts_share", [](SystemObject& self) { return self.use().budget().contacts_share; },
+          [](SystemObject& self, double value) {
+            set_budget(self, "contacts_share = ...", &StepBudget::contacts_share, value);
+          },
+          "The part of `budget_contacts` that steps may take now, above 0 to 1: a world that has to keep its pace lowers it,\n"
+          "see `Levels`.")
+      .def_prop_rw(
           "budget_seconds", [](SystemObject& self) { return self.use().budget().seconds; },
           [](SystemObject& self, double value) {
             set_budget(self, "budget_seconds = ...", &StepBudget::seconds,

@@ -24,6 +24,7 @@ struct StepBudget {
   /// so exactly; islands share them by their sizes; 0: unlimited. A heap that would take more is solved approximately,
   /// contact by contact, in time that is linear in its size: StepReport::approximate counts such islands. Repeatable.
   double contacts = 3e7;
+  double contacts_share = 1;  ///< above 0 to 1, of `contacts`: what a world that has to keep its pace lets steps take
 };
 
 struct SystemOptions {

@@ -28,8 +28,10 @@ void apply(Editor& e, const SetBudget& c) {
     throw std::invalid_argument(text("budget.iterations must be zero or more, got ", c.budget.iterations));
   require_not_negative("budget.seconds", c.budget.seconds);
   require_not_negative("budget.contacts", c.budget.contacts);
+  if (!(c.budget.contacts_share > 0 && c.budget.contacts_share <= 1))
+    throw std::invalid_argument(text("budget.contacts_share must be above 0 to 1, got ", c.budget.contacts_share));
   e.model.budget_iterations = c.budget.iterations, e.model.budget_seconds = c.budget.seconds;
-  e.model.budget_contacts = c.budget.contacts;
+  e.model.budget_contacts = c.budget.contacts, e.model.contacts_share = c.budget.contacts_share;
 }
 
 void apply(Editor& e, const SetSolver& c) {

@@ -50,7 +50,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
   double tolerance = 1e-4;    ///< of mode accurate, see System::tolerance
   int budget_iterations = 0;  ///< see StepBudget
-  double budget_seconds = 0, budget_contacts = 0;
+  double budget_seconds = 0, budget_contacts = 0, contacts_share = 1;
   double damping = 0;
   /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};
@@ -113,7 +113,7 @@ void Model::archive(Archive& ar) {
   const auto value = [&](std::string_view name, auto& each) { ar.name(name), ar.value(each); };
   value("gravity", gravity), value("mode", mode), value("tolerance", tolerance);
   value("budget_iterations", budget_iterations), value("budget_seconds", budget_seconds);
-  value("budget_contacts", budget_contacts);
+  value("budget_contacts", budget_contacts), value("contacts_share", contacts_share);
   value("damping", damping), value("solver", solver), value("rest_after", rest_after), value("rest_speed", rest_speed);
   value("time", time), value("last_dt", last_dt), value("step", step);
   value("dissipated", dissipated), value("lost", lost), value("made", made), value("external_work", external_work);

@@ -11,6 +11,8 @@ std::vector<std::string> validate(const model::Model& model) {
   audit.require(model.tolerance >= 1e-12 && model.tolerance <= 1, "the tolerance is ", model.tolerance);
   audit.require(model.budget_iterations >= 0 && model.budget_seconds >= 0 && model.budget_contacts >= 0,
                 "the budget of a step is negative");
+  audit.require(model.contacts_share > 0 && model.contacts_share <= 1, "the share of contacts is ",
+                model.contacts_share);
   audit.require_text("solver", 0, model.solver);
   audit.check_links();
   for_each_type<Ingredients>([&]<class I>() { I::check_links(model, audit); });

@@ -310,7 +310,7 @@ Island::Tried Island::try_motion(const Model& model, double h, const Limits& lim
   problem_.unsolved_steps = memory.unsolved_steps;
   solver::IntegratorSettings settings = settings_of(model);
   settings.max_iterations = model.budget_iterations, settings.deadline = limits.deadline;
-  if (model.budget_contacts > 0) settings.contact_budget = model.budget_contacts;
+  if (model.budget_contacts > 0) settings.contact_budget = model.contacts_share * model.budget_contacts;
   settings.contact_share = limits.share, settings.part = limits.part;
   last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution

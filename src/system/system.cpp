@@ -119,7 +119,8 @@ IntegrationMode System::mode() const { return core_->model.mode; }
 double System::tolerance() const { return core_->model.tolerance; }
 
 StepBudget System::budget() const {
-  return {core_->model.budget_iterations, core_->model.budget_seconds, core_->model.budget_contacts};
+  return {core_->model.budget_iterations, core_->model.budget_seconds, core_->model.budget_contacts,
+          core_->model.contacts_share};
 }
 
 std::vector<IslandReport> System::islands() const { return core_->islands.reports(core_->model); }

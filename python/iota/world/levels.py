@@ -21,6 +21,7 @@ from iota.errors import StaleIdError
 from iota.world.callbacks import Guard
 from iota.world.catching_up import CatchUp
 from iota.world.clients import Client, Clients
+from iota.world.contact_share import ContactShare
 from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
@@ -309,6 +310,9 @@ class Levels(Part):
         self._is_own = False  # it has
         self._rest = 0  # frames in which its own budget reduced nothing
         self._cores = 1.0  # processor time of a step in its time, smoothed
+        self._contacts = ContactShare(system)
+        self._is_planning = self._is_over = False  # levels are being changed; the budget ends after that
+        self._paced_ms: float | None = None  # a step may take, without a budget; None: as long as it takes
         self._viewers: Callable[[], Iterable[Place]] | None = None
         self._reach, self._sight = 3.0, SIGHT
         self._catch_up_ms = 0.0  # left in this step
@@ -363,7 +367,7 @@ class Levels(Part):
         self._give(float(value), is_own=False)
 
     def _give(self, ms: float, is_own: bool) -> None:
-        self._budget, self._is_own, self._rest = ms, is_own, 0
+        self._budget, self._is_own, self._rest, self._is_over = ms, is_own, 0, False
         self._arrays.is_mild = is_own
         self._was_on = self._is_old = True
 
@@ -478,11 +482,15 @@ class Levels(Part):
         """All is full again, and stays so, also where the world cannot keep up with real time. Another budget finds what `manage` and
         `pin` have said."""
         self._may_give = False
-        if self._budget is not None:
+        self._pace_contacts(None)
+        self._is_over = self._is_planning  # a function of a level may call this
+        if self._budget is not None and not self._is_over:
             self._be_full()
 
     def _be_full(self) -> None:
         self._budget, self._is_own = None, False
+        if self._paced_ms is None:
+            self._contacts.be_exact()
         for thing in self._things:
             self._release(thing)
         self._end_strides()
@@ -508,15 +516,23 @@ class Levels(Part):
         """With each frame of a world that is served in real time. reached: share of that; ms: real time that a step has. Gives the world
         a budget of its own if it is too slow, and takes it back when nothing had to be reduced for a while."""
         is_watched = bool(self._clients.by_id)
+        self._pace_contacts(OWN_SHARE * ms if is_watched and self._may_give else None)
         if self._is_own:
             self._budget = OWN_SHARE * ms * max(self._cores, LEAST_CORES)
-            needs = reached < TOO_SLOW or self._arrays.level.any()
+            needs = reached < TOO_SLOW or self._arrays.level.any() or self._system.contacts_share < 1
             self._rest = 0 if needs else self._rest + 1
             if self._rest > OWN_REST or not is_watched:
                 self._be_full()
         elif self._may_give and self._budget is None and reached < TOO_SLOW and is_watched:
             if isinstance(self._system, System):
                 self._give(OWN_SHARE * ms, is_own=True)
+
+    def _pace_contacts(self, ms: float | None) -> None:
+        """ms: that a step without a budget may take; None: as long as it takes, with all contacts as exact as the script wants them."""
+        if isinstance(self._system, System):
+            if ms is None and self._paced_ms is not None and self._budget is None:
+                self._contacts.be_exact()
+            self._paced_ms = ms
 
     @property
     def things(self) -> list[Managed]:
@@ -547,12 +563,16 @@ class Levels(Part):
 
     def __str__(self) -> str:
         """A budget bar, and what was reduced: "[######....] 2.4 of 4 ms: 12 full, 30 1/8, 5 frozen"."""
+        share = self._system.contacts_share if isinstance(self._system, System) else 1
+        contacts = f", contacts {share:g} of their budget" if share < 1 else ""
         if self._budget is None:
-            return "no budget: all is full"
+            return f"no budget: all is full{contacts}"
         filled = min(10, round(10 * self._ms / self._budget))
         counts = ", ".join(f"{count} {name}" for name, count in self.counts().items())
         whose = " to keep up with real time" if self._is_own else ""
-        return f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:.3g} ms{whose}: {counts}"
+        return (
+            f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:.3g} ms{whose}: {counts}{contacts}"
+        )
 
     def _shown(self) -> tuple[list[tuple[str, int, list[int]]], list[str]]:
         """For pages: each level with the number of its things and slots of their bodies, the best first, and the latest
@@ -583,6 +603,7 @@ class Levels(Part):
     def _step(self, dt: float) -> StepReport:
         """A step of the system, within the budget."""
         began, at = time.process_time(), time.perf_counter()
+        self._is_planning = True
         try:
             with self._costs.of("levels"):
                 self._plan()
@@ -591,6 +612,11 @@ class Levels(Part):
             self._is_old = True
             with suppress(StaleIdError), self._costs.of("levels"):
                 self._plan()
+        finally:
+            self._is_planning = False
+        if self._is_over:
+            self._is_over = False
+            self._be_full()
         planned = time.process_time()
         try:
             return self._system.step(dt)
@@ -600,14 +626,32 @@ class Levels(Part):
             self._expected_step = self._system.step_count
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
             self._take_ms(1e3 * (ended - began))
+            if self._budget is not None:  # a function of the script may have ended it
+                self._look_at_contacts(1e3 * (ended - began), self._budget)
 
-    def _stay_off(self) -> None:
-        """Before a step without a budget: an undo or a reset to a time with one brings strides back."""
-        if not self._was_on:
-            return
+    def _step_in_full(self, dt: float) -> StepReport:
+        """A step of the system without a budget. An undo or a reset to a time with one brings strides back."""
         if self._system.step_count != self._expected_step:
-            self._end_strides()
+            if self._was_on:
+                self._end_strides()
+            if self._paced_ms is None and isinstance(self._system, System):
+                self._contacts.be_exact()
         self._expected_step = self._system.step_count + 1
+        if self._paced_ms is None:
+            return self._system.step(dt)
+        began, at = time.process_time(), time.perf_counter()
+        try:
+            return self._system.step(dt)
+        finally:  # other programs hold up the one clock, several threads the other
+            took = min(time.process_time() - began, time.perf_counter() - at)
+            self._look_at_contacts(1e3 * took, self._paced_ms)
+
+    def _look_at_contacts(self, ms: float, limit: float) -> None:
+        change = self._contacts.look(ms, limit)
+        if change is not None:
+            before, after = (f"{share:g} of their budget" for share in change)
+            reason = "over budget" if change[1] < change[0] else "room again"
+            self._changes.append(LevelChange(self._system.time, "contacts", before, after, 0.0, 0.0, reason))
 
     def _take_ms(self, ms: float) -> None:
         """The median of three: a single step that another process has held up is no load."""

@@ -162,10 +162,9 @@ class Stepper:
         if not is_shown and state.step_costs.ms:
             state.step_costs.clear()
         levels = state.levels
-        is_managed = levels is not None and levels.budget_ms is not None
-        if levels is not None and not is_managed:
-            levels._stay_off()
-        take: Callable[[float], StepReport] = levels._step if is_managed and levels is not None else state.system.step
+        take: Callable[[float], StepReport] = state.system.step
+        if levels is not None:
+            take = levels._step_in_full if levels.budget_ms is None else levels._step
         is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
         if not is_due or not isinstance(state.system, System):
             return take(dt)
