@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/outlines.h"
 
+#include "base/sort_unique.h"
 #include "model/outline.h"
 #include "model/solid.h"
 
@@ -14,12 +15,6 @@ namespace iota::contact {
 using model::none;
 
 namespace {
-
-/// Steps without an edit do not move it.
-void sort_unique(std::vector<std::uint32_t>& slots) {
-  std::ranges::sort(slots);
-  slots.erase(std::ranges::unique(slots).begin(), slots.end());
-}
 
 bool is_still(BodyKind kind) { return kind == BodyKind::static_ || kind == BodyKind::resting; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/bodies.h"
 
+#include "base/sort_unique.h"
 #include "edit/constraints.h"
 #include "edit/nails.h"
 #include "edit/settle.h"
@@ -400,8 +401,7 @@ void apply(Editor& e, const SetPose& c) {
       mass += model.particles[p].mass, momentum += model.particles[p].mass * model.velocity(p);
     });
   });
-  std::sort(rings.begin(), rings.end());
-  rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+  sort_unique(rings);
   const Vec3 mean = (1 / mass) * momentum;  // velocities are turned too, which keeps kinetic energy
   for (const std::uint32_t slot : rings) {
     model::Ring& ring = model.rings[slot];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/joint_pose.h"
 
+#include "base/sort_unique.h"
 #include "edit/constraints.h"
 #include "ingredient/joint_readings.h"
 #include "math/checks.h"
@@ -99,8 +100,7 @@ class CoordinateSetter {
       model_.for_each_particle_of(body, [&](std::uint32_t p) { rings.push_back(model_.particles[p].ring); });
       model_.bodies[body].orientation = multiply(turn, model_.bodies[body].orientation);
     }
-    std::sort(rings.begin(), rings.end());
-    rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+    sort_unique(rings);
     for (const std::uint32_t slot : rings) {
       auto& ring = model_.rings[slot];
       ring.position = origin + rotate(turn, ring.position - origin) + shift;

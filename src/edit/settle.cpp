@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/settle.h"
 
+#include "base/sort_unique.h"
 #include "base/text.h"
 #include "ingredient/quantities.h"
 #include "math/mat3.h"
@@ -21,7 +22,7 @@ namespace {
 /// Each slot once, in order. `slots`: how many there are.
 void sort_unique(std::vector<std::uint32_t>& list, std::size_t slots) {
   constexpr std::size_t many = 64;  // of the slots one in so many: marking all of them is then quicker than sorting
-  if (list.size() * many < slots) return ingredient::sort_unique(list);
+  if (list.size() * many < slots) return iota::sort_unique(list);
   std::vector<std::uint8_t> is_in(slots, 0);
   for (const std::uint32_t slot : list) is_in[slot] = 1;
   list.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/angle_springs.h"
 
+#include "base/sort_unique.h"
 #include "ingredient/model.h"
 #include "math/checks.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/bonds.h"
 
+#include "base/sort_unique.h"
 #include "ingredient/model.h"
 #include "ingredient/outcome.h"
 #include "ingredient/row_loads.h"

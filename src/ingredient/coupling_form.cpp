@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/coupling_form.h"
 
+#include "base/sort_unique.h"
 #include "ingredient/joint_forms.h"
 #include "ingredient/joint_frames.h"
 

@@ -10,7 +10,6 @@
 #include "solver/diagnosis.h"
 #include "solver/problem.h"
 
-#include <algorithm>
 #include <concepts>
 #include <span>
 #include <string>
@@ -291,13 +290,6 @@ void for_each_item_of(std::uint8_t owner, const Problem& problem, Visit visit) {
   const std::vector<solver::ItemKey>& keys = problem.pool_of<Item>().keys;
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (keys[i].owner == owner) visit(i, keys[i]);
-}
-
-/// Each number once, in order.
-template <class T>
-void sort_unique(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace iota::ingredient

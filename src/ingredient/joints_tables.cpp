@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/sort_unique.h"
 #include "base/text.h"
 #include "ingredient/joint_forms.h"
 #include "ingredient/joints.h"

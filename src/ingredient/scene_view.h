@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/sort_unique.h"
 #include "model/structure.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,8 +35,7 @@ class SceneView {
     for (const std::uint32_t body : structure_.scene.bodies.slots())
       if (structure_.bodies.is_alive(body))
         structure_.for_each_particle_of(body, [&](std::uint32_t p) { list(p, slots); });
-    std::sort(slots.begin(), slots.end());
-    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    sort_unique(slots);
     return slots;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/strides.h"
 
+#include "base/sort_unique.h"
 #include "base/text.h"
 #include "ingredient/model.h"
 #include "ingredient/quantities.h"

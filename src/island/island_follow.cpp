@@ -2,6 +2,7 @@
 // An island that follows a change: cuts, hinges, ties, closings, nails, damping, and bodies that join or leave it.
 #include "island/island.h"
 
+#include "base/sort_unique.h"
 #include "solver/integrator.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ struct Around {
       if (model.rings.is_alive(nodes.rings[node])) model.for_each_in_ring(nodes.rings[node], take);
       if (!is_needed) empty_nodes.push_back(node);
     }
-    ingredient::sort_unique(bodies);
+    sort_unique(bodies);
   }
 };
 
@@ -67,7 +68,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     problem_.open(changed);
     leaving.assign(around.bodies.begin(), around.bodies.end());
     leaving.insert(leaving.end(), change.left.begin(), change.left.end());
-    ingredient::sort_unique(leaving);
+    sort_unique(leaving);
     const ingredient::IslandMap before(model, nodes_, leaving, node_of_ring);
     const ingredient::IslandMap map(model, nodes_, around.bodies, node_of_ring);
     for_each_ingredient([&](auto& i) { i.leave(before), i.build(map, problem_); });
@@ -162,7 +163,7 @@ void Island::find_changed_nodes(const Model& model, const Change& change, std::v
       changed.push_back(node_of_ring[ring]);
     });
   }
-  ingredient::sort_unique(changed);
+  sort_unique(changed);
   for (const std::uint32_t node : changed) {
     const std::uint32_t ring = nodes_.rings[node];
     nodes_.pinned[node] = is_needed(ring) && model.is_pinned(ring);

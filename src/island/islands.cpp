@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "island/islands.h"
 
+#include "base/sort_unique.h"
 #include "ingredient/attachments.h"
 
 #include <iota/reports.h>
@@ -174,7 +175,7 @@ void Islands::drop_marked(const Model& model, bool all) {
 void Islands::find_changed(const Model& model) {
   for (const std::uint32_t a : marked_.articulates)
     if (Home* const home = entries_[a].home) home->is_small() ? drop(*home) : note_changed(*home);
-  ingredient::sort_unique(marked_.local.reborn);
+  sort_unique(marked_.local.reborn);
   homes_.assign(changed_.begin(), changed_.end());
   for (Home* const home : homes_) find_members(model, *home);
   for (const std::uint32_t a : marked_.articulates) {
@@ -302,7 +303,7 @@ void Islands::find_groups(const Model& model) {
       const std::uint32_t with = unit_of(articulate);
       units_[root_of(unit_of(*home))].parent = root_of(with);
     }
-  ingredient::sort_unique(marked_.local.bodies);
+  sort_unique(marked_.local.bodies);
   for (const std::uint32_t body : marked_.local.bodies)
     if (model.bodies.is_alive(body))
       if (Home* const home = entries_[model.bodies[body].articulate].home) search(unit_of(*home), body);
@@ -416,7 +417,7 @@ bool Islands::follow(Model& model, const Group& group, MovedRings& moved) {
     }
     for (const std::uint32_t a : group.waiting) model.for_each_body_of(a, join);
     for (const std::uint32_t body : host.island.bodies()) is_own_[body] = 0;
-    ingredient::sort_unique(change.joined), ingredient::sort_unique(change.left);
+    sort_unique(change.joined), sort_unique(change.left);
   }
   std::size_t expected = 0;
   for (const std::uint32_t a : members) expected += model.articulates[a].count;
@@ -425,7 +426,7 @@ bool Islands::follow(Model& model, const Group& group, MovedRings& moved) {
 
   change.local.bodies = group.bodies;
   change.local.bodies.insert(change.local.bodies.end(), change.joined.begin(), change.joined.end());
-  ingredient::sort_unique(change.local.bodies);
+  sort_unique(change.local.bodies);
   change.local.rings = marked_.local.rings, change.local.pulled = marked_.local.pulled;
   for (const std::uint32_t body : change.local.bodies) make_ready(model, body);
   if (!host.island.follow(model, members, change, node_of_ring_, moved)) return false;
@@ -477,7 +478,7 @@ void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& mo
   for (const Home* const home : fresh_)
     for (const std::uint32_t a : home->articulates)
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
-  ingredient::sort_unique(fresh_loose_);
+  sort_unique(fresh_loose_);
   for (const std::uint32_t a : fresh_loose_) make_ready(model, model.articulates[a].first);
   const std::size_t count = fresh_.size() + fresh_loose_.size();
   if (moved_by_.size() < count) moved_by_.resize(count);
@@ -539,14 +540,13 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
   for (std::uint32_t& a : articulates)
     a = entries_[a].home ? entries_[a].home->leader : (free_bodies_.contains(a) ? a : none);
-  std::sort(articulates.begin(), articulates.end());
-  articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
+  sort_unique(articulates);
   if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // destroyed ones
 }
 
 std::span<Island* const> Islands::all() {
   if (!order_is_old_) return in_order_;
-  ingredient::sort_unique(changed_leaders_);
+  sort_unique(changed_leaders_);
   if (!replace_in_order()) list_in_order();
   changed_leaders_.clear();
   order_is_old_ = false;

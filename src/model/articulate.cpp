@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/structure.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 
 namespace iota::model {
@@ -12,8 +14,7 @@ void Structure::wake_all() {
 void Structure::take_flagged(std::vector<std::uint32_t>& taken) {
   taken.clear();
   taken.swap(flagged_);
-  std::sort(taken.begin(), taken.end());
-  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+  sort_unique(taken);
   std::erase_if(taken, [&](std::uint32_t slot) { return !articulates.is_alive(slot); });
 }
 

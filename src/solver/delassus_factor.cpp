@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/delassus_factor.h"
 
+#include "base/sort_unique.h"
 #include "solver/sparse/block_pattern.h"
 
 #include <algorithm>
@@ -54,8 +55,7 @@ bool DelassusFactor::analyze(std::uint32_t n, std::span<const Incidence> inciden
     for (std::size_t k = 0; k < list.size(); ++k)
       for (std::size_t l = 0; l < k; ++l) pairs.push_back({list[l], list[k]});
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   find_elimination_order(n, pairs, {}, order_);
   std::vector<std::uint32_t> place(n);
   for (std::uint32_t k = 0; k < n; ++k) place[order_[k]] = k;
@@ -69,8 +69,7 @@ bool DelassusFactor::analyze(std::uint32_t n, std::span<const Incidence> inciden
     std::vector<std::uint32_t>& rows = columns[k];
     for (const std::uint32_t child : children[k])
       rows.insert(rows.end(), columns[child].begin() + 1, columns[child].end());
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    sort_unique(rows);
     if (!rows.empty()) children[rows[0]].push_back(k);
     rows_.insert(rows_.end(), rows.begin(), rows.end());
     first_.push_back(static_cast<std::uint32_t>(rows_.size()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/heap.h"
 
+#include "base/sort_unique.h"
 #include "math/mat3.h"
 
 #include <algorithm>
@@ -39,8 +40,7 @@ bool Heap::find_bodies(const Problem& problem) {
             found_.with(nodes.subspan(c.first_side)));
   }
   ties_.for_each_pair(connect), forces_.for_each_pair(connect);
-  std::sort(pairs_.begin(), pairs_.end());
-  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  sort_unique(pairs_);
   constexpr double few_loops = 1.25;
   const auto free_bodies =
       std::count_if(found_.all.begin(), found_.all.end(), [](const Body& b) { return !b.is_driven; });

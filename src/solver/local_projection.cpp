@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/local_projection.h"
 
+#include "base/sort_unique.h"
 #include "solver/largest.h"
 #include "solver/row_rates.h"
 
@@ -34,8 +35,7 @@ C renumbered(C item, const std::vector<std::uint32_t>& number) {
 bool LocalProjection::project(Problem& problem, std::span<const std::uint32_t> center, bool positions) {
   if (!is_worthwhile(problem) || center.empty() || center.size() > largest_center) return false;
   next_center_.assign(center.begin(), center.end());
-  std::sort(next_center_.begin(), next_center_.end());
-  next_center_.erase(std::unique(next_center_.begin(), next_center_.end()), next_center_.end());
+  sort_unique(next_center_);
   bool is_built = std::exchange(is_known_, false) && next_center_ == center_;
   center_ = next_center_;
   if (!is_built) list_neighbors(problem);

@@ -2,9 +2,9 @@
 #include "solver/loops.h"
 
 #include "base/disjoint_sets.h"
+#include "base/sort_unique.h"
 #include "solver/pieces.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -35,8 +35,7 @@ void find_ends_of_joints(const Problem& problem, const Pieces& pieces, std::uint
         if (!c.is_internal()) ends.emplace_back(joint, world);
       }
   });
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  sort_unique(ends);
 }
 
 /// Kept, so that nothing is allocated when a structure changes a little.

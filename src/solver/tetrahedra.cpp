@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/tetrahedra.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -63,8 +65,7 @@ void Tetrahedra::find(const Problem& problem) {
   list_edges(problem, scratch);
   add_nailed_edges(scratch);
   std::vector<Edge>& edges = scratch.edges;
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   const auto have_row = [&](std::uint32_t a, std::uint32_t b) {
     return std::binary_search(edges.begin(), edges.end(), Edge(a, b));
   };

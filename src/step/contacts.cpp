@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/contacts.h"
 
+#include "base/sort_unique.h"
 #include "ingredient/contact_readings.h"
 #include "model/outline.h"
 #include "model/solid.h"
@@ -394,8 +395,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   begin_look(model, h, has_many);
   find_obstacles(model, outlines);
   find_pairs(model, outlines);
-  std::sort(pairs_.begin(), pairs_.end());
-  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  sort_unique(pairs_);
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, pair); });
   known_.forget();
   for (const Pair& pair : pairs_) {
@@ -703,7 +703,7 @@ void ContactFinder::list_contacts_of(const model::Model& model, std::span<const 
   if (model.contacts.size() == 0) return;
   for (const std::uint32_t body : bodies)
     model.contacts.for_each_of(body, [&](std::uint32_t slot) { contacts_.push_back(slot); });
-  ingredient::sort_unique(contacts_);
+  sort_unique(contacts_);
 }
 
 // Bodies that were asleep when the step began have contacts, but no pairs. Without them a tower that a ball wakes fell into itself for
@@ -717,7 +717,7 @@ void ContactFinder::add_pairs_of_woken(const model::Model& model) {
     if (!c.is_off && !std::binary_search(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(known), pair))
       pairs_.push_back(pair);
   }
-  if (pairs_.size() > known) ingredient::sort_unique(pairs_);
+  if (pairs_.size() > known) sort_unique(pairs_);
 }
 
 std::optional<double> ContactFinder::find_part(model::Model& model, contact::Outlines& outlines,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/sort_unique.h"
 #include "ingredient/quantities.h"
 #include "ingredient/tables.h"
 #include "model/outline.h"
@@ -15,8 +16,7 @@ Diagnosis System::diagnose(BodyId id) const {
   std::vector<std::uint32_t> articulates;
   for (const std::uint32_t b : model.tied_bodies(std::span(&body, 1)))
     articulates.push_back(model.bodies[b].articulate);
-  std::sort(articulates.begin(), articulates.end());
-  articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
+  sort_unique(articulates);
   // A separate island, so that the stepped one and the state do not change.
   island::Island island;
   std::vector<std::uint32_t> node_of_ring(model.rings.slot_count(), model::none);

@@ -2,6 +2,7 @@
 #include "solver/sparse/pattern_builder.h"
 
 #include "base/slack.h"
+#include "base/sort_unique.h"
 
 #include <algorithm>
 #include <numeric>
@@ -322,8 +323,7 @@ void PatternBuilder::list_changing_vertices(const GraphChange& change) {
     if (insertion.after > 0) changing.push_back(insertion.after - 1);
   for (const auto& [unknown, v] : own_at_)
     if (is_gone_[v]) changing.push_back(v);
-  std::sort(changing.begin(), changing.end());
-  changing.erase(std::unique(changing.begin(), changing.end()), changing.end());
+  sort_unique(changing);
 }
 
 void PatternBuilder::release_values(const Vertex& vertex) {
