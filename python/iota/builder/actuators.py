@@ -19,7 +19,7 @@ UNREACHED = 1e4
 
 @dataclass
 class _Acts:
-    """What one actuator adds to a coordinate: of its spring, a constant force, and a motor or servo."""
+    """A share of one actuator in the spring, the constant force, and the motor or servo of a coordinate."""
 
     stiffness: float = 0.0
     damping: float = 0.0

@@ -233,7 +233,7 @@ def coordinate_of(joint: LinkJoint) -> Coordinate:
 
 
 def scaled_law(law: dict[str, Any], scale: float) -> dict[str, Any]:
-    """Of an actuator of an enlarged mechanism. Its length and its control have the units of the file, so its force is a torque or
+    """Returns the fields of an actuator of an enlarged mechanism. Its length and its control have the units of the file, so its force is a torque or
     an energy for each of these."""
     by = scale**2
     scaled: dict[str, Any] = {

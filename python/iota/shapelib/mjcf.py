@@ -563,7 +563,7 @@ class _Reader:
         return law
 
     def largest_force(self, number: int, terms: dict[int, float]) -> tuple[float, float] | None:
-        """Of the actuator and of its joint, along the actuator."""
+        """Returns the range of the actuator and of its joint, along the actuator."""
         m = self.model
         low, high = (
             (float(v) for v in m.actuator_forcerange[number]) if m.actuator_forcelimited[number] else (-np.inf, np.inf)

@@ -50,7 +50,7 @@ TAKEN: dict[str, Taken] = {
     "Geom": _all(
         "type pos quat size fromto contype conaffinity density mass meshname hfieldname fitscale typeinertia rgba material friction condim"
     ),
-    # Those that are left out have notes of their own.
+    # Actuators that are left out have notes of their own.
     "Actuator": _all(
         "actdim actlimited actrange biasprm biastype cranklength ctrllimited ctrlrange ctrlspec dynprm dyntype forcelimited forcerange gainprm "
         "gaintype gear inheritrange lengthrange refsite slidersite target trntype type"

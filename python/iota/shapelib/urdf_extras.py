@@ -41,7 +41,7 @@ def _friction(element: Element, text: str, link: str) -> float:
 def actuators(
     robot: Element, joints: dict[str, Element], initial: dict[str, float], taken: set[int], notes: list[str]
 ) -> list[JointActuator]:
-    """Of transmissions with one joint: its effort, position or speed is set, as hardware interfaces of ROS do. joints: those with one
+    """Reads transmissions with one joint: its effort, position or speed is set, as hardware interfaces of ROS do. joints: those with one
     coordinate that mimic no other. initial: their coordinates in the structure."""
     made: list[JointActuator] = []
     driven: set[str] = set()
