@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iota.builder.parts import COORDINATES, JOINT_KINDS, TIE_KINDS
+from iota.builder.parts import ACTUATOR_LAWS, COORDINATES, JOINT_KINDS, TIE_KINDS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from iota.builder.contents import Contents
+    from iota.builder.parts import Actuator, Coupling
 
     Numbers = NDArray[np.int64]
 
@@ -41,6 +42,7 @@ def problems(structure: Contents) -> Iterator[str]:
     yield from _bodies(structure)
     yield from _hinges(structure, owner)
     yield from _kinds(structure)
+    yield from _actuators(structure)
     yield from _names(structure)
 
 
@@ -76,7 +78,7 @@ def _missing_points(structure: Contents, members: Numbers) -> Iterator[str]:
     for number, bond in enumerate(structure.bonds):
         yield from unknown(label("bond", number, bond.name), (bond.p, bond.q))
     for number, tie in enumerate(structure.ties):
-        yield from unknown(label(tie.kind, number, tie.name), (tie.p, tie.q))
+        yield from unknown(label(tie.kind, number, tie.name), (tie.p, *tie.over, tie.q))
     for what, pairs in (("hinge", structure.hinges), ("line", structure.lines)):
         if not all_there(_numbers(chain.from_iterable(pairs))):
             for number, pair in enumerate(pairs):
@@ -107,9 +109,13 @@ def _missing_bodies(structure: Contents) -> Iterator[str]:
 
 def _missing_joints(structure: Contents) -> Iterator[str]:
     count = len(structure.joints)
-    for number, coupling in enumerate(structure.couplings):
-        for joint, coordinate, _ in coupling.terms:
-            owner = label("coupling", number, coupling.name)
+    driven: list[tuple[str, int, Coupling | Actuator]] = [
+        *(("coupling", number, coupling) for number, coupling in enumerate(structure.couplings)),
+        *(("actuator", number, actuator) for number, actuator in enumerate(structure.actuators)),
+    ]
+    for what, number, each in driven:
+        for joint, coordinate, _ in each.terms:
+            owner = label(what, number, each.name)
             if not 0 <= joint < count:
                 yield f"{owner}: there is no joint {joint!r}, only {count} joints"
             elif coordinate not in COORDINATES:
@@ -176,6 +182,42 @@ def _kinds(structure: Contents) -> Iterator[str]:
             yield f"{label('tie', number, tie.name)}: kind must be one of {', '.join(TIE_KINDS)}, not {tie.kind!r}"
 
 
+def _actuators(structure: Contents) -> Iterator[str]:
+    uses = Counter((joint, name) for each in structure.actuators for joint, name, _ in each.terms)
+    for number, each in enumerate(structure.actuators):
+        owner = label("actuator", number, each.name)
+        if each.law not in ACTUATOR_LAWS:
+            yield f"{owner}: law must be one of {', '.join(ACTUATOR_LAWS)}, not {each.law!r}"
+            continue
+        if not each.terms:
+            yield f"{owner} drives no joint"
+        has_spring = each.stiffness != 0 or each.damping != 0
+        values = {"gain": each.gain, "constant": each.constant, "control": each.control}
+        values |= {"stiffness": each.stiffness, "damping": each.damping}
+        for name, value in values.items():
+            is_positive = name in ("stiffness", "damping")
+            if not _is_number(value) or (is_positive and value < 0):
+                yield f"{owner}: {name} must be finite{' and at least 0' if is_positive else ''}, not {value}"
+        for _, _, ratio in each.terms:
+            if not _is_number(ratio) or ratio == 0:
+                yield f"{owner}: a ratio must be finite and not 0, not {ratio}"
+        for name in ("control_range", "force_range", "travel"):
+            ends = getattr(each, name)
+            if ends is not None and not (len(ends) == 2 and all(end == end for end in ends) and ends[0] <= ends[1]):
+                yield f"{owner}: {name} must be two numbers, the lower one first, not {ends}"
+        if len(each.terms) > 1 and (has_spring or each.law != "force"):
+            yield f"{owner}: one of several coordinates has a constant force only, no stiffness, damping or other law"
+        if each.law != "force":
+            if each.force_range is None or not all(map(_is_number, each.force_range)):
+                yield f"{owner}: the law {each.law!r} needs a finite force_range"
+            if any(uses[joint, name] > 1 for joint, name, _ in each.terms):
+                yield f"{owner}: a coordinate with the law {each.law!r} has no other actuator"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and bool(np.isfinite(value))
+
+
 def _names(structure: Contents) -> Iterator[str]:
     named: tuple[Sequence[Any], ...] = (
         structure.bodies,
@@ -183,6 +225,7 @@ def _names(structure: Contents) -> Iterator[str]:
         structure.joints,
         structure.ties,
         structure.couplings,
+        structure.actuators,
         structure.places,
     )
     names = Counter(item.name for items in named for item in items if item.name)

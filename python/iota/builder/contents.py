@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from iota.builder.parts import Coupling, Joint, Place, RigidBody, SoftBond, Tie
+from iota.builder.parts import Actuator, Coupling, Joint, Place, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
 from iota.looks import Drawn
 
@@ -27,4 +27,5 @@ class Contents:
     groups: dict[str, list[int]] = field(default_factory=dict)  # points, for fields and pair forces
     point_names: dict[str, int] = field(default_factory=dict)
     places: list[Place] = field(default_factory=list)
+    actuators: list[Actuator] = field(default_factory=list)
     looks: dict[str, Drawn] = field(default_factory=dict)  # how bodies are drawn, as `World.draw` takes it

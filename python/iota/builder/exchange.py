@@ -16,11 +16,11 @@ from iota._core import Vec3
 from iota.arguments import SHORT, of_type
 from iota.builder.checks import label
 from iota.builder.contents import Contents
-from iota.builder.parts import Coupling, Joint, Place, RigidBody, SoftBond, Tie
+from iota.builder.parts import Actuator, Coupling, Joint, Place, RigidBody, SoftBond, Tie
 
 PARTS: dict[str, type[Any]] = {
     "bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie, "couplings": Coupling,
-    "places": Place,
+    "places": Place, "actuators": Actuator,
 }  # fmt: skip
 PAIRS = ("hinges", "lines", "passing")
 PLAIN = ("nails", "groups", "point_names")
@@ -28,7 +28,8 @@ COLUMNS = {"position": 3, "mass": 1, "velocity": 3, "radius": 1, "color": 3}
 # The fields of parts that are not numbers; the engine checks numbers.
 FIELDS: dict[str, type] = {
     "points": list, "name": str, "kind": str, "look": str, "p": int, "q": int, "a": int, "body": int, "law": str, "parameters": dict,
-    "options": dict, "terms": list, "shape": dict, "others": list, "touches": bool,
+    "options": dict, "terms": list, "shape": dict, "others": list, "touches": bool, "material": dict, "over": list,
+    "control_range": list, "force_range": list, "travel": list,
 }  # fmt: skip
 
 VERSION = 1  # rises when files of before can no longer be read, or would be read wrongly
@@ -44,7 +45,7 @@ def to_json(structure: Contents) -> dict[str, Any]:
         ]
     for name in (*PAIRS, *PLAIN):
         data[name] = _plain(getattr(structure, name), name)
-    for name in ("passing", "places"):  # those without are as of files of before
+    for name in ("passing", "places", "actuators"):  # those without are as of files of before
         if not data[name]:
             del data[name]
     data["looks"] = {name: looks.to_json(styles) for name, styles in structure.looks.items()}

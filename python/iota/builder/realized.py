@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iota import _core
+from iota.builder.actuators import ActuatorOnJoint, actuate
 from iota.builder.checks import label, problems
 from iota.builder.contents import Contents
 from iota.builder.parts import Place, RigidBody
 from iota.frames import Quaternion, into_frame, one_after_another, relative_turn, turned
 
 if TYPE_CHECKING:
-    from iota.builder.parts import Coupling, Joint, SoftBond, Tie
+    from iota.builder.parts import Actuator, Coupling, Joint, SoftBond, Tie
     from iota.world import World
 
 MOST_SHOWN = 5  # problems in one error
@@ -73,11 +74,12 @@ class Realized:
     joints: list[_core.Constraint] = field(default_factory=list)
     ties: list[_core.Constraint] = field(default_factory=list)
     couplings: list[_core.Constraint] = field(default_factory=list)
+    actuators: list[ActuatorOnJoint] = field(default_factory=list)
     groups: dict[str, _core.Group] = field(default_factory=dict)
     names: dict[str, Any] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Any:
-        """The point, body, place, bond, joint, tie or coupling of that name. Raises KeyError."""
+        """The point, body, place, bond, joint, tie, coupling or actuator of that name. Raises KeyError."""
         return self.names[name]
 
 
@@ -90,7 +92,7 @@ def realize(structure: Contents, system: _core.System, world: World | None = Non
     made = Realized()
     with _without_collector(), system.edit():
         _make_bodies(structure, system, made)
-        _make_connections(structure, system, made)
+        _make_connections(structure, system, world, made)
         known = {group.name: group for group in system.groups}
         for name, members in structure.groups.items():
             made.groups[name] = known[name] if name in known else system.group(name)  # an empty one is False
@@ -210,7 +212,9 @@ def _solid(part: RigidBody, system: _core.System) -> _core.Body:
         )
         body.combine(other)
     if not part.touches:
-        body.material = _core.Material(touches="nothing")
+        body.material = _core.Material(**{**(part.material or {}), "touches": "nothing"})
+    elif part.material is not None:
+        body.material = _core.Material(**part.material)
     if part.inertia is not None:
         assert part.mass is not None and part.center is not None  # as `problems` says
         body.set_mass_properties(part.mass, part.center, part.inertia)
@@ -219,7 +223,7 @@ def _solid(part: RigidBody, system: _core.System) -> _core.Body:
     return body
 
 
-def _make_connections(structure: Contents, system: _core.System, made: Realized) -> None:
+def _make_connections(structure: Contents, system: _core.System, world: World | None, made: Realized) -> None:
     points = made.points
     for p, q in structure.lines:
         system.cosmetic_bond(points[p], points[q])
@@ -229,6 +233,7 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
         system.ignore_contacts(made.bodies[one], made.bodies[other])
     for point in structure.nails:
         points[point].nail()
+    _lift(structure, system, made)
     what = ""
     try:
         for number, joint in enumerate(structure.joints):
@@ -237,12 +242,18 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
             made.joints.append(getattr(system, joint.kind)(made.bodies[joint.a], b, **joint.options))
         for number, tie in enumerate(structure.ties):
             what = label(tie.kind, number, tie.name)
+            if tie.over:
+                line = [points[number] for number in (tie.p, *tie.over, tie.q)]
+                made.ties.append(system.rope(line, tie.length, break_force=tie.break_force))
+                continue
             make = getattr(system, tie.kind)
             made.ties.append(make(points[tie.p], points[tie.q], tie.length, break_force=tie.break_force))
         for number, coupling in enumerate(structure.couplings):
             what = label("coupling", number, coupling.name)
             terms = [(getattr(made.joints[joint], coordinate), ratio) for joint, coordinate, ratio in coupling.terms]
             made.couplings.append(system.couple(terms, length=coupling.length, one_sided=coupling.one_sided))
+        what = "the actuators"
+        made.actuators = actuate(structure.actuators, made.joints, world)
         for number, bond in enumerate(structure.bonds):
             what = label("bond", number, bond.name)
             made.bonds.append(
@@ -263,10 +274,30 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
     _name(made, structure.joints, made.joints)
     _name(made, structure.ties, made.ties)
     _name(made, structure.couplings, made.couplings)
+    _name(made, structure.actuators, made.actuators)
     _name(made, structure.bonds, made.bonds)
 
 
-def _name(made: Realized, parts: Sequence[Joint | Tie | Coupling | SoftBond], handles: Sequence[Any]) -> None:
+def _lift(structure: Contents, system: _core.System, made: Realized) -> None:
+    """One field for all bodies that are lifted by the same share."""
+    lifted: dict[float, list[_core.Body]] = {}
+    for part, body in zip(structure.bodies, made.bodies, strict=True):
+        if part.lift != 0:
+            lifted.setdefault(part.lift, []).append(body)
+    used = {group.name for group in system.groups}
+    for share, bodies in lifted.items():
+        name = f"lifted by {share:g}"
+        while name in used:
+            name += " too"
+        used.add(name)
+        group = system.group(name)
+        group.add(*bodies)
+        system.field("uniform", group=group, acceleration=-share * system.gravity, name=name)
+
+
+def _name(
+    made: Realized, parts: Sequence[Joint | Tie | Coupling | SoftBond | Actuator], handles: Sequence[Any]
+) -> None:
     made.names |= {part.name: handle for part, handle in zip(parts, handles, strict=True) if part.name}
 
 

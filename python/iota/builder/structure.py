@@ -13,7 +13,7 @@ from iota._core import System, Vec3
 from iota.builder import exchange
 from iota.builder.checks import problems
 from iota.builder.contents import Contents
-from iota.builder.parts import Coordinate, Coupling, Joint, JointKind, Law, RigidBody, SoftBond, Tie, TieKind
+from iota.builder.parts import Actuator, Coordinate, Coupling, Joint, JointKind, Law, RigidBody, SoftBond, Tie, TieKind
 from iota.builder.points import Vector
 from iota.builder.realized import Realized, realize
 
@@ -91,9 +91,11 @@ class Structure(Contents):
         *,
         break_force: float = float("inf"),
         name: str = "",
+        over: Iterable[int] = (),
     ) -> int:
-        """A 'rod' or 'rope' between two points of different bodies; length in m, None for their distance."""
-        self.ties.append(Tie(kind, p, q, length, break_force, name))
+        """A 'rod' or 'rope' between two points of different bodies; length in m, None for their distance. over: of a rope, points over
+        which it runs on its way."""
+        self.ties.append(Tie(kind, p, q, length, break_force, name, tuple(over)))
         return len(self.ties) - 1
 
     def couple(
@@ -109,6 +111,14 @@ class Structure(Contents):
         """
         self.couplings.append(Coupling(list(terms), length, one_sided, name))
         return len(self.couplings) - 1
+
+    def actuator(self, *terms: tuple[int, Coordinate, float], **options: Any) -> int:
+        """Drives a coordinate of a joint, or a sum of ratio times coordinate; options: the fields of `Actuator`.
+
+        arm.actuator((elbow, "angle", 1), gain=20, stiffness=20, damping=1, control_range=(-2, 2), name="elbow servo")
+        """
+        self.actuators.append(Actuator(list(terms), **options))
+        return len(self.actuators) - 1
 
     def cosmetic_bond(self, p: int, q: int) -> None:
         """A line drawn between two points of one body."""
@@ -146,6 +156,7 @@ class Structure(Contents):
         twin.joints = [replace(joint, options=dict(joint.options)) for joint in self.joints]
         twin.ties = [replace(tie) for tie in self.ties]
         twin.couplings = [replace(coupling, terms=list(coupling.terms)) for coupling in self.couplings]
+        twin.actuators = [replace(each, terms=list(each.terms)) for each in self.actuators]
         twin.passing = list(self.passing)
         twin.places = [replace(place) for place in self.places]
         twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
@@ -202,13 +213,18 @@ class Structure(Contents):
         for bond in other.bonds:
             self.bonds.append(replace(bond, p=bond.p + shift.points, q=bond.q + shift.points, name=named(bond.name)))
         for tie in other.ties:
-            self.ties.append(replace(tie, p=tie.p + shift.points, q=tie.q + shift.points, name=named(tie.name)))
+            over = [point + shift.points for point in tie.over]
+            moved = replace(tie, p=tie.p + shift.points, q=tie.q + shift.points, over=over, name=named(tie.name))
+            self.ties.append(moved)
         for joint in other.joints:
             b = None if joint.b is None else joint.b + bodies
             self.joints.append(replace(joint, a=joint.a + bodies, b=b, name=named(joint.name)))
         for coupling in other.couplings:
             terms = [(joint + joints, coordinate, ratio) for joint, coordinate, ratio in coupling.terms]
             self.couplings.append(replace(coupling, terms=terms, name=named(coupling.name)))
+        for actuator in other.actuators:
+            terms = [(joint + joints, coordinate, ratio) for joint, coordinate, ratio in actuator.terms]
+            self.actuators.append(replace(actuator, terms=terms, name=named(actuator.name)))
         for name, members in other.groups.items():
             self.group(name, [member + shift.points for member in members])
         self.point_names |= {prefix + name: point + shift.points for name, point in other.point_names.items()}

@@ -138,8 +138,8 @@ def keep_names(mechanism: Mechanism, tree: Tree) -> None:
         (a, p), (b, q) = spring.ends
         spring.ends = ((tree.host.get(a, a), p), (tree.host.get(b, b), q))
     mechanism.ropes = [
-        (name, (tree.host.get(a, a), p), (tree.host.get(b, b), q), length)
-        for name, (a, p), (b, q), length in mechanism.ropes
+        (name, [(tree.host.get(link, link), place) for link, place in ends], length)
+        for name, ends, length in mechanism.ropes
     ]
 
 
@@ -159,6 +159,11 @@ def _move_shapes(link: Link, host: Link) -> None:
     there = host.frame.inverse() @ link.frame
     host.drawn += [(look, there @ place) for look, place in link.drawn]
     host.touching += [(shape, there @ place) for shape, place in link.touching]
+    if link.material is not None and link.touching:
+        names = {**(host.material or {}), **link.material}
+        host.material = {
+            name: max((link.material or {}).get(name, 0.0), (host.material or {}).get(name, 0.0)) for name in names
+        }
 
 
 def _add_masses(tree: Tree) -> None:

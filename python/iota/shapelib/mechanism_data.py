@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from iota import looks
-from iota._core import Mesh, Shape
+from iota._core import Mesh, Shape, Sphere
 from iota.builder.parts import BodyKind, Coordinate, JointKind, Place, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 from iota.shapelib.meshes import hull_of
 
+ROTOR = "rotor of a motor"  # a look
 # A spring that neither pulls nor pushes between the lengths a and b.
 SLACK = "energy = 0.5*k*max(r - b, 0)^2 + 0.5*k*max(a - r, 0)^2; force = -c*v"
 
@@ -25,7 +26,8 @@ SLACK = "energy = 0.5*k*max(r - b, 0)^2 + 0.5*k*max(a - r, 0)^2; force = -c*v"
 class Link:
     """frame: in the world, z up. solid: None for a link that is only a reference. drawn, touching: looks, and the shapes by
     which it touches, with their places in the link's frame. touches: False for one that is only seen. is_of: the link between
-    two of whose joints this one is a ring."""
+    two of whose joints this one is a ring. material: keywords of `iota.Material`. lift: share of its weight
+    that is taken off."""
 
     name: str
     frame: Frame
@@ -35,6 +37,8 @@ class Link:
     kind: BodyKind = "dynamic"
     touches: bool = True
     is_of: str = ""
+    material: dict[str, float] | None = None
+    lift: float = 0.0
 
 
 def seen_shapes(link: Link) -> list[tuple[Shape, Frame]]:
@@ -59,6 +63,7 @@ class LinkJoint:
     at: Any
     axis: Any | None = None
     options: dict[str, Any] = field(default_factory=dict)
+    rotor: float = 0.0  # inertia that its coordinate has besides that of the links, kg m^2 or kg
 
 
 @dataclass
@@ -70,6 +75,16 @@ class JointCoupling:
     terms: list[tuple[str, float]]
     length: float | None = None
     one_sided: bool = False
+
+
+@dataclass
+class JointActuator:
+    """As an actuator of iota, of which `law` has the fields, for the coordinates of joints where they are when the file is read. terms: names
+    of joints, ratios."""
+
+    name: str
+    terms: list[tuple[str, float]]
+    law: dict[str, Any]
 
 
 @dataclass
@@ -86,14 +101,15 @@ class LinkSpring:
 
 @dataclass
 class Mechanism:
-    """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m. passing: names of links that do not
+    """The content of a file. ropes: pairs of a link and a place in the world, over which it runs, and a length in m. passing: names of links that do not
     touch each other. places: names of links that are parts of others, those others, and where they are in the world."""
 
     title: str
     links: list[Link] = field(default_factory=list)
     joints: list[LinkJoint] = field(default_factory=list)
     couplings: list[JointCoupling] = field(default_factory=list)
-    ropes: list[tuple[str, tuple[str, Any], tuple[str, Any], float]] = field(default_factory=list)
+    ropes: list[tuple[str, list[tuple[str, Any]], float]] = field(default_factory=list)
+    actuators: list[JointActuator] = field(default_factory=list)
     springs: list[LinkSpring] = field(default_factory=list)
     passing: list[tuple[str, str]] = field(default_factory=list)
     places: list[tuple[str, str, Frame]] = field(default_factory=list)
@@ -147,6 +163,8 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
                 others=[(other, put(at.place), to_quaternion(Y_UP @ at.turn)) for other, at in others],
                 center=put(ellipsoid[1].place),
                 inertia=((inertia + inertia.T) / 2).tolist(),
+                material=link.material,
+                lift=link.lift,
             )
         )
 
@@ -167,15 +185,23 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         b = None if joint.b is None else number.get(joint.b)
         structure.joint(joint.kind, number[joint.a], b, name=unused(joint.name, "joint"), **options)
     joint_numbers = {joint.name: n for n, joint in enumerate(mechanism.joints)}
+    add_rotors(structure, mechanism.joints, scale, unused)
+
+    def in_structure(term: tuple[str, float]) -> tuple[int, Coordinate, float]:
+        """With a ratio that gives the unit of the file."""
+        n = joint_numbers[term[0]]
+        which = coordinate_of(mechanism.joints[n])
+        return n, which, term[1] / scale if which == "slide" else term[1]
+
     for coupling in mechanism.couplings:
-        terms: list[tuple[int, Coordinate, float]] = []
-        for joint_name, ratio in coupling.terms:
-            n = joint_numbers[joint_name]
-            is_slide = mechanism.joints[n].kind == "prismatic"
-            terms.append((n, "slide", ratio / scale) if is_slide else (n, "angle", ratio))
+        terms = [in_structure(term) for term in coupling.terms]
         structure.couple(
             *terms, length=coupling.length, one_sided=coupling.one_sided, name=unused(coupling.name, "coupling")
         )
+
+    for actuator in mechanism.actuators:
+        terms = [in_structure(term) for term in actuator.terms]
+        structure.actuator(*terms, name=unused(actuator.name, "actuator"), **scaled_law(actuator.law, scale))
 
     def held(end: tuple[str, Any]) -> int:
         """A point at the end of a rope or spring."""
@@ -187,8 +213,9 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
             structure.nail(point)
         return point
 
-    for name, first, second, length in mechanism.ropes:
-        structure.tie("rope", held(first), held(second), length=scale * length, name=unused(name, "rope"))
+    for name, places, length in mechanism.ropes:
+        first, *over, last = map(held, places)
+        structure.tie("rope", first, last, length=scale * length, name=unused(name, "rope"), over=over)
     for spring in mechanism.springs:
         values: dict[str, Any]
         shortest, longest = (scale * length for length in spring.rest)
@@ -199,6 +226,46 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         ends = held(spring.ends[0]), held(spring.ends[1])
         structure.bond(*ends, law, name=unused(spring.name, "spring"), **values)
     return structure
+
+
+def coordinate_of(joint: LinkJoint) -> Coordinate:
+    return "slide" if joint.kind == "prismatic" else "angle"
+
+
+def scaled_law(law: dict[str, Any], scale: float) -> dict[str, Any]:
+    """Returns the fields of an actuator of an enlarged mechanism. Its length and its control have the units of the file, so its force is a torque or
+    an energy for each of these."""
+    by = scale**2
+    scaled: dict[str, Any] = {
+        name: by * law[name] for name in ("gain", "constant", "stiffness", "damping") if name in law
+    }
+    if "force_range" in law:
+        scaled["force_range"] = tuple(by * end for end in law["force_range"])
+    return law | scaled
+
+
+def add_rotors(structure: Imported, joints: list[LinkJoint], scale: float, unused: Callable[[str, str], str]) -> None:
+    """Adds a wheel for the inertia of each motor's rotor, at the world and geared to the joint: the coordinate has that inertia, and the links
+    have no other weight or gyroscopic moment, as in MuJoCo. Its size is such that its mass is a thousandth of the heaviest body's."""
+    heaviest = max((body.mass or 0.0 for body in structure.bodies), default=0.0)
+    for number, joint in enumerate(joints):
+        if joint.rotor <= 0:
+            continue
+        # A slide turns its wheel by 1 rad for each m of the file.
+        inertia = scale**2 * joint.rotor
+        mass = 1e-3 * heaviest
+        at = structure.joints[number].options["at"]
+        wheel = structure.body(
+            shape=Sphere(1e-3), mass=mass, position=at, center=at, inertia=(inertia * np.eye(3)).tolist(), touches=False,
+            name=unused(f"{joint.name} rotor", "body"), look=ROTOR,
+        )  # fmt: skip
+        structure.looks[ROTOR] = looks.sphere(1e-3)
+        axle = structure.joint(
+            "revolute", wheel, at=at, axis=(0.0, 1.0, 0.0), name=unused(f"{joint.name} axle", "joint")
+        )
+        which = coordinate_of(joint)
+        terms = (number, which, 1 / scale if which == "slide" else 1.0), (axle, "angle", -1.0)
+        structure.couple(*terms, name=unused(f"{joint.name} gear", "coupling"))  # type: ignore[arg-type]
 
 
 def _scaled_options(joint: LinkJoint, scale: float) -> dict[str, Any]:

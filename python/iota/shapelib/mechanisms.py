@@ -27,7 +27,8 @@ def mechanism(
     at: Vector = (0.0, 0.0, 0.0),
 ) -> Imported:
     """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass, inertia and
-    shapes of the file, by which it touches, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
+    shapes of the file, by which it touches, its friction, a joint of iota for each of its joints, with limits, damping and friction, and
+    actuators, whose control a script sets (`iota.builder.ActuatorOnJoint`). Names are those
     of the file; a joint with the name of a link is "NAME joint". Files have z up, the structure has y up.
 
     Links without mass are parts of what they are fixed to, and their names are of places (`iota.builder.PlaceOnBody`).
@@ -36,13 +37,13 @@ def mechanism(
     files specify it.
     scale: of lengths; masses and times are kept, so that forces grow as lengths, torques and inertia as their squares: springs, dampers
     and friction let it move as before, where gravity, that of the system, is as much larger. at: place of the file's origin, m. What is left out is
-    listed in `notes`: gravity, transmissions, actuators, coefficients of contacts, tendons over pulleys, nonlinear equalities, missing
-    meshes, and every attribute that is not its default and has no counterpart. Joints that
+    listed in `notes`: gravity, actuators with a state, tendons over pulleys, nonlinear equalities, missing meshes, and every attribute that is not its default and has no counterpart. Joints that
     mimic others, equalities of joints and sums of joints (fixed tendons) become couplings. Raises `FileError` that names
     file and line, ImportError without MuJoCo for MJCF.
 
         arm = iota.shapelib.mechanism("arm.urdf").realize(system, world)
         arm["elbow"].angle.motor = (1.0, 20)
+        arm["wrist servo"].control = 0.3  # an actuator of the file
     """
     if base not in (None, "fixed", "free"):
         raise ValueError(f"base must be 'fixed', 'free' or None, not {base!r}")

@@ -16,9 +16,18 @@ from iota.extras import how_to_get
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.folding import Tree, fold, keep_names, mark
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, LinkSpring, Mechanism, color_of, seen_shapes
+from iota.shapelib.mechanism_data import (
+    JointActuator,
+    JointCoupling,
+    Link,
+    LinkJoint,
+    LinkSpring,
+    Mechanism,
+    color_of,
+    seen_shapes,
+)
 from iota.shapelib.meshes import mesh_of
-from iota.shapelib.mjcf_notes import gravity_note, left_out
+from iota.shapelib.mjcf_notes import MOST_NAMED, gravity_note, left_out
 from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import X_TO_Z
 
@@ -26,6 +35,10 @@ FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
 CONNECT, WELD, EQUAL_JOINTS, EQUAL_TENDONS = range(4)  # mjtEq
 SITE = 6  # mjtObj
 WRAPPED_JOINT, WRAPPED_SITE = 1, 3  # mjtWrap
+PLANE, ROUND = 0, (2, 3, 5)  # mjtGeom; sphere, capsule, cylinder
+DRIVES_JOINT, DRIVES_TENDON = (0, 1), 3  # mjtTrn
+INSTANT, INTEGRATES, FILTERS = (0,), 1, (2, 3)  # mjtDyn
+ACTUATION_OFF = 1 << 11  # mjDSBL_ACTUATION
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 MOST_MASKED = 1000  # bodies, pairs of which are compared
@@ -58,6 +71,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
         raise wrong(path, str(error), included) from None
     finally:
         mujoco.set_mju_user_warning(None)
+    require_numbers(path, model)
     reader = _Reader(model, state, root.text("model", "") or Path(path).name.split(".")[0])
     try:
         reader.read()
@@ -77,7 +91,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
 
 
 def compiled(mujoco: Any, path: PathLike) -> Any:
-    """The model. Actuators are not read, so that one whose range of lengths MuJoCo cannot find is no reason to refuse a model."""
+    """The model. Muscles are not read, so that one whose range of lengths MuJoCo cannot find is no reason to refuse a model."""
     try:
         return mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
@@ -86,6 +100,24 @@ def compiled(mujoco: Any, path: PathLike) -> Any:
     spec = mujoco.MjSpec.from_file(str(path))
     spec.compiler.LRopt.mode = int(mujoco.mjtLRMode.mjLRMODE_NONE)
     return spec.compile()
+
+
+def require_numbers(path: PathLike, model: Any) -> None:
+    """Raises FileError for numbers that MuJoCo takes and no body or actuator can have."""
+    for what, is_positive, names in (
+        ("geom", True, ("friction",)),
+        ("actuator", False, ("gear", "gainprm", "biasprm", "ctrlrange", "forcerange", "actrange")),
+        ("dof", True, ("armature",)),
+    ):
+        for name in names:
+            values = getattr(model, f"{what}_{name}")
+            rows = values.reshape(len(values), int(np.prod(values.shape[1:])))
+            for number in np.flatnonzero((~np.isfinite(rows) | (is_positive & (rows < 0))).any(axis=1)):
+                found = model.joint(model.dof_jntid[number]) if what == "dof" else getattr(model, what)(number)
+                owner = f"{'joint' if what == 'dof' else what} {found.name or number}"
+                raise FileError(
+                    path, f"the {name} of {owner} must be finite{' and not negative' if is_positive else ''}"
+                )
 
 
 def said(mujoco: Any, path: PathLike, included: list[Element], notes: list[str]) -> Any:
@@ -158,6 +190,7 @@ class _Reader:
         self.model, self.state = model, state
         self.mechanism = Mechanism(title)
         self.springs: set[int] = set()  # tendons whose springs are taken
+        self.driven: set[int] = set()  # joints of which the largest force of an actuator is taken
         self.names = [model.body(number).name or f"body {number}" for number in range(model.nbody)]
 
     def read(self) -> None:
@@ -179,7 +212,9 @@ class _Reader:
         for number in range(m.ntendon):
             self.tendon(number)
         planes = int((m.geom_type == 0).sum())
+        self.materials()
         self.fold()
+        self.actuators()
         for count, what in (
             (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"),
         ):  # fmt: skip
@@ -207,7 +242,9 @@ class _Reader:
         keep_names(self.mechanism, tree)
 
     def is_taken(self, kind: str, number: int, attribute: str) -> bool:
-        """Whether it is of a spring of a tendon that became one of ours."""
+        """Whether it is of a spring of a tendon that became one of ours, or of the force of an actuator."""
+        if kind == "Joint":
+            return attribute in ("actfrclimited", "actfrcrange") and number in self.driven
         return kind == "Tendon" and attribute in ("stiffness", "damping", "springlength") and number in self.springs
 
     def frame(self, body: int) -> Frame:
@@ -226,6 +263,7 @@ class _Reader:
             x, y, z, w = np.roll(m.body_iquat[body], -1)
             at = Frame(m.body_ipos[body].copy(), from_quaternion(x, y, z, w))
             link.solid = solid_of(mass, inertia, at) if mass > 0 else None
+            link.lift = float(m.body_gravcomp[body])
         for geom in range(m.body_geomadr[body], m.body_geomadr[body] + m.body_geomnum[body]):
             shape = self.shape(geom)
             if shape is not None:
@@ -273,6 +311,73 @@ class _Reader:
             except ValueError as error:
                 self.mechanism.notes.append(f"the mesh {m.mesh(mesh).name} is not drawn: {error}")
         return None
+
+    def materials(self) -> None:
+        """Gives each link the friction of its geoms, as far as they touch. MuJoCo takes the larger friction of two geoms, or that of the one
+        with a higher priority, and iota the geometric mean of two bodies: what moves gets the friction with which that is right on
+        what is fixed."""
+        m = self.model
+        touching = [int(geom) for geom in np.flatnonzero((m.geom_contype != 0) | (m.geom_conaffinity != 0))]
+        fixed = [geom for geom in touching if not self.moves[m.geom_bodyid[geom]]]
+        floor = max(fixed, key=lambda geom: m.geom_friction[geom][0], default=None)
+        number = {name: body for body, name in enumerate(self.names)}
+        rubs: dict[int, list[dict[str, float]]] = {}
+        for geom in touching:
+            if m.geom_type[geom] != PLANE:
+                rubs.setdefault(int(m.geom_bodyid[geom]), []).append(self.rub(geom, None if geom in fixed else floor))
+        materials = {body: {name: max(rub[name] for rub in each) for name in each[0]} for body, each in rubs.items()}
+        for link in self.mechanism.links:
+            found = materials.get(number.get(link.is_of or link.name, 0))
+            if found is not None:
+                link.material = {name: value for name, value in found.items() if name == "friction" or value > 0}
+        for body, each in rubs.items():
+            if len({rub["friction"] for rub in each}) > 1:
+                of = f"of {self.names[body]}" if self.moves[body] else "that are fixed"
+                self.mechanism.notes.append(
+                    f"the geoms {of} differ in friction: all have the largest, {materials[body]['friction']:g}"
+                )
+        moving = {material["friction"] for body, material in materials.items() if self.moves[body]}
+        if len(moving) > 1:
+            self.mechanism.notes.append(
+                f"moving bodies have frictions of {min(moving):g} to {max(moving):g}: between two of them the geometric mean acts, where MuJoCo "
+                "has the larger one"
+            )
+        planes = [float(m.geom_friction[geom][0]) for geom in fixed if m.geom_type[geom] == PLANE]
+        if planes:
+            self.mechanism.notes.append(
+                f"the plane has a friction of {max(planes):g}, which the world's ground has where a script says so: "
+                f"world.scene.ground_body.material = iota.Material(friction={max(planes):g})"
+            )
+
+    def rub(self, geom: int, floor: int | None) -> dict[str, float]:
+        """Keywords of `iota.Material` for a geom that meets `floor`, which has its own friction; None: others like itself."""
+        m = self.model
+        sliding, spinning, rolling = (float(v) for v in m.geom_friction[geom])
+        dimensions, others = int(m.geom_condim[geom]), 0.0
+        if floor is not None:
+            ahead = int(m.geom_priority[geom]) - int(m.geom_priority[floor])
+            others = float(m.geom_friction[floor][0])
+            if ahead <= 0:
+                mine = [0.0, 0.0, 0.0] if ahead < 0 else [sliding, spinning, rolling]
+                sliding, spinning, rolling = (
+                    max(a, float(b)) for a, b in zip(mine, m.geom_friction[floor], strict=True)
+                )
+                dimensions = max(dimensions if ahead == 0 else 1, int(m.geom_condim[floor]))
+        is_fixed = not self.moves[m.geom_bodyid[geom]]
+        is_round = int(m.geom_type[geom]) in ROUND
+        if dimensions > 3 and not is_round and not is_fixed:
+            name = m.geom(geom).name or geom
+            self.mechanism.notes.append(
+                f"the friction of geom {name} against spinning and rolling is left out: it is not round"
+            )
+        radius = float(m.geom_size[geom][0]) if is_round and not is_fixed else np.inf
+        if dimensions == 1 and not is_fixed:
+            sliding = 0.0
+        return {
+            "friction": sliding**2 / others if others > 0 else sliding,
+            "spinning": spinning / radius if dimensions > 3 else 0.0,
+            "rolling": rolling / radius if dimensions > 4 else 0.0,
+        }
 
     def pass_by(self) -> None:
         """Links do not touch that MuJoCo excludes: those of `exclude`, and those whose masks say so."""
@@ -342,10 +447,11 @@ class _Reader:
         options: dict[str, Any] = {}
         stiffness, damping = float(np.ravel(m.jnt_stiffness[joint])[0]), float(np.ravel(m.dof_damping[dof])[0])
         if stiffness > 0 or damping > 0:
-            rest = float(m.qpos_spring[m.jnt_qposadr[joint]]) - first
+            rest = float(m.qpos_spring[m.jnt_qposadr[joint]]) - first if stiffness > 0 else 0.0
             options["spring"] = (stiffness, damping, rest)
         if m.dof_frictionloss[dof] > 0:
             options["friction"] = float(m.dof_frictionloss[dof])
+        rotor = float(m.dof_armature[dof])
         if m.jnt_limited[joint]:
             low, high = (float(v) - first for v in m.jnt_range[joint])
             if low <= 0 <= high and low < high:
@@ -353,8 +459,122 @@ class _Reader:
             else:
                 self.mechanism.notes.append(f"the limits of {name} exclude its initial pose: left out")
         self.mechanism.joints.append(
-            LinkJoint("prismatic" if kind == SLIDE else "revolute", name, a, b, at, axis, options)
+            LinkJoint("prismatic" if kind == SLIDE else "revolute", name, a, b, at, axis, options, rotor)
         )
+
+    # --- actuators ------------------------------------------------------------------------------------------------
+
+    def actuators(self) -> None:
+        m = self.model
+        made = {joint.name for joint in self.mechanism.joints}
+        used: dict[int, int] = {}
+        left: dict[str, list[str]] = {}
+        for number in range(m.nu):
+            name = str(m.actuator(number).name or f"actuator {number}")
+            terms = self.terms_of_actuator(number)
+            law: dict[str, Any] | str = terms if isinstance(terms, str) else self.law(number, name, terms)
+            if isinstance(law, dict) and not isinstance(terms, str):
+                named = self.terms(terms)
+                if all(joint in made for joint, _ in named):
+                    self.mechanism.actuators.append(JointActuator(name, named, law))
+                    for joint in terms:
+                        used[joint] = used.get(joint, 0) + 1
+                    continue
+                law = "drives a joint that is left out"
+            left.setdefault(str(law), []).append(name)
+        for why, names in left.items():
+            self.mechanism.notes += [f"the actuator {name} {why}: left out" for name in names[:MOST_NAMED]]
+            if len(names) > MOST_NAMED:
+                self.mechanism.notes.append(f"{len(names) - MOST_NAMED} more actuators are left out for that reason")
+        # A joint has one motor, so that two of its actuators cannot both move it at a speed.
+        shared = {joint for joint, count in used.items() if count > 1}
+        kept = []
+        for actuator in self.mechanism.actuators:
+            crowded = [joint for joint in shared if self.joint_name(joint) in dict(actuator.terms)]
+            if crowded and actuator.law.get("law", "force") != "force":
+                self.mechanism.notes.append(
+                    f"the actuator {actuator.name} sets a speed of {self.joint_name(crowded[0])}, which has other actuators: left out"
+                )
+                continue
+            kept.append(actuator)
+        self.mechanism.actuators = kept
+
+    def terms_of_actuator(self, number: int) -> dict[int, float] | str:
+        """The ratios by joint; a reason for what has none."""
+        m = self.model
+        if int(m.opt.disableflags) & ACTUATION_OFF:
+            return "is switched off by a flag"
+        kind, gear = int(m.actuator_trntype[number]), float(m.actuator_gear[number][0])
+        target = int(m.actuator_trnid[number][0])
+        if kind in DRIVES_JOINT and int(m.jnt_type[target]) in (SLIDE, HINGE):
+            terms: dict[int, float] | None = {target: 1.0}
+        elif kind in DRIVES_JOINT:
+            return "drives a ball or free joint"
+        elif kind == DRIVES_TENDON:
+            terms = self.sum_of_tendon(target)
+        else:
+            return "drives no joint"
+        if terms is None:
+            return "drives a tendon in space"
+        terms = {joint: gear * ratio for joint, ratio in terms.items() if ratio != 0}
+        return terms if terms and gear != 0 else "has a gear of 0"
+
+    def law(self, number: int, name: str, terms: dict[int, float]) -> dict[str, Any] | str:
+        """The fields of an `iota.builder.Actuator`; a reason for one that is of no such kind."""
+        m, notes = self.model, self.mechanism.notes
+        dynamics = int(m.actuator_dyntype[number])
+        gain = float(m.actuator_gainprm[number][0])
+        has_bias = int(m.actuator_biastype[number]) != 0
+        bias = [float(v) for v in m.actuator_biasprm[number][:3]] if has_bias else [0.0, 0.0, 0.0]
+        if (
+            int(m.actuator_gaintype[number]) != 0
+            or int(m.actuator_biastype[number]) > 1
+            or dynamics not in (*INSTANT, INTEGRATES, *FILTERS)
+        ):
+            return "is a muscle, a damper or of another kind with a state or a gain of its own"
+        if bias[1] > 0 or bias[2] > 0:
+            return "has a spring or damper that drives its joint"
+        initial = sum(ratio * float(m.qpos0[m.jnt_qposadr[joint]]) for joint, ratio in terms.items())
+        law: dict[str, Any] = {
+            "gain": gain,
+            "constant": bias[0] + bias[1] * initial,
+            "stiffness": abs(bias[1]),
+            "damping": abs(bias[2]),
+        }
+        if m.actuator_ctrllimited[number]:
+            law["control_range"] = tuple(float(v) for v in m.actuator_ctrlrange[number])
+        forces = self.largest_force(number, terms)
+        if forces is not None:
+            law["force_range"] = forces
+        if dynamics in FILTERS:
+            notes.append(f"the lag of the actuator {name} is left out")
+        if dynamics == INTEGRATES:
+            if len(terms) > 1 or gain <= 0 or bias[1] != -gain or bias[0] != 0:
+                return "integrates its control, but sets no speed"
+            if forces is None:
+                notes.append(
+                    f"the actuator {name} has no range of force: its largest one is {gain:g}, that of an error of 1"
+                )
+            law = {"law": "speed", "force_range": forces or (-gain, gain), "control_range": law.get("control_range")}
+            if m.actuator_actlimited[number]:
+                law["travel"] = tuple(float(v) - initial for v in m.actuator_actrange[number])
+        elif len(terms) > 1 and (law["stiffness"] > 0 or law["damping"] > 0):
+            return "holds a sum of joints"
+        return law
+
+    def largest_force(self, number: int, terms: dict[int, float]) -> tuple[float, float] | None:
+        """Returns the range of the actuator and of its joint, along the actuator."""
+        m = self.model
+        low, high = (
+            (float(v) for v in m.actuator_forcerange[number]) if m.actuator_forcelimited[number] else (-np.inf, np.inf)
+        )
+        if len(terms) == 1:
+            ((joint, ratio),) = terms.items()
+            if m.jnt_actfrclimited[joint]:
+                ends = sorted(float(v) / ratio for v in m.jnt_actfrcrange[joint])
+                low, high = (min(max(end, ends[0]), ends[1]) for end in (low, high))
+                self.driven.add(joint)
+        return (low, high) if np.isfinite((low, high)).any() else None
 
     # --- loops and ropes ------------------------------------------------------------------------------------------
 
@@ -445,8 +665,8 @@ class _Reader:
         return str(self.model.joint(joint).name or f"joint {joint}")
 
     def tendon(self, number: int) -> None:
-        """A tendon between two sites, without pulleys, with a largest length, becomes a rope; the limits of a sum of joints
-        become a coupling for each."""
+        """A tendon over sites, without pulleys, with a largest length, becomes a rope, one between two sites with stiffness or damping a
+        spring; the limits of a sum of joints become a coupling for each."""
         m = self.model
         called = str(m.tendon(number).name or number)
         name = f"the tendon {called}"
@@ -463,11 +683,12 @@ class _Reader:
                     coupling = JointCoupling(f"{called} {end}", self.terms(total, side), limit, one_sided=True)
                     self.mechanism.couplings.append(coupling)
             return
-        is_plain = len(wraps) == 2 and all(int(m.wrap_type[wrap]) == WRAPPED_SITE for wrap in wraps)
+        is_plain = all(int(m.wrap_type[wrap]) == WRAPPED_SITE for wrap in wraps)
         stiffness, damping = (np.ravel(of[number]) for of in (m.tendon_stiffness, m.tendon_damping))
-        has_spring = is_plain and (stiffness[0] > 0 or damping[0] > 0) and not any((*stiffness[1:], *damping[1:]))
+        has_spring = stiffness[0] > 0 or damping[0] > 0
+        has_spring = has_spring and is_plain and len(wraps) == 2 and not any((*stiffness[1:], *damping[1:]))
         if not (has_spring or (is_plain and m.tendon_limited[number])):
-            what = "has no largest length" if is_plain else "runs over more than two places"
+            what = "has no largest length" if is_plain else "runs over pulleys or round geoms"
             self.mechanism.notes.append(f"{name} {what}: left out")
             return
         ends = []
@@ -483,4 +704,4 @@ class _Reader:
         if m.tendon_limited[number]:
             if m.tendon_range[number][0] > 0:
                 self.mechanism.notes.append(f"the least length of {name} is left out")
-            self.mechanism.ropes.append((name, ends[0], ends[1], float(m.tendon_range[number][1])))
+            self.mechanism.ropes.append((name, ends, float(m.tendon_range[number][1])))

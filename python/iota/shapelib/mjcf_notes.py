@@ -42,12 +42,19 @@ NO_EFFECT = {
 # Attributes that are taken, of each kind, some of them only where a condition holds. Ranges of ball joints and lengths of tendons
 # have notes of their own, and tendons add their springs.
 TAKEN: dict[str, Taken] = {
-    "Body": _all("pos quat ipos iquat mass inertia fullinertia explicitinertial"),
+    "Body": _all("pos quat ipos iquat mass inertia fullinertia explicitinertial gravcomp"),
     "Joint": _all("type pos axis range limited align ref") | {
-        "springref": _has_axis, "springdamper": _has_axis, "frictionloss": _has_axis,
+        "springref": _has_axis, "springdamper": _has_axis, "frictionloss": _has_axis, "armature": _has_axis,
         "stiffness": _first_only("stiffness"), "damping": _first_only("damping"),
     },
-    "Geom": _all("type pos quat size fromto contype conaffinity density mass meshname hfieldname fitscale typeinertia rgba material"),
+    "Geom": _all(
+        "type pos quat size fromto contype conaffinity density mass meshname hfieldname fitscale typeinertia rgba material friction condim"
+    ),
+    # Actuators that are left out have notes of their own.
+    "Actuator": _all(
+        "actdim actlimited actrange biasprm biastype cranklength ctrllimited ctrlrange ctrlspec dynprm dyntype forcelimited forcerange gainprm "
+        "gaintype gear inheritrange lengthrange refsite slidersite target trntype type"
+    ),
     "Material": _all("rgba"),
     "Equality": _all("type name1 name2 objtype data active"),
     "Tendon": _all("path limited range"),
@@ -56,7 +63,7 @@ TAKEN: dict[str, Taken] = {
 # Kinds that MuJoCo has used up when the model is built.
 BUILT = {"Default", "Exclude", "Frame", "HField", "Mesh"}
 # Kinds that are counted, not named: there are many, and a user knows of them.
-COUNTED = {"Actuator", "Camera", "Key", "Light", "Sensor", "Site", "Texture"}
+COUNTED = {"Camera", "Key", "Light", "Sensor", "Site", "Texture"}
 ALSO_SO = {"Site": ", apart from the ends of tendons and equalities", "Key": " (keyframes)"}
 # As files call them, where the model's name is another one.
 IN_FILES = {

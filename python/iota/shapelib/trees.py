@@ -12,17 +12,19 @@ from iota.shapelib.files import FileError, PathLike, number, read_bytes
 
 MOST_ELEMENTS = 500_000
 DEEPEST = 200
+MOST_TEXT = 200  # characters that are kept of a text
 
 
 @dataclass
 class Element:
-    """A tag with its attributes and children, and the line where it begins."""
+    """A tag with its attributes and children, the line where it begins, and the text in it."""
 
     tag: str
     attributes: dict[str, str]
     line: int
     path: PathLike
     children: list[Element] = field(default_factory=list)
+    content: str = ""
 
     def all(self, tag: str) -> Iterator[Element]:
         """Its children of that tag."""
@@ -88,10 +90,15 @@ def read_tree(path: PathLike) -> Element:
     def end(tag: str) -> None:
         open_elements.pop()
 
+    def say(text: str) -> None:
+        if open_elements and len(open_elements[-1].content) < MOST_TEXT:
+            open_elements[-1].content += text
+
     def refuse(*_: object) -> None:
         raise FileError(path, "document types and entities (DTD) are not allowed", parser.CurrentLineNumber)
 
     parser.StartElementHandler, parser.EndElementHandler = begin, end
+    parser.CharacterDataHandler = say
     parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
     try:
         parser.Parse(data, True)

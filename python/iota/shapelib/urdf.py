@@ -19,6 +19,7 @@ from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechani
 from iota.shapelib.meshes import mesh_of
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
+from iota.shapelib.urdf_extras import actuators, frictions
 from iota.shapelib.urdf_notes import left_out
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
@@ -62,6 +63,10 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint) @ moved
         if name != "world":
             mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
+    taken: set[int] = set()
+    frictions_of = frictions(robot, links, taken)
+    for link in mechanism.links:
+        link.material = {"friction": frictions_of[link.name]} if link.name in frictions_of else None
     roots = [] if base == "free" else [name for name in order if name not in joint_of and name != "world"]
     tree = _tree_of(mechanism, joint_of, roots)
     bare = fold(mechanism, tree)
@@ -88,7 +93,14 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
         what = "1 mesh is missing, and is" if len(missing) == 1 else f"{len(missing)} meshes are missing, and are"
         mechanism.notes.append(f"{what} not drawn: {listed}")
-    mechanism.notes += left_out(robot)
+    followers = {coupling.terms[0][0] for coupling in mimics}
+    free = {
+        each.text("name"): each
+        for each in joint_of.values()
+        if each.text("type") in ONE_COORDINATE and each.text("name") not in followers
+    }
+    mechanism.actuators = actuators(robot, free, initial, taken, mechanism.notes)
+    mechanism.notes += left_out(robot, taken)
     mechanism.counts = {
         "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
         "independent joints": moving - len(mimics),

@@ -39,9 +39,9 @@ PARTLY = {"planar": ("limit", "dynamics"), "floating": ("limit", "dynamics")}
 USUAL = {("limit", "effort"): "0", ("limit", "velocity"): "0"}
 
 
-def left_out(robot: Element) -> list[str]:
+def left_out(robot: Element, taken: set[int]) -> list[str]:
     """One note for each kind of attribute or element that is not taken, with lines. Joints of other namespaces are named, as their links
-    hang on nothing."""
+    hang on nothing. taken: ids of elements that are taken beside the table, and of limits whose effort and speed are."""
     notes = []
     joints = [element for element in robot.children if element.tag.endswith("joint") and element.tag != "joint"]
     if joints:
@@ -50,7 +50,9 @@ def left_out(robot: Element) -> list[str]:
         count = "1 joint is" if len(joints) == 1 else f"{len(joints)} joints are"
         notes.append(f"{count} not of URDF and left out, so that links hang on nothing: {named}{more}")
     known = TAKEN["robot"][1].split()
-    others = Counter(each.tag for each in robot.children if each.tag not in known and each not in joints)
+    others = Counter(
+        each.tag for each in robot.children if each.tag not in known and each not in joints and id(each) not in taken
+    )
     notes += [f"{number} <{tag}> {'is' if number == 1 else 'are'} left out" for tag, number in others.items()]
     found: dict[str, list[int]] = {}
     for attribute in robot.attributes:
@@ -58,18 +60,23 @@ def left_out(robot: Element) -> list[str]:
             found.setdefault(f"{attribute} of <robot>", []).append(robot.line)
     for child in robot.children:
         if child.tag in known:
-            _look(child, found)
+            _look(child, found, taken)
+        elif child.tag == "gazebo" and id(child) in taken:
+            for each in child.children:
+                if id(each) not in taken:
+                    found.setdefault(f"<{each.tag}> in <gazebo>", []).append(each.line)
     for what, lines in found.items():
         where = ", ".join(map(str, lines[:MOST_NAMED])) + (" ..." if len(lines) > MOST_NAMED else "")
         notes.append(f"{what} is left out ({'line' if len(lines) == 1 else 'lines'} {where})")
     return notes
 
 
-def _look(element: Element, found: dict[str, list[int]]) -> None:
+def _look(element: Element, found: dict[str, list[int]], taken: set[int]) -> None:
     attributes, children = (words.split() for words in TAKEN[element.tag])
     for name, value in element.attributes.items():
         usual = USUAL.get((element.tag, name))
         is_usual = usual is not None and value.strip().rstrip("0").rstrip(".") in ("", usual)
+        is_usual = is_usual or (element.tag == "limit" and name in ("effort", "velocity") and id(element) in taken)
         if name not in attributes and not is_usual:
             found.setdefault(f"{name} of <{element.tag}>", []).append(element.line)
     partly = PARTLY.get(element.attributes.get("type", ""), ()) if element.tag == "joint" else ()
@@ -80,9 +87,13 @@ def _look(element: Element, found: dict[str, list[int]]) -> None:
         seen.add(child.tag)
         if child.tag in partly:
             found.setdefault(f"<{child.tag}> of {element.attributes['type']} joints", []).append(child.line)
+        elif id(child) in taken and child.tag == "contact":
+            for each in child.children:
+                if id(each) not in taken:
+                    found.setdefault(f"<{each.tag}> in <contact>", []).append(each.line)
         elif child.tag not in children:
             found.setdefault(f"<{child.tag}> in <{element.tag}>", []).append(child.line)
         elif is_second:
             found.setdefault(f"a further <{child.tag}> in <{element.tag}>", []).append(child.line)
         else:
-            _look(child, found)
+            _look(child, found, taken)
