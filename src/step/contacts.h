@@ -26,7 +26,8 @@ struct Sensed {
 };
 
 /// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
-/// Bodies that are hinged or jointed to each other do not touch, nor do two particles with the usual material.
+/// Bodies that are hinged or jointed to each other do not touch (see `JoinedBodies`), nor do two particles with the usual
+/// material.
 class ContactFinder {
  public:
   /// For a step of h seconds. awake_version: of the islands. Costs nothing while nothing has a material, and next to nothing while all
