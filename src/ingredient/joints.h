@@ -52,9 +52,11 @@ class Joints : public NoAnswers {
   static bool ties_any(const Model&);
   static void visit_tied(const Model&, std::uint32_t particle, Visit);
   static bool ties_to_world(const Model&, std::uint32_t body);
-  /// Whether a joint, surfaces or a coupling hold a particle's body at another one, so that these may overlap. Distances
-  /// do not.
-  static bool join(const Model&, std::uint32_t particle, std::uint32_t other);
+  /// visit(body): of those at which a joint, surfaces or a coupling hold a particle's body, so that these may overlap, and
+  /// perhaps of that itself. Distances do not.
+  static void visit_held(const Model&, std::uint32_t particle, Visit);
+  /// visit(body): of those to which an exact weld ties a particle's body, `none` for the world.
+  static void visit_welded(const Model&, std::uint32_t particle, Visit);
   /// Whether a joint, surfaces or a coupling hold a particle's body in the world.
   static bool hold_in_world(const Model&, std::uint32_t particle);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);

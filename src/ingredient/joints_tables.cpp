@@ -150,13 +150,17 @@ void Joints::visit_tied(const Model& model, std::uint32_t particle, Visit visit)
   for_each_side_at(model, particle, [&](const Constraint& c, int side) { visit_other_sides(model, c, side, visit); });
 }
 
-bool Joints::join(const Model& model, std::uint32_t particle, std::uint32_t other) {
-  bool any = false;
+void Joints::visit_held(const Model& model, std::uint32_t particle, Visit visit) {
   for_each_side_at(model, particle, [&](const Constraint& c, int side) {
-    if (info(c.kind).form != Form::distance)
-      visit_other_sides(model, c, side, [&](std::uint32_t body) { any = any || body == other; });
+    if (info(c.kind).form != Form::distance) visit_other_sides(model, c, side, visit);
   });
-  return any;
+}
+
+void Joints::visit_welded(const Model& model, std::uint32_t particle, Visit visit) {
+  for_each_side_at(model, particle, [&](const Constraint& c, int side) {
+    if (c.kind == ConstraintKind::weld && c.compliance.is_exact() && is_in_force(model, c))
+      visit(body_of_side(model, c, 1 - side));
+  });
 }
 
 bool Joints::hold_in_world(const Model& model, std::uint32_t particle) {

@@ -27,6 +27,7 @@ class PointBalance final : public LoadReader {
   const Vec3& sum() const { return sum_; }
 
   void take(const Load& load) override {
+    if (load.kind == Load::Kind::jump) return;
     if (const double w = weight(load); w != 0) sum_ += w * load.force;
   }
 
@@ -54,7 +55,7 @@ class PartLoads final : public LoadReader {
     step.model.for_each_particle_of(body, [&](std::uint32_t p) {
       if (!counts(step.model.particles[p].part)) return;
       mass += step.model.particles[p].mass;
-      center_ += step.model.particles[p].mass * step.place(p);
+      center_ += step.model.particles[p].mass * place(p);
     });
     if (mass > 0) center_ = (1 / mass) * center_;
   }
@@ -64,16 +65,30 @@ class PartLoads final : public LoadReader {
   void take(const Load& load) override {
     if (load.kind != kind_ || !counts(load.part)) return;
     sum_.force += load.force;
-    sum_.torque += cross(step_.place(load.particle) - center_, load.force);
+    sum_.torque += cross(place(load.particle) - center_, load.force);
   }
 
  private:
+  Vec3 place(std::uint32_t particle) const {
+    return kind_ == Load::Kind::jump ? step_.end(particle) : step_.place(particle);
+  }
+
   const LastStep& step_;
   BodyId part_;
   Load::Kind kind_;
   Vec3 center_;
   Wrench sum_;
 };
+
+/// Whether contacts alone hold a body, which tell all of their impulse.
+bool is_loose(const Model& model, std::uint32_t body) {
+  bool is_held = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const Ring& ring = model.rings[model.particles[p].ring];
+    is_held = is_held || ring.count > 1 || ring.nailed || Joints::holds(model, p) || Closings::holds(model, p);
+  });
+  return !is_held;
+}
 
 solver::ForceStage stage_of(const model::Model& model, std::uint32_t particle) {
   if (particle != none && model.rings[model.particles[particle].ring].is_instant)
@@ -155,9 +170,15 @@ Wrench calc_outside_load(const Model& model, std::uint32_t body, BodyId part, Re
 
 Wrench calc_net_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
   const LastStep step(model, model.bodies[body].first);
-  PartLoads loads(step, body, part, Load::Kind::inertia);
-  read(step, body, loads);
-  return {-loads.sum().force, -loads.sum().torque};
+  Wrench net;
+  const auto add = [&](Load::Kind kind) {
+    PartLoads loads(step, body, part, kind);
+    read(step, body, loads);
+    net.force -= loads.sum().force, net.torque -= loads.sum().torque;
+  };
+  add(Load::Kind::inertia);
+  if (!part || is_loose(model, body)) add(Load::Kind::jump);
+  return net;
 }
 
 }  // namespace iota::ingredient

@@ -30,6 +30,10 @@ class LastStep {
   }
   /// By forces and damping, v1 - correction - v0, divided by h.
   const Vec3& acceleration(std::uint32_t particle) const { return ring(particle).acceleration; }
+  /// By the correction after it, divided by h. Explicit steps have none: theirs is within.
+  Vec3 correction(std::uint32_t particle) const {
+    return h() > 0 ? (1 / h()) * structure_.corrections[structure_.particles[particle].ring] : Vec3{};
+  }
   /// The share of damping in that: (1 - exp(-c h/2)) v0 and (exp(c h/2) - 1) v1, divided by h.
   Vec3 damping(std::uint32_t particle) const;
 
@@ -52,6 +56,7 @@ struct Load {
     outside,  ///< from outside of the body
     within,   ///< between points of the body
     inertia,  ///< minus mass times acceleration
+    jump,     ///< minus mass times the correction of velocities at the end of the step, by its length; acts at that end
   };
   std::uint32_t particle = model::none;
   Vec3 force;  ///< N
@@ -86,8 +91,9 @@ struct Wrench {
 /// Load from outside on a body in the last step, or on a part of it if that is not null: gravity, damping,
 /// applied forces, bonds, hinges, nails, joints, grips.
 Wrench calc_outside_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
-/// Change of momenta of a body, or of one part, in the last step: by the load from outside and, for a part, by the
-/// other parts.
+/// Change of momenta of a body, or of one part, in the last step, by its length: by the load from outside and, for a part, by
+/// the other parts. That of a whole body is all of the change, with what projections of velocities gave at the end of the step. Of
+/// that a part has what balances its load from outside: nothing, where joints and hinges gave it.
 Wrench calc_net_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
 
 }  // namespace iota::ingredient

@@ -200,6 +200,8 @@ void Masses::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
                  .force = -particle.mass * step.acceleration(p),
                  .kind = Load::Kind::inertia,
                  .part = particle.part});
+    reader.take(
+        {.particle = p, .force = -particle.mass * step.correction(p), .kind = Load::Kind::jump, .part = particle.part});
   });
   model.for_each_inertia_of(body, [&](std::uint32_t i) {
     const model::InertiaPair& pair = model.inertia_pairs[i];
@@ -211,6 +213,7 @@ void Masses::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
     };
     take(-pair.inertia * (step.damping(pair.p) - step.damping(pair.q)), Load::Kind::outside);
     take(-pair.inertia * (step.acceleration(pair.p) - step.acceleration(pair.q)), Load::Kind::inertia);
+    take(-pair.inertia * (step.correction(pair.p) - step.correction(pair.q)), Load::Kind::jump);
   });
 }
 

@@ -223,7 +223,7 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
 
 namespace {
 
-bool touch_each_other(model::Model&, contact::Outlines&, const std::pair<std::uint32_t, std::uint32_t>&);
+bool touch_each_other(model::Model&, contact::Outlines&, JoinedBodies&, const std::pair<std::uint32_t, std::uint32_t>&);
 
 }  // namespace
 
@@ -265,7 +265,7 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
       const double distance = obstacle.distance(mover.place);
       if (distance <= reach) pairs_.push_back({mover.body, body});
       if (mover.steps > 1 && distance <= reach_of_stride && is_in_the_way(obstacle) &&
-          touch_each_other(model, outlines, {mover.body, body}))
+          touch_each_other(model, outlines, joined_, {mover.body, body}))
         ingredient::Strides::note_near(model, mover.body);
     };
     if (!tree) {
@@ -309,7 +309,7 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
       // The boxes of the tree are wider than the outlines, by their history, which a restored system does not have.
       if (!geometry::overlap(box, box_of(*other))) return;
       const Pair pair{std::min(body, slot), std::max(body, slot)};
-      if (may_be_met && touch_each_other(model, outlines, pair)) ingredient::Strides::note_near(model, slot);
+      if (may_be_met && touch_each_other(model, outlines, joined_, pair)) ingredient::Strides::note_near(model, slot);
       if (is_near) pairs_.push_back(pair);
     });
   }
@@ -317,37 +317,26 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
 
 namespace {
 
-/// Whether a hinge or a joint holds one at the other, or will do so when their particles have met.
-bool are_joined(const model::Model& model, std::uint32_t a, std::uint32_t b) {
-  const auto [fewer, other] = model.bodies[a].count <= model.bodies[b].count ? std::pair(a, b) : std::pair(b, a);
-  const bool has_joints = ingredient::Joints::ties_any(model), has_closings = model.closings.size() > 0;
-  bool any = false;
-  model.for_each_particle_of(fewer, [&](std::uint32_t p) {
-    const model::Particle& particle = model.particles[p];
-    if (any) return;
-    if (model.rings[particle.ring].count > 1)
-      model.for_each_in_ring(particle.ring, [&](std::uint32_t q) { any = any || model.particles[q].body == other; });
-    if (has_closings)
-      ingredient::Closings::visit_joined(model, p, [&](std::uint32_t body) { any = any || body == other; });
-    // Also of a point that is no unknown, as it follows from those of its body.
-    if (has_joints) any = any || ingredient::Joints::join(model, p, other);
-  });
-  return any;
-}
-
-/// Whether a nail or a joint of the world holds a body within something static: a chain on its beam, a wheel on the axle that a
-/// stand carries.
-bool is_held_within(model::Model& model, contact::Outlines& outlines, std::uint32_t body, std::uint32_t obstacle) {
+/// Whether a nail or a joint of the world holds a body, or what welds hold at it, within something static: a chain on its beam, a wheel
+/// on the axle that a stand carries.
+bool is_held_within(model::Model& model, contact::Outlines& outlines, JoinedBodies& joined, std::uint32_t body,
+                    std::uint32_t obstacle) {
   constexpr double of_reach = 1e-3;  // a place on the surface counts
-  const double slack = std::max(model::radius_of(model, body), of_reach * outlines.reach(body));
   const bool has_joints = ingredient::Joints::ties_any(model);
   bool any = false;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    const model::Particle& particle = model.particles[p];
-    if (any || !(model.rings[particle.ring].nailed || (has_joints && ingredient::Joints::hold_in_world(model, p))))
-      return;
-    any = contact::near(outlines.placed(obstacle), model.position(p)).distance <= slack;
-  });
+  const auto look_at = [&](std::uint32_t member) {
+    const double slack = std::max(model::radius_of(model, member), of_reach * outlines.reach(member));
+    model.for_each_particle_of(member, [&](std::uint32_t p) {
+      const model::Particle& particle = model.particles[p];
+      if (any || !(model.rings[particle.ring].nailed || (has_joints && ingredient::Joints::hold_in_world(model, p))))
+        return;
+      any = contact::near(outlines.placed(obstacle), model.position(p)).distance <= slack;
+    });
+  };
+  if (!joined.has_welds(model))
+    look_at(body);
+  else
+    for (const std::uint32_t member : joined.welded_to(model, body)) look_at(member);
   return any;
 }
 
@@ -363,7 +352,7 @@ bool is_sensor(const model::Model& model, const std::pair<std::uint32_t, std::ui
 }
 
 /// Whether two bodies that are near each other may touch: their materials and what joins them say it.
-bool touch_each_other(model::Model& model, contact::Outlines& outlines,
+bool touch_each_other(model::Model& model, contact::Outlines& outlines, JoinedBodies& joined,
                       const std::pair<std::uint32_t, std::uint32_t>& pair) {
   const auto [first, second] = pair;
   const auto touches = [&](std::uint32_t body) { return model.material(body)->touches; };
@@ -375,14 +364,18 @@ bool touch_each_other(model::Model& model, contact::Outlines& outlines,
     if (is_ball(first) && is_ball(second) && are_plain(model, first, second)) return false;
     if (!model::is_free(model.bodies[first].kind) && !model::is_free(model.bodies[second].kind)) return false;
   }
-  if (ingredient::IgnoredContacts::include(model, first, second) || are_joined(model, first, second)) return false;
-  return model.bodies[second].kind != BodyKind::static_ || !is_held_within(model, outlines, first, second);
+  if (ingredient::IgnoredContacts::include(model, first, second) || JoinedBodies::are_joined(model, first, second))
+    return false;
+  // A sensor feels what welds and joints let overlap: it may be welded to the frame of a door.
+  if (!is_sensor(model, pair) && joined.are_joined_by_welds(model, first, second)) return false;
+  return model.bodies[second].kind != BodyKind::static_ || !is_held_within(model, outlines, joined, first, second);
 }
 
 }  // namespace
 
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
   hasty_.clear(), sensed_.clear(), passing_.clear();
+  joined_.forget();
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   step_ = h, shortest_ = h / Heap::most_sub_steps;
@@ -396,7 +389,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   find_obstacles(model, outlines);
   find_pairs(model, outlines);
   sort_unique(pairs_);
-  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, pair); });
+  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
   known_.forget();
   for (const Pair& pair : pairs_) {
     if (is_sensor(model, pair)) {

@@ -7,6 +7,7 @@
 #include "contact/touches.h"
 #include "ingredient/model.h"
 #include "model/basis_weights.h"
+#include "step/joined_bodies.h"
 
 #include <array>
 #include <optional>
@@ -26,7 +27,8 @@ struct Sensed {
 };
 
 /// Finds the contacts of moving bodies with each other and with obstacles at the begin of a step. Both have a material.
-/// Bodies that are hinged or jointed to each other do not touch, nor do two particles with the usual material.
+/// Bodies that are hinged or jointed to each other do not touch (see `JoinedBodies`), nor do two particles with the usual
+/// material.
 class ContactFinder {
  public:
   /// For a step of h seconds. awake_version: of the islands. Costs nothing while nothing has a material, and next to nothing while all
@@ -148,6 +150,7 @@ class ContactFinder {
   };
   // Scratch, kept for its capacity.
   Known known_;
+  JoinedBodies joined_;
   std::vector<std::uint32_t> contacts_;                ///< of an island
   std::vector<std::uint32_t> obstacles_, candidates_;  ///< the latter: those that may touch, and were awake when listed
   std::array<std::uint64_t, 3> listed_at_{};           ///< versions of islands, edits and outlines
