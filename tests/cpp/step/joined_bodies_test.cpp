@@ -11,12 +11,12 @@
 namespace iota {
 namespace {
 
-struct Row {
+struct BoxRow {
   System system{{.gravity = {}}};
   std::vector<BodyId> boxes;
   step::JoinedBodies joined;
 
-  explicit Row(int count) {
+  explicit BoxRow(int count) {
     for (int i = 0; i < count; ++i)
       boxes.push_back(system.bodies().create(Box{{0.2, 0.2, 0.2}}, {.position = {0.3 * i, 0, 0}}));
   }
@@ -37,7 +37,7 @@ struct Row {
 };
 
 TEST(JoinedBodies, are_one_along_a_chain_of_welds) {
-  Row row(6);
+  BoxRow row(6);
   for (int i = 0; i < 3; ++i) row.weld(i, i + 1);
   row.hinge(3, 4), row.hinge(4, 5);
   EXPECT_TRUE(row.are_joined(0, 3)) << "both ends of the chain";
@@ -47,13 +47,13 @@ TEST(JoinedBodies, are_one_along_a_chain_of_welds) {
 }
 
 TEST(JoinedBodies, are_one_on_both_sides_of_a_hinge) {
-  Row row(4);
+  BoxRow row(4);
   row.weld(0, 1), row.hinge(1, 2), row.weld(2, 3);
   EXPECT_TRUE(row.are_joined(0, 3));
 }
 
 TEST(JoinedBodies, are_apart_while_a_weld_is_off_or_yields) {
-  Row row(3);
+  BoxRow row(3);
   const ConstraintId weld = row.weld(0, 1);
   row.hinge(1, 2);
   EXPECT_TRUE(row.are_joined(0, 2));
@@ -65,14 +65,14 @@ TEST(JoinedBodies, are_apart_while_a_weld_is_off_or_yields) {
 }
 
 TEST(JoinedBodies, are_fixed_at_each_other_by_the_world_but_not_joined_to_what_it_holds) {
-  Row row(3);
+  BoxRow row(3);
   row.weld(0, -1), row.weld(1, -1), row.hinge(2, -1);
   EXPECT_TRUE(row.are_joined(0, 1));
   EXPECT_FALSE(row.are_joined(0, 2));
 }
 
 TEST(JoinedBodies, are_not_one_through_a_static_body) {
-  Row row(3);
+  BoxRow row(3);
   row.system.bodies().set_kind(row.boxes[1], BodyKind::static_);
   row.weld(0, 1), row.hinge(1, 2);
   EXPECT_FALSE(row.are_joined(0, 2));
