@@ -49,11 +49,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     // Bodies that move as prescribed go on: stopped here and driven on in the step, a turning plate had its energy booked in each.
     project_velocities(problem, drives_rows_ && !keeps_offsets_ ? step_length_ : 0);
   }
-  constexpr double still = 1e-12;  // rad a step
-  // Only others that touch it move the center of mass of what is free.
-  const bool may_be_pushed = problem.has_used<ContactConstraint>();
-  const Spin::Since since = may_be_pushed ? Spin::Since::moved_places : Spin::Since::step;
-  if (is_open) report.spin_lost = spin().restore(problem, since, still / step_length_);
+  if (is_open) report.spin_lost = spin().restore(problem);
   energy_.measure(problem, 0);
   const double added = energy_.total - before, kinetic = energy_.kinetic;
   report.closing_energy += added;

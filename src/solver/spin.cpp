@@ -501,30 +501,19 @@ void Spin::expect(const Problem& problem, std::span<const Vec3> places, double h
   for (std::uint32_t i = 0; i < problem.force.size(); ++i) add(i, h * problem.force[i]);
 }
 
-// A body that others push aside at the start of a step has been moved, not turned: with its angular momentum about the origin it began to spin,
-// by its speed in the world times that way.
-double Spin::restore(Problem& problem, Since since, double still) {
+double Spin::restore(Problem& problem) {
   constexpr int passes = 2;  // the second removes the round-off of the first
   constexpr double most_gains[passes] = {
       100, 1e-9};  // of the kinetic energy: points almost in one place would spin extremely
   constexpr double tolerance = 1e-9, round_off = 1e-12;
   Parts& parts = noted_;
   double most_lost = 0;
-  const auto moment_of_center = [](const Part& piece) {
-    return (1 / piece.mass) * cross(piece.center, piece.wanted_momentum);
-  };
-  const auto is_about_center = [&](const Part& piece) {
-    return since == Since::moved_places && piece.mass > 0 && !piece.holds.pivot();
-  };
-  for (Part& piece : parts.parts)
-    if (is_about_center(piece)) piece.wanted_angular -= moment_of_center(piece);
   for (const double most_gain : most_gains) {
     add_momenta(problem, parts);
     for (Part& piece : parts.parts) {
       piece.is_due = piece.is_due && piece.mass > 0;
       if (!piece.is_due) continue;
       piece.lost = piece.wanted_angular - piece.angular;
-      if (is_about_center(piece)) piece.lost += moment_of_center(piece);
       if (const auto pivot = piece.holds.pivot()) {
         piece.center = *pivot, piece.velocity_change = {};
       } else {
@@ -544,8 +533,8 @@ double Spin::restore(Problem& problem, Since since, double still) {
       // A piece that does not turn has angular momentum by the round-off of its momentum alone.
       const double terms =
           norm(piece.center) * norm(piece.wanted_momentum) + std::sqrt(2 * piece.kinetic * piece.inertia.trace());
-      const double noise = std::max(round_off * terms, still * piece.inertia.trace());
-      if (remains > std::max(tolerance * norm(piece.wanted_angular), noise)) most_lost = std::max(most_lost, remains);
+      if (remains > std::max(tolerance * norm(piece.wanted_angular), round_off * terms))
+        most_lost = std::max(most_lost, remains);
     }
     for (std::size_t i = 0; i < problem.size(); ++i) {
       const Part& piece = parts.of(i);

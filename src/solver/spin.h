@@ -50,11 +50,9 @@ class Spin {
   void note(const Problem&, const Holds& all, Connection = Connection::rows);
   /// ... adds what gravity and held forces give in h seconds while the points are at `places` ...
   void expect(const Problem&, std::span<const Vec3> places, double h);
-  /// ... and restores both by the least change of kinetic energy; where only places were moved, the angular momentum about the center of
-  /// mass, which may have been moved, too. Returns the largest angular momentum that a piece cannot carry any more, kg m^2/s: its
-  /// points are almost in one place. What turns by less than `still` rad/s has none.
-  enum class Since : std::uint8_t { step, moved_places };
-  double restore(Problem&, Since = Since::step, double still = 0);
+  /// ... and restores both by the least change of kinetic energy. Returns the largest angular momentum that a piece cannot
+  /// carry any more, kg m^2/s: its points are almost in one place.
+  double restore(Problem&);
 
   /// Moves each cluster that nothing or a single point at rest holds as a rigid body: this needs no solve, changes no row, and
   /// keeps momentum and angular momentum. Half of its other motion remains. What is held otherwise stays and keeps half of

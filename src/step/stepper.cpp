@@ -93,17 +93,6 @@ void tell_cut_short(island::Islands& islands, StepReport& report) {
   if (count > most) report.warnings.push_back(text("the budget of a step ended too early for ", count, " islands"));
 }
 
-/// Angular momentum that bodies cannot carry any more, and around which body; in an earlier part of the step that is not known.
-void tell_spin_lost(island::Islands& islands, double most, StepReport& report) {
-  if (!(most > 0)) return;
-  std::string island;
-  islands.for_each_advanced([&](std::uint32_t body, const solver::AdvanceReport& advanced) {
-    if (island.empty() && advanced.spin_lost == most) island = text(" in the island of body ", body);
-  });
-  report.warnings.push_back(text("bodies that were moved together", island, ", almost into one place, cannot carry ",
-                                 most, " kg m^2/s of their angular momentum"));
-}
-
 /// Parallel::for_each, with the times of all threads.
 template <class Work>
 void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t grain, StepTimes& sum, Work work) {
@@ -185,7 +174,9 @@ void Stepper::advance_islands(StepReport& report) {
   add(islands.free_bodies().advance(model, report.dt, editor_.parallel), report);
   islands.end_parts();
   report.resting = islands.resting(model);
-  tell_spin_lost(islands, spin_lost_, report);
+  if (spin_lost_ > 0)
+    report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost_,
+                                   " kg m^2/s of their angular momentum"));
   if (handed_back_ > 0)
     report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back_, " of ",
                                    solves_, " solves; the built-in one took over"));
