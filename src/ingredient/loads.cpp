@@ -80,9 +80,11 @@ class PartLoads final : public LoadReader {
   Wrench sum_;
 };
 
-/// Whether contacts alone hold a body, which tell all of their impulse.
-bool is_loose(const Model& model, std::uint32_t body) {
-  bool is_held = false;
+/// Whether contacts, and nothing else, hold a body: they tell all of their impulse.
+bool is_held_by_contacts(const Model& model, std::uint32_t body) {
+  bool is_held = false, touches = false;
+  model.contacts.for_each_of(body, [&](std::uint32_t) { touches = true; });
+  if (!touches) return false;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const Ring& ring = model.rings[model.particles[p].ring];
     is_held = is_held || ring.count > 1 || ring.nailed || Joints::holds(model, p) || Closings::holds(model, p);
@@ -170,15 +172,19 @@ Wrench calc_outside_load(const Model& model, std::uint32_t body, BodyId part, Re
 
 Wrench calc_net_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
   const LastStep step(model, model.bodies[body].first);
-  Wrench net;
-  const auto add = [&](Load::Kind kind) {
+  const auto change = [&](Load::Kind kind) {
     PartLoads loads(step, body, part, kind);
     read(step, body, loads);
-    net.force -= loads.sum().force, net.torque -= loads.sum().torque;
+    return loads.sum();
   };
-  add(Load::Kind::inertia);
-  if (!part || is_loose(model, body)) add(Load::Kind::jump);
-  return net;
+  Wrench load = change(Load::Kind::inertia);
+  if (is_held_by_contacts(model, body)) {
+    const Wrench jump = change(Load::Kind::jump);
+    load.force += jump.force;
+    // By the end-point rule it also gives back the angular momentum that the step has lost.
+    if (!model.steps_to_end_point()) load.torque += jump.torque;
+  }
+  return {-load.force, -load.torque};
 }
 
 }  // namespace iota::ingredient

@@ -92,8 +92,8 @@ struct Wrench {
 /// applied forces, bonds, hinges, nails, joints, grips.
 Wrench calc_outside_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
 /// Change of momenta of a body, or of one part, in the last step, by its length: by the load from outside and, for a part, by
-/// the other parts. That of a whole body is all of the change, with what projections of velocities gave at the end of the step. Of
-/// that a part has what balances its load from outside: nothing, where joints and hinges gave it.
+/// the other parts. With what projections of velocities gave at the end of the step, as blows do, where contacts alone hold the
+/// body: joints and hinges tell their forces without it.
 Wrench calc_net_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
 
 }  // namespace iota::ingredient
