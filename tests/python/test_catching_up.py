@@ -589,3 +589,43 @@ def test_an_expression_that_is_nearly_too_long_is_not_copied() -> None:
     system.field("fx = t" + " " * 990)
     assert not left_alone(system, [leaf.body], 0.5)
     assert leaf.position.y == 5
+
+
+@pytest.mark.parametrize("end", ["destroy", "switch off"])
+def test_a_field_that_ends_while_it_is_copied_leaves_its_bodies_where_they_were(end: str) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    leaf = system.body().particle((0, 5, 0), mass=1)
+    field = system.field("fx = 10*m")
+    found = CatchUp(system, [leaf.body], 2.0, (), Places(system))
+    for _ in range(20):
+        assert not found.go_on(0.0)
+    if end == "destroy":
+        field.destroy()
+    else:
+        field.active = False
+    assert found.go_on() and not found.finish()
+    assert leaf.position.x == 0 and system.energy.total == 0
+
+
+def test_a_wall_that_is_destroyed_while_it_is_copied_is_no_longer_there() -> None:
+    for pieces in range(30):
+        system = iota.System()
+        system.usual_material = iota.Material(touches="obstacles")
+        walls = [system.obstacle(iota.Box((1, 1, 1)), (x, 0.5, 0)) for x in range(6)]
+        cube = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 3, 0))
+        found = CatchUp(system, [cube], 2.0, (), Places(system))
+        for _ in range(pieces):
+            found.go_on(0.0)
+        for wall in walls:
+            wall.destroy()
+        assert found.go_on() and found.finish()
+        assert cube.position.y < 2.5 and system.validate() == []
+
+
+def test_what_a_field_throws_out_of_the_world_is_left_alone() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    dart = system.body().particle((0, 5, 0), mass=1)
+    dart.body.stride = 0
+    system.field("fx = 1e12")
+    assert not catch_up(system, [dart.body], 9.0)
+    assert dart.position.x == 0

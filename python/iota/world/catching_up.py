@@ -29,6 +29,7 @@ MOST_POINTS = (
     200  # of what fields act on: a step of more takes too long, and a flag flutters in the wind before and after
 )
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
+FARTHEST = 1e8  # m
 AHEAD, LOOKS = 0.5, 4  # s of a way that turned out to lead elsewhere; steps from one look at it to the next
 
 
@@ -53,16 +54,21 @@ class CatchUp:
         self._places: list[Vec3] = []
         self._pieces: Iterator[None] = iter(())
         forces = forces_on(system, bodies)
-        self._parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
+        parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
+        self._parts = [(part, getattr(part, "active", True)) for part in parts]
         if seconds > 0 and _can_be_copied(bodies, ties, forces):
             self._places = _places_of(bodies)
             self._pieces = self._work(bodies, seconds, ties, forces, places)
 
     def go_on(self, until: float = math.inf) -> bool:
-        """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended."""
-        if not all(part.alive for part in self._parts):
-            self._pieces = iter(())
+        """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended or
+        was switched."""
+        if not self._is_whole():
+            self._pieces, self._copy = iter(()), None
         return not any(time.process_time() > until for _ in self._pieces)
+
+    def _is_whole(self) -> bool:
+        return all(part.alive and getattr(part, "active", True) == was for part, was in self._parts)
 
     def _work(
         self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], forces: Sequence[Force], places: Places
@@ -74,14 +80,24 @@ class CatchUp:
         most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held or forces else STEPS
         steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
         length = min(seconds / steps, LONGEST)
-        copy.copy_what_acts(ties, forces, self._system.time - steps * length)
+        try:
+            copy.copy_what_acts(ties, forces, self._system.time - steps * length)
+        except ValueError:  # a joint that has come apart too far to be made where it is
+            self._copy = None
+            return
         yield
         copy.move_as_before()
+        if not copy.is_near():
+            self._copy = None
+            return
         yield from copy.copy_obstacles(places, seconds)
         if copy.is_held:
             copy.raise_damping(seconds / (steps * length))
         for step in range(steps):
             if step % LOOKS == 0:
+                if not copy.is_near():
+                    self._copy = None
+                    return
                 yield from copy.copy_obstacles_ahead(places)
             try:
                 copy.system.step(length)
@@ -93,7 +109,7 @@ class CatchUp:
     def finish(self) -> bool:
         """The bodies get the state of the copy. False if it has gained energy, if something has moved them meanwhile, or without a copy."""
         copy = self._copy
-        if copy is None or not copy.is_as_it_was(self._places):
+        if copy is None or not (self._is_whole() and copy.is_as_it_was(self._places)):
             return False
         energy = copy.system.energy
         if energy.total > copy.energy + max(energy.external_work, 0.0) + GAIN * (1 + energy.kinetic):
@@ -215,6 +231,11 @@ class _Copy:
         pull = 0.5 * np.array(list(self.system.gravity)) * time**2
         yield from self._copy_within(places, low + np.minimum(pull, 0), high + np.maximum(pull, 0))
 
+    def is_near(self) -> bool:
+        """Whether nothing has thrown it out of any world."""
+        low, high = self._way(AHEAD)
+        return bool(np.isfinite(high - low).all()) and float(np.abs([low, high]).max()) < FARTHEST
+
     def copy_obstacles_ahead(self, places: Places) -> Iterator[None]:
         """Copies more of them where the copy is about to leave the room in which they were copied, as in a wind or on a slope."""
         low, high = self._way(LOOKS * LONGEST)
@@ -232,7 +253,7 @@ class _Copy:
         near = places.overlap(Box(high - low), Vec3(*(low + high) / 2), (0, 0, 0, 1), None)
         yield
         known = self._obstacles
-        found = [body for body in near if body.kind == "static" and body not in known][:MOST_OBSTACLES]
+        found = [body for body in near if body.alive and body.kind == "static" and body not in known][:MOST_OBSTACLES]
         for count, obstacle in enumerate(found):
             if count % AT_ONCE == 0:
                 yield
