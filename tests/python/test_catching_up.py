@@ -494,3 +494,138 @@ def test_what_is_replayed_has_the_same_bits() -> None:
 def test_a_sight_is_a_length(value: float) -> None:
     with pytest.raises(ValueError, match="sight must be a length"):
         iota.World(iota.System()).levels.sight = value
+
+
+# --- what a copy meets on its way, and what it leaves behind ---------------------------------------------------------------
+
+
+def left_alone(system: iota.System, bodies: list[iota.Body], seconds: float) -> bool:
+    """Frozen for a time, and then caught up."""
+    for body in bodies:
+        body.stride = 0
+    for _ in range(round(seconds / DT)):
+        system.step(DT)
+    return catch_up(system, bodies, seconds)
+
+
+@pytest.mark.parametrize("seconds", [2.0, 8.0])
+def test_what_a_field_takes_far_stops_at_a_wall_there(seconds: float) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.usual_material = iota.Material(touches="obstacles")
+    system.obstacle(iota.Box((1, 50, 50)), (15, 0, 0))
+    cart = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=0.1, position=(0, 5, 0))
+    system.field("fx = m*10 - c*vx", c=0.01)
+    assert left_alone(system, [cart], seconds)
+    assert cart.position.x == pytest.approx(14.4, abs=1e-3) and system.validate() == []
+
+
+def test_a_copy_passes_through_what_its_body_passes_through() -> None:
+    system = iota.System()
+    system.usual_material = iota.Material()
+    floor = system.obstacle(iota.Box((10, 1, 10)), (0, 0, 0))
+    ghost, solid = (system.body(shape=iota.Box((1, 1, 1)), mass=1, position=(x, 3, 0)) for x in (-2, 2))
+    system.ignore_contacts(ghost, floor)
+    assert left_alone(system, [ghost, solid], 1.0)
+    assert ghost.position.y < -1.8 and solid.position.y == pytest.approx(1, abs=1e-3)
+
+
+def test_bodies_that_pass_through_each_other_do_so_as_copies() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.usual_material = iota.Material()
+    pair = [system.body(shape=iota.Box((1, 1, 1)), mass=1, position=(x, 3, 0)) for x in (0, 1.5)]
+    group = system.group("both")
+    group.add(*pair)
+    system.ignore_contacts(group, group)
+    pair[0].velocity = (2, 0, 0)
+    assert left_alone(system, pair, 1.0)
+    assert pair[0].position.x == pytest.approx(2) and pair[1].position.x == 1.5
+
+
+@pytest.mark.parametrize("is_nailed", [False, True])
+def test_what_others_attract_goes_on_from_where_it_was(is_nailed: bool) -> None:
+    """A planet without its sun would fly off: its energy would come from nothing."""
+    system = iota.System(gravity=(0, 0, 0))
+    sun, planet = system.body().particle((0, 0, 0), mass=100), system.body().particle((1, 0, 0), mass=1)
+    planet.velocity = (0, 10, 0)
+    if is_nailed:
+        sun.nail()
+    system.pair_force("gravity", cutoff=5, strength=1)
+    assert not left_alone(system, [planet.body], 1.0)
+    assert planet.position.x == 1
+    planet.position = (9, 0, 0)
+    assert left_alone(system, [planet.body], 1.0), "nobody is near"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "fx = " + " + ".join(["sin(t)"] * 60),  # 60 times the number of its time would make it too long
+        "a = t; fx = exp(-a) + t0*t^2 - dt_*sin(t)^2",
+        "fx = " + "(" * 49 + "t" + ")" * 49,
+        "b = 1; c = 2; fx = -t^2 + a*b*c",
+    ],
+)
+def test_expressions_of_the_time_are_those_of_the_world(text: str) -> None:
+    places = []
+    for is_left in (True, False):
+        system = iota.System(gravity=(0, 0, 0))
+        leaf = system.body().particle((0, 5, 0), mass=1)
+        names = {name: 0.3 for name in ("t0", "dt_", "a") if name in text and f"{name} =" not in text}
+        system.field(text, **names)
+        for _ in range(60):
+            system.step(DT)
+        if is_left:
+            assert left_alone(system, [leaf.body], 1.0)
+        else:
+            for _ in range(480):
+                system.step(DT / 4)
+        places.append(leaf.position.x)
+    assert places[0] == pytest.approx(places[1], abs=2e-3)
+
+
+def test_an_expression_that_is_nearly_too_long_is_not_copied() -> None:
+    system = iota.System()
+    leaf = system.body().particle((0, 5, 0), mass=1)
+    system.field("fx = t" + " " * 990)
+    assert not left_alone(system, [leaf.body], 0.5)
+    assert leaf.position.y == 5
+
+
+@pytest.mark.parametrize("end", ["destroy", "switch off"])
+def test_a_field_that_ends_while_it_is_copied_leaves_its_bodies_where_they_were(end: str) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    leaf = system.body().particle((0, 5, 0), mass=1)
+    field = system.field("fx = 10*m")
+    found = CatchUp(system, [leaf.body], 2.0, (), Places(system))
+    for _ in range(20):
+        assert not found.go_on(0.0)
+    if end == "destroy":
+        field.destroy()
+    else:
+        field.active = False
+    assert found.go_on() and not found.finish()
+    assert leaf.position.x == 0 and system.energy.total == 0
+
+
+def test_a_wall_that_is_destroyed_while_it_is_copied_is_no_longer_there() -> None:
+    for pieces in range(30):
+        system = iota.System()
+        system.usual_material = iota.Material(touches="obstacles")
+        walls = [system.obstacle(iota.Box((1, 1, 1)), (x, 0.5, 0)) for x in range(6)]
+        cube = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 3, 0))
+        found = CatchUp(system, [cube], 2.0, (), Places(system))
+        for _ in range(pieces):
+            found.go_on(0.0)
+        for wall in walls:
+            wall.destroy()
+        assert found.go_on() and found.finish()
+        assert cube.position.y < 2.5 and system.validate() == []
+
+
+def test_what_a_field_throws_out_of_the_world_is_left_alone() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    dart = system.body().particle((0, 5, 0), mass=1)
+    dart.body.stride = 0
+    system.field("fx = 1e12")
+    assert not catch_up(system, [dart.body], 9.0)
+    assert dart.position.x == 0

@@ -280,6 +280,59 @@ def test_structures_with_actuators_are_saved_copied_merged_and_checked(system: i
     assert "has no other actuator" in " ".join(arm.problems())
 
 
+@pytest.mark.parametrize(("low", "high"), [(1, 4), (-8, -2), (0, 3)])
+def test_a_range_of_force_without_0_pushes_against_the_spring_of_its_law(
+    tmp_path: Path, low: float, high: float
+) -> None:
+    servo = f'<position name="m" joint="j" kp="40" kv="3" forcerange="{low} {high}"/>'
+    pair = Twins(tmp_path / "robot.xml", TWO_ARMS.format(joint="", actuators=servo))
+    pair.system = iota.System()
+    world = iota.World(pair.system)
+    pair.made = pair.found.realize(pair.system, world=world)
+    pair.control(m=0.8)
+    for _ in range(60):
+        world.step()
+    mujoco.mj_step(pair.model, pair.state, round(pair.system.time / pair.model.opt.timestep))
+    assert pair.apart("arm", "lower") < 3e-3
+
+
+def test_a_range_of_a_joint_that_its_actuators_share_is_noted(write: Write) -> None:
+    motors = '<motor name="m" joint="j"/><motor name="n" joint="j"/>'
+    found = shapelib.mechanism(write("two.xml", TWO_ARMS.format(joint='actuatorfrcrange="-2 6"', actuators=motors)))
+    note = "the actuatorfrcrange of j is that of each of its 2 actuators, and not of their sum"
+    assert found.notes == [note]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "what"),
+    [
+        ('pos="0 0 1"', 'pos="nan 0 1"', "pos of body arm"),
+        ('pos="0 0 1"', 'gravcomp="nan"', "gravcomp of body arm"),
+        ('axis="0 1 0"', 'axis="nan 1 0"', "axis of joint j"),
+        ('damping="0.1"', 'range="nan 1" limited="true"', "range of joint j"),
+        ('damping="0.1"', 'ref="nan"', "ref of joint j"),
+        ('damping="0.1"', 'stiffness="1" springref="inf"', "springref of joint j"),
+        ('damping="0.1"', 'frictionloss="nan"', "frictionloss of joint j"),
+        ('damping="0.1"', 'damping="-1"', "damping of joint j"),
+    ],
+)
+def test_numbers_that_mujoco_takes_and_nothing_can_have_are_refused(
+    write: Write, before: str, after: str, what: str
+) -> None:
+    text = TWO_ARMS.format(joint="", actuators="").replace(before, after, 1)
+    with pytest.raises(shapelib.FileError, match=f"the {what} must be finite"):
+        shapelib.mechanism(write("wrong.xml", text))
+
+
+def test_a_sum_of_no_joints_holds_nothing(write: Write) -> None:
+    tendon = '<tendon><fixed name="t" range="-1 1"><joint joint="j" coef="0"/></fixed></tendon>'
+    equality = '<equality><tendon tendon1="t"/></equality></mujoco>'
+    text = TWO_ARMS.format(joint="", actuators="").replace("</mujoco>", tendon + equality)
+    system = iota.System()
+    shapelib.mechanism(write("none.xml", text)).realize(system)
+    assert [joint.kind for joint in system.constraints] == ["revolute", "revolute"]
+
+
 # --- friction -----------------------------------------------------------------------------------------------------------
 
 
@@ -449,3 +502,21 @@ def test_frictions_and_efforts_that_cannot_be_are_refused_with_their_line(
     with pytest.raises(shapelib.FileError) as refused:
         shapelib.mechanism(write("wrong.urdf", driven(**changes)))
     assert error in str(refused.value)
+
+
+def test_a_joint_that_mimics_another_0_times_stays_at_its_offset(write: Write) -> None:
+    mimic = '<mimic joint="j" multiplier="0" offset="0.25"/></joint>\n  <gazebo'
+    text = driven(joint="j").replace("</joint>\n  <gazebo", mimic)
+    system = iota.System()
+    made = shapelib.mechanism(write("still.urdf", text)).realize(system)
+    start = made["rail"].position.x
+    made["rail"].velocity = (3, 0, 0)
+    for _ in range(60):
+        system.step(1 / 240)
+    assert made["rail"].position.x == pytest.approx(start, abs=1e-6)
+
+
+def test_a_negative_damping_of_a_urdf_is_refused(write: Write) -> None:
+    text = driven().replace("</joint>\n  <gazebo", '<dynamics damping="-1"/></joint>\n  <gazebo')
+    with pytest.raises(shapelib.FileError, match="line 5: the damping and the friction of k must not be negative"):
+        shapelib.mechanism(write("wrong.urdf", text))

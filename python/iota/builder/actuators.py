@@ -164,11 +164,13 @@ class ActuatorOnJoint:
         if data.stiffness == 0 and data.damping == 0:
             return _Acts(push=ratio * limit)
         if limit != force and driven.is_followed:
-            if data.damping == 0 or not is_alone:
+            if data.damping == 0 or not is_alone or limit * force <= 0:
                 return _Acts(push=ratio * limit)
             # It does not go beyond the speed at which its force is 0, as a constant force would in a step.
             still = force + data.damping * ratio * driven.coordinate.speed
             return _Acts(motor=(still / (data.damping * ratio), abs(ratio * limit)))
+        if limit != force and is_alone and limit * force <= 0:
+            return _Acts(push=ratio * limit)  # against its law, for a range without 0
         if limit != force and is_alone:
             if data.stiffness > 0:
                 return _Acts(servo=(offset / (data.stiffness * ratio), abs(ratio * limit)))

@@ -42,6 +42,15 @@ ACTUATION_OFF = 1 << 11  # mjDSBL_ACTUATION
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 MOST_MASKED = 1000  # bodies, pairs of which are compared
+POSITIVE = ("friction", "armature", "damping", "frictionloss")
+SAID = {
+    "0": "ref",
+    "_spring": "springref",
+    "data": "number",
+    "prm": "coef",
+    "ipos": "inertial pos",
+    "iquat": "inertial quat",
+}  # arrays
 Y_TO_Z = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # of land, whose heights are along y
 LIGHTEST = 1e-6  # kg: for movable bodies without mass
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
@@ -103,20 +112,32 @@ def compiled(mujoco: Any, path: PathLike) -> Any:
 
 
 def require_numbers(path: PathLike, model: Any) -> None:
-    """Raises FileError for numbers that MuJoCo takes and no body or actuator can have."""
-    for what, is_positive, names in (
-        ("geom", True, ("friction",)),
-        ("actuator", False, ("gear", "gainprm", "biasprm", "ctrlrange", "forcerange", "actrange")),
-        ("dof", True, ("armature",)),
+    """Raises FileError for numbers that MuJoCo takes and no body, joint or actuator can have."""
+    joint_of_q = [int(np.searchsorted(model.jnt_qposadr, q, "right")) - 1 for q in range(model.nq)]
+    tendon_of_wrap = [int(np.searchsorted(model.tendon_adr, wrap, "right")) - 1 for wrap in range(model.nwrap)]
+    for array, kind, names, owner_of in (
+        ("body", "body", "pos quat gravcomp mass inertia ipos iquat", None),
+        ("geom", "geom", "pos quat size friction", None),
+        ("site", "site", "pos quat", None),
+        ("jnt", "joint", "pos axis range stiffness", None),
+        ("qpos", "joint", "0 _spring", joint_of_q),
+        ("dof", "joint", "armature damping frictionloss", model.dof_jntid),
+        ("actuator", "actuator", "gear gainprm biasprm ctrlrange forcerange actrange", None),
+        ("eq", "equality", "data", None),
+        ("tendon", "tendon", "range stiffness damping lengthspring", None),
+        ("wrap", "tendon", "prm", tendon_of_wrap),
     ):
-        for name in names:
-            values = getattr(model, f"{what}_{name}")
+        for name in names.split():
+            values = getattr(model, f"{array}_{name}" if array != "qpos" else f"qpos{name}")
             rows = values.reshape(len(values), int(np.prod(values.shape[1:])))
-            for number in np.flatnonzero((~np.isfinite(rows) | (is_positive & (rows < 0))).any(axis=1)):
-                found = model.joint(model.dof_jntid[number]) if what == "dof" else getattr(model, what)(number)
-                owner = f"{'joint' if what == 'dof' else what} {found.name or number}"
+            is_positive = name in POSITIVE
+            is_wrong = np.isnan(rows) if name == "range" else ~np.isfinite(rows)  # a joint may have one limit
+            for number in np.flatnonzero((is_wrong | (is_positive & (rows < 0))).any(axis=1)):
+                owner = number if owner_of is None else owner_of[number]
+                called = getattr(model, kind)(int(owner)).name or owner
                 raise FileError(
-                    path, f"the {name} of {owner} must be finite{' and not negative' if is_positive else ''}"
+                    path,
+                    f"the {SAID.get(name, name)} of {kind} {called} must be finite{' and not negative' if is_positive else ''}",
                 )
 
 
@@ -446,6 +467,8 @@ class _Reader:
         dof, first = int(m.jnt_dofadr[joint]), float(m.qpos0[m.jnt_qposadr[joint]])
         options: dict[str, Any] = {}
         stiffness, damping = float(np.ravel(m.jnt_stiffness[joint])[0]), float(np.ravel(m.dof_damping[dof])[0])
+        if stiffness < 0:
+            self.mechanism.notes.append(f"the stiffness of {name} is negative: left out")
         if stiffness > 0 or damping > 0:
             rest = float(m.qpos_spring[m.jnt_qposadr[joint]]) - first if stiffness > 0 else 0.0
             options["spring"] = (stiffness, damping, rest)
@@ -488,6 +511,10 @@ class _Reader:
                 self.mechanism.notes.append(f"{len(names) - MOST_NAMED} more actuators are left out for that reason")
         # A joint has one motor, so that two of its actuators cannot both move it at a speed.
         shared = {joint for joint, count in used.items() if count > 1}
+        self.mechanism.notes += [
+            f"the actuatorfrcrange of {self.joint_name(joint)} is that of each of its {used[joint]} actuators, and not of their sum"
+            for joint in sorted(shared & self.driven)
+        ]
         kept = []
         for actuator in self.mechanism.actuators:
             crowded = [joint for joint in shared if self.joint_name(joint) in dict(actuator.terms)]
@@ -643,8 +670,10 @@ class _Reader:
             self.mechanism.notes.append(
                 f"the equality {name} is violated initially: it keeps the initial poses of its bodies"
             )
-        length = 0.0 if len(total) == 1 else None  # one joint, which is locked where it is
-        self.mechanism.couplings.append(JointCoupling(name, self.terms(total), length))
+        terms = self.terms(total)
+        length = 0.0 if len(terms) == 1 else None  # one joint, which is locked where it is
+        if terms:
+            self.mechanism.couplings.append(JointCoupling(name, terms, length))
 
     def sum_of_tendon(self, number: int) -> dict[int, float] | None:
         """The ratios by joint of a fixed tendon; None for a tendon in space."""
@@ -673,7 +702,7 @@ class _Reader:
         wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])
         total = self.sum_of_tendon(number)
         if total is not None:
-            if m.tendon_limited[number]:
+            if m.tendon_limited[number] and any(total.values()):
                 # Coordinates are 0 in the initial pose, where the tendon has a length of its own.
                 low, high = (float(v) - float(m.tendon_length0[number]) for v in m.tendon_range[number])
                 if not low <= 0 <= high:

@@ -293,7 +293,9 @@ def _mimics(joint_of: dict[str, Element], notes: list[str]) -> tuple[list[JointC
             notes.append(f"{name} mimics {leader}, but {unlike[0]} is {joints[unlike[0]].text('type')}: left out")
             continue
         follows[name] = (mimic, leader)
-        couplings.append(JointCoupling(f"{name} mimics {leader}", [(name, 1.0), (leader, -_multiplier(mimic))]))
+        terms = [(name, 1.0), (leader, -_multiplier(mimic))] if _multiplier(mimic) != 0 else [(name, 1.0)]
+        length = 0.0 if len(terms) == 1 else None  # locked at its offset
+        couplings.append(JointCoupling(f"{name} mimics {leader}", terms, length))
     initial = {name: 0.0 for name in joints if name not in follows}
     for name in follows:
         chain = [name]
@@ -360,6 +362,8 @@ def _joint(joint: Element, frame: Frame, initial: float, notes: list[str]) -> Li
     dynamics = joint.first("dynamics")
     if dynamics is not None:
         damping, friction = dynamics.number("damping", 0.0), dynamics.number("friction", 0.0)
+        if min(damping, friction) < 0:
+            raise dynamics.wrong(f"the damping and the friction of {name} must not be negative")
         if damping > 0:
             options["spring"] = (0.0, damping, 0.0)
         if friction > 0:

@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iota._core import Body, Field, Group, PairForce, Particle, ParticleBatch, System
-from iota.world.ties import LAWS, at_time, copy_of_law
+from iota.world.ties import at_time, can_be_shifted, can_copy_law, copy_of_law
 
 Force = Field | PairForce
 
@@ -27,7 +28,9 @@ def can_copy_force(force: Force, bodies: Sequence[Body]) -> bool:
         if group is not None and any(len({p in group for p in _own_points(body)}) > 1 for body in bodies):
             return False  # a copy of a solid has points of its own: all of them, or none
     if isinstance(force, PairForce):
-        return force.law.kind in LAWS
+        return can_copy_law(force.law) and not _meets_others(force, bodies)
+    if force.kind == "expression":
+        return can_be_shifted(force.text)
     if force.kind != "function":
         return True
     particles = _particles_of(bodies)
@@ -50,8 +53,7 @@ def copy_forces(
     particle_of: Mapping[Particle, Particle],
     begin: float,
 ) -> None:
-    """Makes the same ones of a system between copies of the particles. begin: see `at_time`; turbulence is that of the time of the copy. Others
-    that attract or repel the bodies are not there."""
+    """Makes the same ones of a system between copies of the particles. begin: see `at_time`; turbulence is that of the time of the copy."""
     groups: dict[Group, Group] = {}
 
     def group_of(own: Group | None) -> Group | None:
@@ -116,6 +118,30 @@ class _Batch:
 
 def _groups(force: Force) -> list[Group | None]:
     return [force.group] if isinstance(force, Field) or force.other is None else [force.group, force.other]
+
+
+def _meets_others(force: PairForce, bodies: Sequence[Body]) -> bool:
+    """Whether others are as near as it reaches: copies without them would have an energy of their own."""
+    own = _particles_of(bodies)
+    first, second = force.group, force.other or force.group
+    pairs = [(first, second)] if first == second else [(first, second), (second, first)]
+    for mine, others in pairs:
+        places = _places([p for p in own if mine is None or p in mine])
+        theirs = force.system.positions if others is None else _places([p for p in others.particles if p not in own])
+        if not (len(places) and len(theirs)):
+            continue
+        low, high = places.min(axis=0) - force.cutoff, places.max(axis=0) + force.cutoff
+        near = theirs[((theirs >= low) & (theirs <= high)).all(axis=1)]
+        if others is not None and len(near):
+            return True
+        known = {tuple(place) for place in _places(list(own)).tolist()}
+        if any(tuple(place) not in known for place in near.tolist()):
+            return True
+    return False
+
+
+def _places(particles: Sequence[Particle]) -> NDArray[np.float64]:
+    return np.array([list(p.position) for p in particles]).reshape(len(particles), 3)
 
 
 def _has_any(group: Group | None, particles: Iterable[Particle]) -> bool:

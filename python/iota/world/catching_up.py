@@ -29,6 +29,8 @@ MOST_POINTS = (
     200  # of what fields act on: a step of more takes too long, and a flag flutters in the wind before and after
 )
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
+FARTHEST = 1e8  # m
+AHEAD, LOOKS = 0.5, 4  # s of a way that turned out to lead elsewhere; steps from one look at it to the next
 
 
 def catch_up(system: System, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie] = ()) -> bool:
@@ -52,16 +54,21 @@ class CatchUp:
         self._places: list[Vec3] = []
         self._pieces: Iterator[None] = iter(())
         forces = forces_on(system, bodies)
-        self._parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
+        parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
+        self._parts = [(part, getattr(part, "active", True)) for part in parts]
         if seconds > 0 and _can_be_copied(bodies, ties, forces):
             self._places = _places_of(bodies)
             self._pieces = self._work(bodies, seconds, ties, forces, places)
 
     def go_on(self, until: float = math.inf) -> bool:
-        """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended."""
-        if not all(part.alive for part in self._parts):
-            self._pieces = iter(())
+        """Does pieces of the work until a processor time, s, but at least one. Whether it is done, or in vain as a part of it has ended or
+        was switched."""
+        if not self._is_whole():
+            self._pieces, self._copy = iter(()), None
         return not any(time.process_time() > until for _ in self._pieces)
+
+    def _is_whole(self) -> bool:
+        return all(part.alive and getattr(part, "active", True) == was for part, was in self._parts)
 
     def _work(
         self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], forces: Sequence[Force], places: Places
@@ -73,13 +80,25 @@ class CatchUp:
         most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held or forces else STEPS
         steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
         length = min(seconds / steps, LONGEST)
-        copy.copy_what_acts(ties, forces, self._system.time - steps * length)
+        try:
+            copy.copy_what_acts(ties, forces, self._system.time - steps * length)
+        except ValueError:  # a joint that has come apart too far to be made where it is
+            self._copy = None
+            return
         yield
-        yield from copy.copy_obstacles(places, seconds)
         copy.move_as_before()
+        if not copy.is_near():
+            self._copy = None
+            return
+        yield from copy.copy_obstacles(places, seconds)
         if copy.is_held:
             copy.raise_damping(seconds / (steps * length))
-        for _ in range(steps):
+        for step in range(steps):
+            if step % LOOKS == 0:
+                if not copy.is_near():
+                    self._copy = None
+                    return
+                yield from copy.copy_obstacles_ahead(places)
             try:
                 copy.system.step(length)
             except ForceError:  # of a function of the script, which the world tells when it fails there
@@ -90,7 +109,7 @@ class CatchUp:
     def finish(self) -> bool:
         """The bodies get the state of the copy. False if it has gained energy, if something has moved them meanwhile, or without a copy."""
         copy = self._copy
-        if copy is None or not copy.is_as_it_was(self._places):
+        if copy is None or not (self._is_whole() and copy.is_as_it_was(self._places)):
             return False
         energy = copy.system.energy
         if energy.total > copy.energy + max(energy.external_work, 0.0) + GAIN * (1 + energy.kinetic):
@@ -127,6 +146,8 @@ class _Copy:
         self.twins: list[Body] = []
         self.energy = 0.0
         self.is_held = False
+        self._obstacles: dict[Body, Body] = {}  # their copies
+        self._passing = _passing(system, self.bodies)
 
     def copy_bodies(self, needed: set[Particle]) -> Iterator[None]:
         """Copies the bodies and their hinges. needed: particles of which others need copies."""
@@ -136,6 +157,10 @@ class _Copy:
                 yield
         yield
         yield from self._copy_hinges()
+        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
+        for a, *b in self._passing:
+            if b and a in twin_bodies and b[0] in twin_bodies:
+                self.system.ignore_contacts(twin_bodies[a], twin_bodies[b[0]])
         self.is_held = any(p.is_nailed for p in self.twin_of)
         yield
 
@@ -202,22 +227,44 @@ class _Copy:
     def copy_obstacles(self, places: Places, seconds: float) -> Iterator[None]:
         """Copies those near the way of the thing, which goes downwards at most as far as it falls."""
         time = min(seconds, STEPS * LONGEST)
-        centers = np.array([list(body.center_of_mass) for body in self.bodies])
-        moved = centers + time * np.array([list(body.velocity) for body in self.bodies])
-        low = np.minimum(centers, moved).min(axis=0) - ROOM
-        high = np.maximum(centers, moved).max(axis=0) + ROOM
+        low, high = self._way(time)
         pull = 0.5 * np.array(list(self.system.gravity)) * time**2
-        low, high = low + np.minimum(pull, 0), high + np.maximum(pull, 0)
+        yield from self._copy_within(places, low + np.minimum(pull, 0), high + np.maximum(pull, 0))
+
+    def is_near(self) -> bool:
+        """Whether nothing has thrown it out of any world."""
+        low, high = self._way(AHEAD)
+        return bool(np.isfinite(high - low).all()) and float(np.abs([low, high]).max()) < FARTHEST
+
+    def copy_obstacles_ahead(self, places: Places) -> Iterator[None]:
+        """Copies more of them where the copy is about to leave the room in which they were copied, as in a wind or on a slope."""
+        low, high = self._way(LOOKS * LONGEST)
+        if (low + ROOM / 2 < self._low).any() or (high - ROOM / 2 > self._high).any():
+            yield from self._copy_within(places, *self._way(AHEAD))
+
+    def _way(self, seconds: float) -> tuple[Floats, Floats]:
+        """Room around the way that the copy goes straight on."""
+        centers = np.array([list(twin.center_of_mass) for twin in self.twins])
+        moved = centers + seconds * np.array([list(twin.velocity) for twin in self.twins])
+        return np.minimum(centers, moved).min(axis=0) - ROOM, np.maximum(centers, moved).max(axis=0) + ROOM
+
+    def _copy_within(self, places: Places, low: Floats, high: Floats) -> Iterator[None]:
+        self._low, self._high = low, high
         near = places.overlap(Box(high - low), Vec3(*(low + high) / 2), (0, 0, 0, 1), None)
         yield
-        for count, obstacle in enumerate([body for body in near if body.kind == "static"][:MOST_OBSTACLES]):
+        known = self._obstacles
+        found = [body for body in near if body.alive and body.kind == "static" and body not in known][:MOST_OBSTACLES]
+        for count, obstacle in enumerate(found):
             if count % AT_ONCE == 0:
                 yield
             if not (obstacle.alive and obstacle.solids):
                 continue
             solid = obstacle.solids[0]
-            twin = self.system.obstacle(solid.shape, solid.position, solid.orientation)
+            known[obstacle] = twin = self.system.obstacle(solid.shape, solid.position, solid.orientation)
             twin.material = obstacle.material
+            for own, mate in zip(self.bodies, self.twins, strict=True):
+                if frozenset((own, obstacle)) in self._passing:
+                    self.system.ignore_contacts(mate, twin)
 
     def put_back(self, system: System) -> None:
         """The state of the copy becomes that of the thing."""
@@ -242,6 +289,17 @@ def move_as(system: System, points: Sequence[tuple[Particle, Particle]], bodies:
             moved.append(p)
             velocities.append(list(q.velocity))
     system.array(moved).velocities = np.array(velocities)
+
+
+def _passing(system: System, bodies: Sequence[Body]) -> set[frozenset[Body]]:
+    """Pairs that pass through each other, of one of the bodies at least."""
+    own, found = set(bodies), set[frozenset[Body]]()
+    for pair in system.ignored_contacts:
+        a, b = (
+            {side} if isinstance(side, Body) else {p.body for p in side.particles} for side in pair if side is not None
+        )
+        found |= {frozenset((p, q)) for p in a & own for q in b} | {frozenset((p, q)) for p in b & own for q in a}
+    return found
 
 
 def _raised(damping: float, factor: float) -> float:

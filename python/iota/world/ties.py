@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
+from itertools import count
+from string import ascii_letters
 from typing import Any
 
 from iota._core import AngleSpring, Body, Bond, Constraint, JointCoordinate, Law, Particle, System
@@ -18,6 +20,8 @@ SCREW, UNIVERSAL, PATH = "screw", "universal", "path"
 ON_SURFACE, SURFACES = {"surface": "on_surface", "inside": "inside", "outside": "outside"}, ("apart", "touching")
 COUPLINGS = ("coupling", "tackle")  # of coordinates of other joints: gears, and ropes over pulleys, which are one-sided
 LAWS = ("predefined", "expression")  # other ones are functions of the script
+INPUTS = "mrtvxyz"  # of expressions
+LONGEST_TEXT, LONG_NUMBER = 1000, -1.2345678901234567e-300  # bytes of an expression; s
 
 
 class Ties:
@@ -61,7 +65,7 @@ def bodies_of(tie: Tie) -> list[Body]:
 def can_be_copied(tie: Tie) -> bool:
     """Whether `copy_ties` knows its kind."""
     if isinstance(tie, Bond):
-        return tie.law.kind in LAWS
+        return can_copy_law(tie.law)
     if isinstance(tie, AngleSpring):
         return True
     if tie.kind in COUPLINGS:
@@ -116,14 +120,29 @@ def copy_ties(
             copy.compliance = tie.compliance
 
 
+def can_copy_law(law: Law) -> bool:
+    """Whether `copy_of_law` can copy it."""
+    return law.kind == "predefined" or (law.kind == "expression" and can_be_shifted(law.text))
+
+
 def copy_of_law(law: Law, begin: float) -> str:
     """The name or the text of the same law in another system: see `at_time`."""
     return law.name if law.kind == "predefined" else at_time(law.text, begin)
 
 
 def at_time(text: str, begin: float) -> str:
-    """An expression whose time is `begin`, s, when that of its system is 0."""
-    return re.sub(r"\bt\b", f"({begin!r} + t)", text)
+    """An expression whose time is `begin`, s, when that of its system is 0. Its time is defined once, so that it stays short."""
+    words = set(re.findall(r"\w+", text))
+    if "t" not in words:
+        return text
+    free = [name for name in ascii_letters if name not in words and name not in INPUTS]
+    name = free[0] if free else next(f"t{number}" for number in count() if f"t{number}" not in words)
+    return f"{name} = {begin!r} + t; " + re.sub(r"\bt\b", name, text)
+
+
+def can_be_shifted(text: str) -> bool:
+    """Whether `at_time` gives a text that the engine takes."""
+    return len(at_time(text, LONG_NUMBER).encode()) < LONGEST_TEXT
 
 
 class _Ends(dict[Particle, Particle]):
