@@ -25,9 +25,7 @@ WORK, MOST_STEPS = (
 GAIN = 1e-3  # of the kinetic energy, J: a copy with more has come into something
 MOST_DAMPING = 3.0  # 1/s: what swings is at rest at the end
 AT_ONCE = 4  # bodies that are copied in a piece
-MOST_POINTS = (
-    200  # of what fields act on: a step of more takes too long, and a flag flutters in the wind before and after
-)
+MOST_POINTS = 200  # of what fields act on: a step of more takes too long, and a flag flutters before and after
 ROOM, MOST_OBSTACLES = 4.0, 200  # m around the way of a thing; how many are looked at
 FARTHEST = 1e8  # m
 AHEAD, LOOKS = 0.5, 4  # s of a way that turned out to lead elsewhere; steps from one look at it to the next

@@ -630,14 +630,13 @@ class Levels(Part):
                 self._look_at_contacts(1e3 * (ended - began), self._budget)
 
     def _step_in_full(self, dt: float) -> StepReport:
-        """A step of the system without a budget. An undo or a reset to a time with one brings strides back."""
-        if self._system.step_count != self._expected_step:
-            if self._was_on:
-                self._end_strides()
-            if self._paced_ms is None and isinstance(self._system, System):
-                self._contacts.be_exact()
+        """A step of the system without a budget. An undo or a reset to a time with one brings strides and a share back."""
+        if self._was_on and self._system.step_count != self._expected_step:
+            self._end_strides()
         self._expected_step = self._system.step_count + 1
         if self._paced_ms is None:
+            if isinstance(self._system, System) and self._system.contacts_share != 1:
+                self._contacts.be_exact()
             return self._system.step(dt)
         began, at = time.process_time(), time.perf_counter()
         try:
