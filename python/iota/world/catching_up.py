@@ -18,10 +18,7 @@ from iota.world.ties import Tie, can_be_copied, copy_ties, needed_particles
 
 Floats = NDArray[np.float64]
 STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass through each other
-WORK, MOST_STEPS = (
-    1600,
-    400,
-)  # particles times steps of a copy that takes more steps: of a pendulum, of what drifts in a current
+WORK, MOST_STEPS = 1600, 400  # particles times steps of a copy that takes more: of a pendulum, of what drifts
 GAIN = 1e-3  # of the kinetic energy, J: a copy with more has come into something
 MOST_DAMPING = 3.0  # 1/s: what swings is at rest at the end
 AT_ONCE = 4  # bodies that are copied in a piece
@@ -71,37 +68,40 @@ class CatchUp:
     def _work(
         self, bodies: Sequence[Body], seconds: float, ties: Sequence[Tie], forces: Sequence[Force], places: Places
     ) -> Iterator[None]:
-        self._copy = copy = _Copy(self._system, bodies)
+        """Leaves no copy of what cannot be found."""
+        self._copy = _Copy(self._system, bodies)
+        try:
+            yield from self._find(self._copy, bodies, seconds, ties, forces, places)
+        except (_LostError, ForceError):  # a function of the script is told when it fails in the world
+            self._copy = None
+
+    def _find(
+        self,
+        copy: _Copy,
+        bodies: Sequence[Body],
+        seconds: float,
+        ties: Sequence[Tie],
+        forces: Sequence[Force],
+        places: Places,
+    ) -> Iterator[None]:
         yield from copy.copy_bodies(needed_particles(ties) | pushed_places(forces, bodies))
         copy.is_held |= bool(ties)
         points = sum(len(twin.particles) for twin in copy.twins)
         most = min(max(STEPS, WORK // points), MOST_STEPS) if copy.is_held or forces else STEPS
         steps = max(1, min(most, max(round(seconds / LONGEST), min(STEPS, round(seconds / (4 * LONGEST / STEPS))))))
         length = min(seconds / steps, LONGEST)
-        try:
-            copy.copy_what_acts(ties, forces, self._system.time - steps * length)
-        except ValueError:  # a joint that has come apart too far to be made where it is
-            self._copy = None
-            return
+        copy.copy_what_acts(ties, forces, self._system.time - steps * length)
         yield
         copy.move_as_before()
-        if not copy.is_near():
-            self._copy = None
-            return
+        copy.require_near()
         yield from copy.copy_obstacles(places, seconds)
         if copy.is_held:
             copy.raise_damping(seconds / (steps * length))
         for step in range(steps):
-            if step % LOOKS == 0:
-                if not copy.is_near():
-                    self._copy = None
-                    return
+            if step > 0 and step % LOOKS == 0:
+                copy.require_near()
                 yield from copy.copy_obstacles_ahead(places)
-            try:
-                copy.system.step(length)
-            except ForceError:  # of a function of the script, which the world tells when it fails there
-                self._copy = None
-                return
+            copy.system.step(length)
             yield
 
     def finish(self) -> bool:
@@ -131,6 +131,10 @@ def _can_be_copied(bodies: Sequence[Body], ties: Sequence[Tie], forces: Sequence
     return all(body.kind == "dynamic" and len(body.solids) <= 1 and len(body.parts) <= 1 for body in bodies)
 
 
+class _LostError(Exception):
+    """A copy cannot tell where its bodies would have come."""
+
+
 class _Copy:
     """An empty one at first; its functions that yield do so between pieces of their work."""
 
@@ -155,18 +159,23 @@ class _Copy:
                 yield
         yield
         yield from self._copy_hinges()
-        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
-        for a, *b in self._passing:
-            if b and a in twin_bodies and b[0] in twin_bodies:
-                self.system.ignore_contacts(twin_bodies[a], twin_bodies[b[0]])
+        twin_of_body = self._twin_of_body()
+        for pair in self._passing:
+            if len(pair) == 2 and pair <= twin_of_body.keys():
+                self.system.ignore_contacts(*(twin_of_body[body] for body in pair))
         self.is_held = any(p.is_nailed for p in self.twin_of)
         yield
 
     def copy_what_acts(self, ties: Sequence[Tie], forces: Sequence[Force], begin: float) -> None:
         """Copies what ties the bodies, and the forces on them. begin: s, the time from which the copy goes on."""
-        twin_bodies = dict(zip(self.bodies, self.twins, strict=True))
-        copy_ties(ties, self.system, twin_bodies, self.twin_of, begin)
-        copy_forces(forces, self.system, twin_bodies, self.twin_of, begin)
+        try:
+            copy_ties(ties, self.system, self._twin_of_body(), self.twin_of, begin)
+            copy_forces(forces, self.system, self._twin_of_body(), self.twin_of, begin)
+        except ValueError as error:  # a joint that has come apart too far to be made where it is
+            raise _LostError from error
+
+    def _twin_of_body(self) -> dict[Body, Body]:
+        return dict(zip(self.bodies, self.twins, strict=True))
 
     def move_as_before(self) -> None:
         """The copy gets the velocities of the bodies. energy: J, then."""
@@ -229,10 +238,11 @@ class _Copy:
         pull = 0.5 * np.array(list(self.system.gravity)) * time**2
         yield from self._copy_within(places, low + np.minimum(pull, 0), high + np.maximum(pull, 0))
 
-    def is_near(self) -> bool:
-        """Whether nothing has thrown it out of any world."""
+    def require_near(self) -> None:
+        """Raises _LostError for what has been thrown out of any world."""
         low, high = self._way(AHEAD)
-        return bool(np.isfinite(high - low).all()) and float(np.abs([low, high]).max()) < FARTHEST
+        if not (np.isfinite(high - low).all() and np.abs([low, high]).max() < FARTHEST):
+            raise _LostError
 
     def copy_obstacles_ahead(self, places: Places) -> Iterator[None]:
         """Copies more of them where the copy is about to leave the room in which they were copied, as in a wind or on a slope."""
