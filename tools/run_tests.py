@@ -16,9 +16,10 @@ Amounts: tests that sample (random scenes, edits, damaged bytes) try a tenth of 
 IOTA_TEST_ALL (tests/cpp/amount.h, tests/python/amount.py). A suite with `inputs` runs when one of them has changed since
 it passed, when it is named, and with --all; the others run always.
 
-A browser test that fails is repeated once in a fresh browser, with its file unless it has a page of its own: it draws in
-software on a few busy cores, so that some of its time limits pass by chance. What passed only then is named in the closing lines, and a defect of
-that kind is to be found too. With more than a few failed files nothing is repeated.
+A test that fails in Python or in a browser is repeated once after all other suites, on a quiet machine: browsers draw in
+software, and processes answer late, on a few busy cores, so that some time limits pass by chance. Browser tests are
+repeated with their file unless they have a page of their own. What passed only then is named in the closing lines, and a
+defect of that kind is to be found too. With more than a few failed files nothing is repeated.
 """
 
 from __future__ import annotations
@@ -47,6 +48,8 @@ STAMPS = ROOT / "build" / "stamps"
 CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
 SHOWN_SLOWEST = 10
+#: What the name of a suite ends with that repeats failed tests.
+AGAIN = "-again"
 #: Patterns of tests that may be skipped here; all others run, or fail. Pictures to look at are taken by make test-all.
 EXPECTED_SKIPS: tuple[str, ...] = (
     "pictures.test.ts: pictures *",
@@ -148,10 +151,13 @@ class Suite:
     limit_s: int
     read: Callable[[Path], Count] | None = None
     folder: Path = ROOT
-    #: At most so many files with failed tests are run once more, each `FILE: TITLE` in the failures of `read`.
+    #: At most so many files (in Python: tests) that fail are run once more, when nothing else runs.
     repeats: int = 0
-    #: Its tests rely on none before them, so that failed ones are run once more without the others of their files.
-    alone: bool = False
+    #: The command that repeats failed tests, from the command and their names in the failures of `read`; empty if one of
+    #: them can't be repeated.
+    again: Callable[[list[str], list[str]], list[str]] | None = None
+    #: The results of the run whose failed tests this one repeats.
+    first: Count | None = None
     #: About how long it takes on two cores: the longest begins first.
     about_s: float = 1
     #: How many cores it keeps busy.
@@ -165,6 +171,25 @@ class Suite:
     #: All files that it depends on, if it runs only when one of them has changed.
     inputs: Callable[[], list[Path]] | None = None
     environment: dict[str, str] = field(default_factory=dict)
+
+
+def files_again(command: list[str], failures: list[str]) -> list[str]:
+    """Repeats whole files of vitest, as a test in them may rely on those before it. Failures are `FILE: TITLE`."""
+    return [*command, *sorted({failure.split(":")[0] for failure in failures})]
+
+
+def titles_again(command: list[str], failures: list[str]) -> list[str]:
+    """Repeats tests of vitest without the others of their files."""
+    titles = "|".join(re.escape(failure.partition(": ")[2]) for failure in failures)
+    return [*files_again(command, failures), f"--testNamePattern=^({titles})$"]
+
+
+def nodes_again(command: list[str], failures: list[str]) -> list[str]:
+    """Repeats tests of pytest in place of their folder or file. Failures are `FOLDER.MODULE.TEST[CASE]`."""
+    parts = [re.fullmatch(r"((?:\w+\.)*?test_\w+)\.(.+)", failure, re.DOTALL) for failure in failures]
+    nodes = [f"{part[1].replace('.', '/')}.py::{part[2]}" for part in parts if part]
+    where = command.index("pytest") + 1
+    return [*command[:where], *nodes, *command[where + 1 :]] if len(nodes) == len(failures) else []
 
 
 def pytest(folder: str, *arguments: str) -> list[str]:
@@ -227,23 +252,23 @@ SUITES = [
     # for a process or a browser, and so do those of the suite beside this one.
     Suite(
         "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
-        about_s=300, cores=OTHER_CORES,
+        repeats=4, again=nodes_again, about_s=300, cores=OTHER_CORES,
     ),
     # After what draws, beside short suites: a busy machine answers Ray too late, and is taken for a dead one.
-    Suite("machines", pytest(MACHINES), 600, read_junit, about_s=25, in_turn=True, inputs=placed_by),
+    Suite("machines", pytest(MACHINES), 600, read_junit, repeats=2, again=nodes_again, about_s=25, in_turn=True, inputs=placed_by),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
     Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),
     Suite(
         "browser", vitest(*BROWSER, *(f"--exclude={name}" for name in PICTURES + PACKAGES)), 2400, read_vitest, WEB,
-        repeats=4, about_s=400, cores=DRAWING_CORES, in_turn=True,
+        repeats=4, again=files_again, about_s=400, cores=DRAWING_CORES, in_turn=True,
     ),
     Suite(
         "pictures", vitest(*BROWSER, *PICTURES), 1200, read_vitest, WEB,
-        repeats=2, alone=True, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
+        repeats=2, again=titles_again, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite(
         "packages", vitest(*BROWSER, *PACKAGES), 600, read_vitest, WEB,
-        repeats=1, about_s=30, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
+        repeats=1, again=files_again, about_s=30, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
     Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
@@ -332,11 +357,11 @@ def wait(process: subprocess.Popen[bytes], limit_s: float) -> int | None:
     return process.poll()
 
 
-def without_skipped(read: Callable[[Path], Count] | None) -> Callable[[Path], Count]:
+def without_skipped(read: Callable[[Path], Count]) -> Callable[[Path], Count]:
     """The tests of a run that was told which ones."""
 
     def read_ran(result: Path) -> Count:
-        count = read(result) if read else Count()
+        count = read(result)
         count.failures = [failure for failure in count.failures if not failure.startswith("skipped: ")]
         count.failed = len(count.failures)
         return count
@@ -344,26 +369,24 @@ def without_skipped(read: Callable[[Path], Count] | None) -> Callable[[Path], Co
     return read_ran
 
 
-def run_with_repeats(suite: Suite) -> Count:
-    """Runs a suite, and its files with failed tests once more if they are few, or these tests alone."""
-    count = run(suite)
-    files = sorted({failure.split(":")[0] for failure in count.failures})
-    if not 0 < len(files) <= suite.repeats:
-        return count
-    repetition = replace(suite, name=f"{suite.name}-again", command=[*suite.command, *files])
-    if suite.alone:
-        titles = "|".join(re.escape(failure.partition(": ")[2]) for failure in count.failures)
-        repetition = replace(
-            repetition,
-            command=[*repetition.command, f"--testNamePattern=^({titles})$"],
-            read=without_skipped(suite.read),
-        )
-    again = run(repetition)
-    repeated = [failure for failure in count.failures if failure not in again.failures]
+def repetition(suite: Suite, count: Count) -> Suite | None:
+    """The suite that runs the failed tests of a run once more and alone, if they are few."""
+    few = 0 < len({failure.split(":")[0] for failure in count.failures}) <= suite.repeats
+    if not (few and suite.read and suite.again and (command := suite.again(suite.command, count.failures))):
+        return None
+    return replace(
+        suite, name=suite.name + AGAIN, command=command, read=without_skipped(suite.read), repeats=0, inputs=None,
+        cores=CORES, first=count,
+    )  # fmt: skip
+
+
+def with_repeated(first: Count, again: Count) -> Count:
+    """The results of a run and of the repetition of its failed tests."""
+    repeated = [failure for failure in first.failures if failure not in again.failures]
     if again.passed < len(repeated):
-        return count
-    ran = count.passed + count.failed
-    return Count(ran - again.failed, again.failed, count.skipped, again.failures, repeated, count.durations)
+        return first
+    ran = first.passed + first.failed
+    return Count(ran - again.failed, again.failed, first.skipped, again.failures, repeated, first.durations)
 
 
 def end_group(leader: int) -> None:
@@ -376,13 +399,19 @@ def end_group(leader: int) -> None:
         time.sleep(wait_s)
 
 
-def end_text(suite: Suite, count: Count) -> list[str]:
-    """The end of the log of a failed suite, and the names of the failures."""
-    again = LOGS / f"test-{suite.name}-again.log"
-    log = again if suite.repeats and again.is_file() else LOGS / f"test-{suite.name}.log"
+def not_well(count: Count) -> list[str]:
+    """The names of what failed, for good or once."""
+    return [
+        *(f"  failed: {name}" for name in count.failures),
+        *(f"  failed once, passed when repeated: {name}" for name in count.repeated),
+    ]
+
+
+def end_text(suite: Suite) -> list[str]:
+    """The end of the log of a failed suite."""
+    log = LOGS / f"test-{suite.name}.log"
     lines = log.read_text(errors="replace").splitlines()
-    failed = [f"  failed: {suite.name}: {name}" for name in count.failures]
-    return [f"--- the end of {log.relative_to(ROOT)} ---", *lines[-SHOWN_LINES:], "---", *failed]
+    return [f"--- the end of {log.relative_to(ROOT)} ---", *lines[-SHOWN_LINES:], "---"]
 
 
 class Lanes:
@@ -427,25 +456,34 @@ class Lanes:
         began = time.monotonic()
         count = Count()
         try:
-            (LOGS / f"test-{suite.name}-again.log").unlink(missing_ok=True)
             before = digest(suite)
-            count = run_with_repeats(suite)
-            if before and not count.failed and not count.repeated:
+            count = run(suite)
+            if before and not count.failed:
                 build.write_stamp(stamp(suite), before)
         except Exception as error:
             count.fail(f"the runner itself failed: {error!r}")
+        elapsed = time.monotonic() - began
+        again = repetition(suite, count)
         with self.changed:
-            self.tell(suite, count, time.monotonic() - began)
-            self.total.add(count)
+            if again:
+                print(f"{suite.name:12} {count.failed} failed in {elapsed:.1f} s, to be repeated alone", flush=True)
+                self.waiting.append(again)
+            else:
+                self.finish(suite, with_repeated(suite.first, count) if suite.first else count, elapsed)
             self.running.remove(suite)
             self.changed.notify()
 
-    def tell(self, suite: Suite, count: Count, elapsed: float) -> None:
+    def finish(self, suite: Suite, count: Count, elapsed: float) -> None:
+        """Tells the results of a suite and sums them up."""
+        name = suite.name.removesuffix(AGAIN)
+        count.failures = [f"{name}: {failure}" for failure in count.failures]
+        count.repeated = [f"{name}: {test}" for test in count.repeated]
+        self.total.add(count)
         skipped = f"{count.skipped:4} skipped" if count.skipped else " " * 12
-        lines = [f"{suite.name:12} {count.passed:5} passed {count.failed:4} failed {skipped} {elapsed:8.1f} s"]
+        lines = [f"{name:12} {count.passed:5} passed {count.failed:4} failed {skipped} {elapsed:8.1f} s"]
         if count.failed:
-            lines += end_text(suite, count)
-        lines += [f"  failed once, passed when repeated: {suite.name}: {name}" for name in count.repeated]
+            lines += end_text(suite)
+        lines += not_well(count)
         print(*lines, sep="\n", flush=True)
 
 
@@ -497,6 +535,9 @@ def main(arguments: list[str]) -> int:
     print("slowest:")
     for seconds, name in sorted(total.durations, reverse=True)[:SHOWN_SLOWEST]:
         print(f"  {seconds:7.1f} s  {name}")
+    # Once more here, as the end of a long log is what is kept and read.
+    for line in not_well(total):
+        print(line)
     print(f"all together: {time.monotonic() - began:.0f} s")
     skipped = f", {total.skipped} skipped" if total.skipped else ""
     repeated = f", {len(total.repeated)} only when repeated" if total.repeated else ""

@@ -82,6 +82,8 @@ def test_what_a_busy_machine_fails_runs_alone_with_all(runner: ModuleType) -> No
 def test_a_failed_test_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
     made = suite(runner, writes(gtest(PASSED, FAILED)) + "; raise SystemExit(1)", runner.read_gtest)
     assert closing_line(runner, made, capsys) == (1, "1 passed, 1 failed")
+    runner.main([])
+    assert capsys.readouterr().out.splitlines()[-3] == "  failed: made-up: Chain.breaks", "the end of a log names it"
 
 
 def test_a_suite_without_a_test_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
@@ -154,7 +156,8 @@ def vitest(**states: str) -> dict[str, object]:
 def repeating(runner: ModuleType, first: object, again: object) -> Any:
     """A suite with these results, the second ones if files are named in its arguments."""
     script = f"import sys\nif len(sys.argv) > 1: {writes(again)}\nelse: {writes(first)}"
-    return runner.Suite("made-up", [sys.executable, "-c", script], 60, runner.read_vitest, ROOT, repeats=2)
+    command = [sys.executable, "-c", script]
+    return runner.Suite("made-up", command, 60, runner.read_vitest, ROOT, repeats=2, again=runner.files_again)
 
 
 def test_a_file_that_fails_once_is_repeated_and_named(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
@@ -172,9 +175,28 @@ def test_a_test_that_relies_on_no_other_is_repeated_alone(
     made = repeating(runner, vitest(a="passed", b="failed"), vitest(a="skipped", b="passed"))
     given = tmp_path / "given"
     script = f"{made.command[2]}\nopen({str(given)!r}, 'w').write(' '.join(sys.argv[1:]))"
-    made = replace(made, alone=True, command=[sys.executable, "-c", script])
+    made = replace(made, again=runner.titles_again, command=[sys.executable, "-c", script])
     assert closing_line(runner, made, capsys) == (0, "2 passed, 1 only when repeated, 0 failed")
     assert given.read_text() == "b.test.ts --testNamePattern=^(draws)$"
+
+
+def test_a_failed_test_of_python_is_repeated_by_its_name(runner: ModuleType) -> None:
+    failures = ["tests.python.test_a.test_swims[test_b.c: 1/2]", "tests.packaging.test_c.test_flies"]
+    assert runner.nodes_again(["python", "-m", "pytest", "tests/python", "-q"], failures) == [
+        "python", "-m", "pytest",
+        "tests/python/test_a.py::test_swims[test_b.c: 1/2]", "tests/packaging/test_c.py::test_flies", "-q",
+    ]  # fmt: skip
+    assert runner.nodes_again(["pytest", "tests"], [*failures, "did not end within 3 s"]) == []
+
+
+def test_failed_tests_are_repeated_when_nothing_else_runs(runner: ModuleType, tmp_path: Path) -> None:
+    failing = repeating(runner, vitest(b="failed"), vitest(b="passed"))
+    began = f"{failing.command[2]}\nimport time; open({str(tmp_path / 'repeated')!r}, 'w').write(f'{{time.monotonic()}}')"
+    failing = replace(failing, command=[sys.executable, "-c", began])
+    runner.SUITES = [failing, *(sleeper(runner, name, tmp_path) for name in ("a", "b", "c"))]
+    assert runner.main([]) == 0
+    (repeated,) = spans(tmp_path, "repeated")[0]
+    assert all(ended <= repeated for _, ended in spans(tmp_path, "a", "b", "c"))
 
 
 def test_a_file_that_fails_twice_fails_the_run(runner: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
