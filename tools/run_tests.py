@@ -198,7 +198,7 @@ def pytest(folder: str, *arguments: str) -> list[str]:
 
 def vitest(*arguments: str) -> list[str]:
     # Time limits end hanging tests only, as tests may be slow on a small, busy machine.
-    limits = ["--testTimeout=180000", "--hookTimeout=180000"]
+    limits = ["--testTimeout=300000", "--hookTimeout=300000"]
     reporters = ["--reporter=default", "--reporter=json", "--outputFile.json={result}"]
     return [str(BIN / "npx"), "--no-install", "vitest", "run", *arguments, *limits, *reporters]
 

@@ -148,6 +148,7 @@ export class Browser {
       colorScheme: options.dark === true ? "dark" : "light",
       ...(options.touch === true ? { hasTouch: true, isMobile: true } : {}),
     });
+    context.setDefaultTimeout(60_000);
     const draws = runsAll || process.env[sharedBrowser] === undefined ? "always" : options.draws ?? "never";
     if (draws !== "always") await context.addInitScript(drawLess, draws);
     return new Browser(context, draws, options.shadows === true);
@@ -262,10 +263,10 @@ export class Tab {
     throw new Error("the camera goes on moving");
   }
 
-  /** Clicks a button of the bar, which hides itself after a while and comes back with the mouse. */
+  /** Clicks a button of the bar, which hides itself after a while, comes back with the mouse and stays while it is there. */
   async press(selector: string): Promise<void> {
     await this.page.mouse.move(300, 40);
-    await this.page.mouse.move(310, 40);
+    await this.page.hover(selector, { force: true });
     await this.page.click(selector);
   }
 

@@ -52,5 +52,5 @@ it.each(scripts.filter((name) => runsAll || some.includes(name)).flatMap((name) 
     } finally {
       await server.stop();
     }
-  }, 60_000,
+  },
 );

@@ -145,7 +145,7 @@ describe("the camera keeps the subject", () => {
     } finally {
       await server.stop();
     }
-  }, 60_000);
+  });
 
   it("follows what is alone", async () => {
     const server = await WorldServer.start(["web/e2e/subjects_probe.py"], await freePort(), undefined, { IOTA_SCENE: "lone" });

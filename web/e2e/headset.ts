@@ -27,10 +27,7 @@ export class HeadsetTab {
   }
 
   async enter(): Promise<void> {
-    // The bar hides itself after a while; the mouse brings it back.
-    await this.tab.page.mouse.move(200, 120);
-    await this.tab.page.mouse.move(210, 120);
-    await this.tab.page.click("#enter-xr");
+    await this.tab.press("#enter-xr");
     // The button is there before the module that makes iotaXR has come.
     await this.tab.until("the session runs", () => globalThis.iotaXR?.presenting === true && globalThis.iotaXR.inputs().length === 2);
   }

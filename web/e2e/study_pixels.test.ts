@@ -53,7 +53,7 @@ async function colors(tab: Tab): Promise<Rgb[]> {
 const share = (pixels: readonly Rgb[], is: (color: Rgb) => boolean) => pixels.filter(is).length / pixels.length;
 const light = (pixels: readonly Rgb[]) => pixels.reduce((sum, color) => sum + Math.max(...color), 0) / pixels.length;
 
-it("a burst of the fireworks lights the meadow, and is gone two seconds later", { timeout: 60_000 }, async () => {
+it("a burst of the fireworks lights the meadow, and is gone two seconds later", async () => {
   const meadow: number[] = [];
   for (const seconds of [1.2, 1.75]) {
     await at("fireworks", seconds, async (tab) => {
@@ -65,7 +65,7 @@ it("a burst of the fireworks lights the meadow, and is gone two seconds later", 
   expect(meadow[1]).toBeGreaterThan(1.2 * meadow[0]);
 });
 
-it("the cloth is checked and matte: no white-out", { timeout: 60_000 }, async () => {
+it("the cloth is checked and matte: no white-out", async () => {
   await at("cloth", 2, async (tab) => {
     const all = await colors(tab);
     expect(share(all, ([r, g, b]) => r > 150 && r > 1.8 * g && r > 1.8 * b), "red").toBeGreaterThan(0.01);
@@ -73,7 +73,7 @@ it("the cloth is checked and matte: no white-out", { timeout: 60_000 }, async ()
   });
 });
 
-it("the fish of the story is found in the sea", { timeout: 60_000 }, async () => {
+it("the fish of the story is found in the sea", async () => {
   await at("undersea", 9, async (tab) => {
     const all = await colors(tab);
     const orange = all.map(([r, g, b], index) => [index % 320, r > 130 && r > 1.5 * g && r > 2 * b] as const).filter(([, is]) => is);
@@ -83,7 +83,7 @@ it("the fish of the story is found in the sea", { timeout: 60_000 }, async () =>
   });
 });
 
-it("the shoal is near enough to see its fish", { timeout: 60_000 }, async () => {
+it("the shoal is near enough to see its fish", async () => {
   await at("shoal", 1, async (tab) => {
     const { share: fish } = await drawn(tab, ["body"]);
     expect(fish, "of the picture, by a thousand").toBeGreaterThan(0.06);

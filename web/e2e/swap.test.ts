@@ -18,7 +18,7 @@ afterAll(async () => {
   await server?.stop();
 });
 
-it("no picture of a swap differs from the one before by more than a fifth of what the swap changes", { timeout: 60_000 }, async () => {
+it("no picture of a swap differs from the one before by more than a fifth of what the swap changes", async () => {
   const tab = await browser.open(server.url, { begun: false });
   await tab.drawn();
   await tab.eyeAtRest();

@@ -44,7 +44,7 @@ it("lies on nothing that is drawn, and on no control, at any size of the window"
   } finally {
     await server.stop();
   }
-}, 120_000);
+});
 
 it("says what the world is, and the sign for help stays when the bar hides", async () => {
   const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: "cradle" });
@@ -67,4 +67,4 @@ it("says what the world is, and the sign for help stays when the bar hides", asy
   } finally {
     await server.stop();
   }
-}, 60_000);
+});

@@ -439,9 +439,7 @@ describe("leaving and coming back", () => {
 
 describe("the user's own surroundings", () => {
   it("are behind the world on request", async () => {
-    await me.tab.page.mouse.move(200, 120);
-    await me.tab.page.mouse.move(210, 120);
-    await me.tab.page.click("#enter-ar");
+    await me.tab.press("#enter-ar");
     await me.tab.until("the session runs", () => iotaXR!.presenting && iota.page.viewer.stage.passthrough && !iota.page.viewer.stage.ground.visible);
     const seen = await me.tab.page.evaluate(() => {
       const { viewer } = iota.page;
