@@ -203,6 +203,8 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
     reaction.force += forces[place];
     reaction.torque += cross(places.position[place] - reaction.position, forces[place]);
   }
+  // A rope that runs several times between its first two points pulls there with as many strands.
+  if (c.kind == ConstraintKind::tackle) reaction.force *= 1 / model.coupled_terms[c.first_term].ratio;
   return reaction;
 }
 

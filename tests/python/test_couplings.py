@@ -471,3 +471,19 @@ def test_a_term_of_a_coupling_tells_its_joint_and_its_name() -> None:
     axle = system.revolute(wheel, at=(1, 0, 0), axis=(0, 1, 0))
     rack = system.gear(axle.angle, screw.slide, 0.05)
     assert [(each.joint, each.name) for each, _ in rack.terms] == [(axle, "angle"), (screw, "slide")]
+
+
+@every_mode
+@pytest.mark.parametrize("order", ["cbcw", "wcbc", "cbcbcw"])
+def test_a_rope_that_runs_several_times_between_two_points_tells_its_tension(mode: str, order: str) -> None:
+    system = iota.System(mode=mode)
+    ceiling = system.body().particle((0, 5, 0))
+    ceiling.nail()
+    strands = order.count("b") * 2
+    block, load = system.body().particle((0, 2, 0), mass=strands), system.body().particle((0, 3, 0), mass=1)
+    points = {"c": ceiling, "b": block, "w": load}
+    rope = system.rope([points[name] for name in order], break_force=1.5 * G)
+    for _ in range(10):
+        system.step(1 / 120)
+    assert not rope.broken
+    assert abs(rope.force) == pytest.approx(G, rel=1e-6)
