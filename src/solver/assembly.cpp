@@ -295,6 +295,8 @@ void calc_bends(const C& c, const Vec3* x, const Vec3* v, double* bends) {
             bends[r] += (i == j ? 1 : 2) * c.curvature(only, i, j) * dot(v[c.nodes[i]], v[c.nodes[j]]);
       }
     }
+  else if constexpr (requires { c.bend(x, v); })
+    bends[0] = c.bend(x, v);
 }
 
 }  // namespace

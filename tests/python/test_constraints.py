@@ -520,3 +520,23 @@ def test_surfaces_tell_where_they_are_now_and_make_the_same_ones() -> None:
     of_a, of_b = rolls.surfaces
     assert of_a["surface"].radius == 0.5 and np.allclose(of_a["at"], (0, 3, 0)) and np.allclose(of_b["at"], 0)
     assert system.ball(wheel, at=(0, 3, 0)).surfaces == []
+
+
+@pytest.mark.parametrize("rate", [60, 240])
+def test_accurate_surfaces_have_the_forces_and_the_motion_of_a_curve(rate: int) -> None:
+    """A ball slides down a larger one without leaving it: as a point on a sphere around the center."""
+    distance = 0.6
+    start = (distance * math.sin(2.0), distance * math.cos(2.0), 0)
+    pair = iota.System(mode="accurate")
+    ball = pair.body(shape=iota.Sphere(0.1), mass=1, position=start)
+    joint = pair.surface_to_surface(ball, iota.Sphere(0.1), None, iota.Sphere(0.5), one_sided=False, at_b=(0, 0, 0))
+    single = iota.System(mode="accurate")
+    point = single.body().particle(start, mass=1)
+    single.on_surface(point, iota.Sphere(distance), at=(0, 0, 0))
+    for _ in range(rate):
+        pair.step(1 / rate)
+        single.step(1 / rate)
+        along = ball.position / abs(ball.position)
+        needed = 9.81 * along.y - ball.velocity.dot(ball.velocity) / distance
+        assert joint.force.dot(along) == pytest.approx(needed, abs=0.02 * 60 / rate * (1 + abs(needed)))
+    assert math.dist(tuple(ball.position), tuple(point.position)) < 1e-7

@@ -30,6 +30,8 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
 
   void calc_value(const Vec3* e, double fraction, double* g) const;
   void calc_gradient(const Vec3* e, Vec3 (*d)[7]) const;
+  /// The second derivative of g along the velocities v of the nodes at x, m/s^2: accelerations need it.
+  double bend(const Vec3* x, const Vec3* v) const;
 
  private:
   struct Nearest {
