@@ -89,3 +89,37 @@ def test_a_weld_and_a_rope_tell_what_a_blow_takes(mode: Mode, rate: int, stop: s
         assert abs(load.net_force.y + GRAVITY - needed) < allowed
         assert rope is None or abs(rope.force.length - 6 * needed) < 6 * allowed
     assert hardest > 5 * GRAVITY
+
+
+@pytest.mark.parametrize("mode", ["robust", "energy_keeping", "accurate"])
+@pytest.mark.parametrize("kind", ["ball", "revolute", "nail", "rod"])
+def test_what_tips_over_is_held_by_the_force_of_its_motion_and_gains_no_energy(mode: Mode, kind: str) -> None:
+    system, height, rate = iota.System(mode=mode), 1.2, 240
+    if kind == "rod":
+        body = system.body()
+        top = body.particle((0, height, 0), mass=1, velocity=(-2 * height, 0, 0))
+        rod = system.rod(top, system.body("static").particle((0, 0, 0)))
+    else:
+        body = system.body(
+            shape=iota.Sphere(0.2), mass=1, position=(0, height, 0), velocity=(-2 * height, 0, 0), spin=(0, 0, 2)
+        )
+    if kind == "ball":
+        rod = system.ball(body, at=(0, 0, 0))
+    elif kind == "revolute":
+        rod = system.revolute(body, at=(0, 0, 0), axis=(0, 0, 1))
+    elif kind == "nail":
+        foot = body.attachment((0, 0, 0))
+        foot.nail()
+    start = system.energy.kinetic + system.energy.potential
+    places = [body.position]
+    for step in range(rate // 6):
+        system.step(1 / rate)
+        places.append(body.position)
+        if step == 0:
+            continue
+        along = places[-1] / abs(places[-1])
+        acceleration = (places[-1] - 2 * places[-2] + places[-3]) * rate**2
+        needed = acceleration.dot(along) + GRAVITY * along.y
+        told = (foot.nail_force if kind == "nail" else rod.force).dot(along)
+        assert told == pytest.approx(needed, abs=0.1), step
+        assert system.energy.kinetic + system.energy.potential < start * (1 + 1e-12)
