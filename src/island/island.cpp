@@ -58,7 +58,7 @@ void Island::clear() {
   problem_.clear();
   solver_name_ = {}, solver_.reset(), integrator_->set_external(nullptr);
   idle_ = to_wake_ = is_still_ = has_stepped_ = is_frozen_ = false;
-  first_body_ = none, book_epoch_ = 0, last_ = {}, stride_ = 0, solved_steps_ = 1, work_ = 0;
+  first_body_ = none, book_epoch_ = 0, tried_ahead_ = 0, last_ = {}, stride_ = 0, solved_steps_ = 1, work_ = 0;
 }
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
@@ -129,6 +129,7 @@ Vec3 Island::choose_origin(const Model& model) const {
 }
 
 void Island::load(const Model& model, double h) {
+  drop_try();
   problem_.gravity = model.acting_gravity();
   problem_.set_origin(choose_origin(model));
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -278,6 +279,19 @@ void Island::try_step(const Model& model, double h, const Limits& limits) {
     tried_ = try_prescribed(model, h);
   else
     tried_ = stays_asleep(model) ? Tried::still : try_motion(model, h, limits);
+}
+
+bool Island::is_sprung() const {
+  bool is = false;
+  problem_.for_each_force_pool([&](const auto& pool) { is = is || !pool.items.empty(); });
+  problem_.for_each_constraint_pool(
+      [&]<class C>(const solver::ConstraintPool<C>& pool) { is = is || (pool.has_laws() && !solver::ConeConstraint<C>); });
+  return is;
+}
+
+Vec3 Island::way_of_node(const Model& model, std::size_t node) const {
+  if (tried_ != Tried::moved) return {};
+  return problem_.origin + problem_.position[node] - model.rings[nodes_.rings[node]].position;
 }
 
 Island::Tried Island::try_prescribed(const Model& model, double h) {

@@ -114,6 +114,16 @@ class Island {
   /// those of an earlier step serve one try).
   void try_step(const model::Model&, double h, const Limits&);
   void try_step(const model::Model& model, double h) { try_step(model, h, {}); }
+  /// Whether springs, motors or other rows with bounds may move it further in a step than its velocities tell.
+  bool is_sprung() const;
+  /// Tries a step that `advance` then stores, if it is as long and nothing of the island has changed until then.
+  void try_ahead(const model::Model& model, double h, const Limits& limits) {
+    try_step(model, h, limits), tried_ahead_ = h;
+  }
+  void drop_try() { tried_ahead_ = 0; }
+  /// visit(ring, way): how far each goes in the latest try, m.
+  template <class Visit>
+  void for_each_way(const model::Model&, Visit visit) const;
   /// Stores the latest try, of h seconds, in the model. Without a try since the last commit it stores nothing.
   const solver::AdvanceReport& commit(model::Model&, double h);
 
@@ -179,6 +189,7 @@ class Island {
   /// Passes the momentum of carried particles with velocities of their own to the basis. False if there are none.
   bool pass_on_assigned(model::Model&, MovedRings&);
   Vec3 choose_origin(const model::Model&) const;
+  Vec3 way_of_node(const model::Model&, std::size_t node) const;  ///< see for_each_way
   bool has_finite_motion() const;
   void add_node(const model::Model&, std::uint32_t ring, std::uint32_t beside,
                 std::vector<std::uint32_t>& node_of_ring);
@@ -250,7 +261,18 @@ class Island {
   std::uint32_t solved_steps_ = 1;
   double work_ = 0;
   Tried tried_ = Tried::nothing;  // since the last commit
+  double tried_ahead_ = 0;        // length of a step that was tried ahead, s
   solver::AdvanceReport last_;    // of the last step, or the latest try
 };
+
+template <class Visit>
+void Island::for_each_way(const model::Model& model, Visit visit) const {
+  for (std::size_t node = 0; node < nodes_.size(); ++node) visit(nodes_.rings[node], way_of_node(model, node));
+  for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
+    Vec3 way;
+    for (const auto& [node, weight] : nodes_.carriers[i]) way += weight * way_of_node(model, node);
+    visit(model.particles[nodes_.carried[i]].ring, way);
+  }
+}
 
 }  // namespace iota::island

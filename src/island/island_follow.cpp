@@ -51,6 +51,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
                     std::vector<std::uint32_t>& node_of_ring, MovedRings& moved) {
   constexpr std::size_t part = 3;  // share of the nodes: if more of them change, a new assembly is as fast
   if (idle_ || solver_ || !integrator_->can_follow()) return false;  // another solver needs unknowns without gaps
+  drop_try();
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
   nodes_.articulates.assign(articulates.begin(), articulates.end());
   if (!change.left.empty())
@@ -110,6 +111,7 @@ bool Island::keeps_order() const {
 double Island::order_work() const { return integrator_->order_work(); }
 
 bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of_ring) {
+  drop_try();
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
   const ingredient::IslandMap map(model, nodes_, {}, node_of_ring);
   for_each_ingredient([&](auto& i) { i.renew_pulls(map, problem_); });

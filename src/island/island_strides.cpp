@@ -98,7 +98,7 @@ const solver::AdvanceReport& Island::advance_part(Model& model, double part, con
 
 const solver::AdvanceReport& Island::solve(Model& model, double h, const Limits& limits) {
   solved_steps_ = 1;
-  try_step(model, h, limits);
+  if (std::exchange(tried_ahead_, 0) != h) try_step(model, h, limits);
   return commit(model, h);
 }
 

@@ -71,6 +71,11 @@ class Islands {
                                             Island::Clock::time_point deadline);
   /// The time that it has advanced in parts since the last step, s.
   double ahead(const model::Model&, const Island&) const;
+  /// Tries a step of h seconds or a part of it, which `advance` or `advance_part` then stores: see Island::try_ahead.
+  void try_ahead(const model::Model& model, Island& island, double part, double h,
+                 Island::Clock::time_point deadline) const {
+    island.try_ahead(model, part, {deadline, share_of(island), part / h});
+  }
   /// A step of h seconds of one of them: of `awake`, then of `loose`. Those of others may run at the same time.
   void advance(model::Model&, std::size_t index, double h, Island::Clock::time_point deadline);
   /// visit(body, report): of all of them, in this order; the body is the island's first.

@@ -111,9 +111,13 @@ const ContactFinder::Obstacle& ContactFinder::obstacle_at(const model::Model& mo
   return obstacle;
 }
 
+void ContactFinder::set_length(const model::Model& model, double h) {
+  h_ = h, fall_ = h * norm(model.acting_gravity());
+}
+
 void ContactFinder::begin_look(const model::Model& model, double h, bool are_placed) {
   are_placed_ = are_placed;
-  h_ = h, fall_ = h * norm(model.acting_gravity());
+  set_length(model, h);
   ++look_;
   if (all_movers_.size() < model.bodies.slot_count()) all_movers_.resize(model.bodies.slot_count());
 }
@@ -373,9 +377,17 @@ bool touch_each_other(model::Model& model, contact::Outlines& outlines, JoinedBo
 
 }  // namespace
 
+void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines) {
+  find_obstacles(model, outlines);
+  find_pairs(model, outlines);
+  sort_unique(pairs_);
+  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
+}
+
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
   hasty_.clear(), sensed_.clear(), passing_.clear();
   joined_.forget();
+  first_look_ = look_ + 1;
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
   outlines.describe();
   step_ = h, shortest_ = h / Heap::most_sub_steps;
@@ -386,10 +398,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;
   if (has_many && !movers_.empty()) (void)outlines.refresh(model.step);
   begin_look(model, h, has_many);
-  find_obstacles(model, outlines);
-  find_pairs(model, outlines);
-  sort_unique(pairs_);
-  std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
+  list_pairs(model, outlines);
   known_.forget();
   for (const Pair& pair : pairs_) {
     if (is_sensor(model, pair)) {
@@ -410,6 +419,46 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   }
   if (model.contacts.size() > 0)
     for (const std::uint32_t slot : movers_) ingredient::Contacts::end_old(model, slot);
+}
+
+bool ContactFinder::is_watched(const model::Model& model, std::uint32_t body) const {
+  return body < all_movers_.size() && all_movers_[body].look >= first_look_ && model::is_free(model.bodies[body].kind);
+}
+
+bool ContactFinder::is_beyond(const model::Model& model, std::uint32_t body, double beside) const {
+  if (!is_watched(model, body)) return false;
+  const Mover& mover = all_movers_[body];
+  return beside > h_ * (fall_ + mover.thrust) + of_size * mover.reach;
+}
+
+// Pairs with contacts keep them.
+bool ContactFinder::find_on_ways(model::Model& model, contact::Outlines& outlines,
+                                 std::span<const std::uint32_t> bodies, bool is_part) {
+  begin_look(model, h_, are_placed_);
+  std::vector<Pair> known = std::exchange(pairs_, {});
+  std::vector<std::uint32_t> movers;
+  std::ranges::copy_if(bodies, std::back_inserter(movers),
+                       [&](std::uint32_t body) { return is_watched(model, body); });
+  movers_.swap(movers);
+  list_pairs(model, outlines);
+  movers_.swap(movers);
+  listed_.clear();
+  if (is_part)
+    list_pairs_of(model, outlines, bodies);
+  else
+    for (const Pair& pair : pairs_)
+      if (!is_sensor(model, pair)) listed_.push_back({pair, meeting_of(model, outlines, pair)});
+  known_.forget();
+  bool any = false;
+  for (const auto& [pair, meeting, apart] : listed_) {
+    const std::span<const std::uint32_t> former = known_.of(model, pair);
+    const bool has_any = std::ranges::any_of(former, [&](std::uint32_t slot) { return !model.contacts[slot].is_off; });
+    if (!has_any && look_ahead(model, outlines, pair, meeting).apart < h_)
+      any = touch(model, outlines, pair, meeting, former) || any;
+  }
+  pairs_.insert(pairs_.end(), known.begin(), known.end());
+  sort_unique(pairs_);
+  return any;
 }
 
 namespace {
@@ -728,7 +777,7 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
       apart = ahead.apart, part = std::min(part, ahead.part);
     }
   if (left - part < least * step_) part = left;  // the rest is round-off
-  h_ = part, fall_ = part * norm(model.acting_gravity());
+  set_length(model, part);
   known_.forget();
   ingredient::Contacts::begin_part(model, contacts_, which.is_first);
   for (const auto& [pair, meeting, apart] : listed_) {

@@ -38,6 +38,15 @@ class ContactFinder {
   const std::vector<std::uint32_t>& movers() const { return movers_; }
   /// Articulates of bodies that meet others so fast on their way that their islands take the step in parts.
   const std::vector<std::uint32_t>& hasty() const { return hasty_; }
+  /// Whether it may move and touch others, and what it touches was looked for in this step.
+  bool is_watched(const model::Model&, std::uint32_t body) const;
+  /// Before the two that follow: the length of the step or the part that they are about, s.
+  void set_length(const model::Model&, double h);
+  /// Whether a watched body goes further beside its straight way, m, than that was looked for.
+  bool is_beyond(const model::Model&, std::uint32_t body, double beside) const;
+  /// Adds contacts of the bodies of an island with what they meet on their ways. For the moment the velocities in the model are those
+  /// of these ways. is_part: others may have taken another part of the step, so they are left out. Returns whether there are any.
+  bool find_on_ways(model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies, bool is_part);
   struct Part {
     bool is_first, may_cut, of_sweeps;
   };
@@ -84,6 +93,8 @@ class ContactFinder {
   void note_changes(model::Model&, contact::Outlines&);
   void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
   void list_movers(const model::Model&);
+  /// Into pairs_: what the movers may touch.
+  void list_pairs(model::Model&, contact::Outlines&);
   void find_obstacles(model::Model&, contact::Outlines&);
   void find_pairs(model::Model&, contact::Outlines&);
   /// A pair as it moves now, measured once for a step or a part of it.
@@ -161,7 +172,7 @@ class ContactFinder {
     bool is = true;
   };
   std::vector<Moved> all_moved_;  ///< by body slot
-  std::uint64_t look_ = 0;
+  std::uint64_t look_ = 0, first_look_ = 0;  ///< the latter: of this step
   std::vector<std::uint32_t> movers_;  ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;

@@ -32,6 +32,7 @@ StepReport Stepper::step(double dt) {
   find_contacts(dt);
   update_islands(dt);
   editor_.held.add_missed(report);
+  look_along_ways(dt);
   made_ = spin_lost_ = 0, solves_ = iterations_ = handed_back_ = 0;
   advance_in_parts(report);
   advance_islands(report);
@@ -42,6 +43,12 @@ StepReport Stepper::step(double dt) {
   fill(report);
   return report;
 }
+
+namespace {
+
+constexpr int most_looks = 3;  ///< along the ways of an island in a step or a part of it
+
+}  // namespace
 
 // 1. Functions of the script, and other held forces, at the start of the step.
 void Stepper::take_held_forces(StepReport& report) {
@@ -72,11 +79,23 @@ void Stepper::update_islands(double dt) {
     const Timed timed(times_of_thread(), &StepTimes::analyze);
     if (islands.update(model, editor_.parallel) || !dirty_.empty()) ingredient::note_edits(model, true);
   }
-  islands.wake(model, woken_);
-  islands.wake_stirred(model, dt);
+  wake(dt);
   islands.plan_strides(model);
   islands.for_each_of(model, dirty_, [&](island::Island& island) { island.project_assigned(model); });
   if (model.has_edits) ingredient::book_edits(model, islands.energies(model).total());
+}
+
+// Those that an edit, a force or a law of the time wakes.
+void Stepper::wake(double dt) {
+  editor_.islands.wake(editor_.model, woken_);
+  editor_.islands.wake_stirred(editor_.model, dt);
+}
+
+// Contacts that are found within a step join islands, and a joined one does not know any more that it is to wake.
+void Stepper::follow_contacts(double dt) {
+  editor_.islands.update(editor_.model, editor_.parallel);
+  wake(dt);
+  (void)editor_.islands.awake(editor_.model);  // they share the budget by their sizes now, not by those of the step before
 }
 
 namespace {
@@ -122,6 +141,68 @@ bool is_of_sweeps(const model::Model& model, const island::Island& island) {
 
 }  // namespace
 
+// 2b. Springs, motors and hands may move bodies further in a step than their velocities tell. Such islands try it first; one that meets
+// something on its way, of which it has no contact yet, tries again with that. Other islands have not moved then.
+void Stepper::look_along_ways(double dt) {
+  if (contacts_.movers().empty()) return;
+  model::Model& model = editor_.model;
+  island::Islands& islands = editor_.islands;
+  sprung_.clear();
+  for (island::Island* const island : islands.awake(model))
+    if (may_go_beyond(*island)) sprung_.push_back(model.bodies[island->bodies().front()].articulate);
+  for (int round = 0; round < most_looks && !sprung_.empty(); ++round) {
+    islands.replace_by_leaders(sprung_);
+    editor_.parallel.for_each(sprung_.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
+      islands.try_ahead(model, *islands.of_articulate(sprung_[i]), dt, dt, deadline_);
+    });
+    std::erase_if(sprung_, [&](std::uint32_t leader) {
+      return !meets_on_its_way(*islands.of_articulate(leader), dt, false);
+    });
+    if (!sprung_.empty()) follow_contacts(dt);
+  }
+}
+
+// The same for a part of a step; without one, for the rest.
+void Stepper::look_along_way_of_part(std::uint32_t leader, std::optional<double> part, double dt) {
+  model::Model& model = editor_.model;
+  island::Islands& islands = editor_.islands;
+  const double h = part.value_or(dt - islands.ahead(model, *islands.of_articulate(leader)));
+  for (int round = 0; round < most_looks && may_go_beyond(*islands.of_articulate(leader)); ++round) {
+    islands.try_ahead(model, *islands.of_articulate(leader), h, dt, deadline_);
+    if (!meets_on_its_way(*islands.of_articulate(leader), h, true)) return;
+    follow_contacts(dt);
+  }
+}
+
+bool Stepper::may_go_beyond(island::Island& island) {
+  model::Model& model = editor_.model;
+  return island.is_sprung() && island.agree_on_stride(model) == 1 &&
+         std::ranges::any_of(island.bodies(), [&](std::uint32_t body) { return contacts_.is_watched(model, body); });
+}
+
+bool Stepper::meets_on_its_way(island::Island& island, double h, bool is_part) {
+  model::Model& model = editor_.model;
+  bool is_beyond = false;
+  ways_.clear();
+  contacts_.set_length(model, h);
+  island.for_each_way(model, [&](std::uint32_t ring, const Vec3& way) {
+    ways_.push_back({ring, (1 / h) * way});
+    const double beside = norm(way - h * model.rings[ring].velocity);
+    model.for_each_in_ring(ring, [&](std::uint32_t p) {
+      is_beyond = is_beyond || contacts_.is_beyond(model, model.particles[p].body, beside);
+    });
+  });
+  if (!is_beyond) return false;
+  const auto exchange = [&] {
+    for (auto& [ring, velocity] : ways_) std::swap(model.rings[ring].velocity, velocity);
+  };
+  exchange();
+  const bool meets = contacts_.find_on_ways(model, outlines_, island.bodies(), is_part);
+  exchange();
+  if (meets) island.drop_try();
+  return meets;
+}
+
 // 3a. An island of which a body would pass or hit another one far along its way takes the step in parts, each with contacts
 // of its own: up to the place where they meet, then a short one, and so on. The last part is taken with all other islands. At
 // first a part was a share of the same step, in which a contact began: a second law for each row, which made energy.
@@ -143,13 +224,13 @@ void Stepper::advance_in_parts(StepReport& report) {
       parts_.push_back(contacts_.find_part(model, outlines_, island.bodies(), report.dt - islands.ahead(model, island),
                                            {.is_first = round == 0, .may_cut = may_cut, .of_sweeps = of_sweeps}));
     }
-    islands.update(model, editor_.parallel);
-    (void)islands.awake(model);  // islands share the budget by their sizes now, not by those of the step before
+    follow_contacts(report.dt);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < hasty_.size(); ++i) {
-      island::Island* const island = islands.of_articulate(hasty_[i]);
-      if (!parts_[i] || !island) continue;
-      add(islands.advance_part(model, *island, *parts_[i], report.dt, deadline_), report);
+      if (!islands.of_articulate(hasty_[i])) continue;
+      look_along_way_of_part(hasty_[i], parts_[i], report.dt);
+      if (!parts_[i]) continue;
+      add(islands.advance_part(model, *islands.of_articulate(hasty_[i]), *parts_[i], report.dt, deadline_), report);
       hasty_[kept++] = hasty_[i];
     }
     hasty_.resize(kept);

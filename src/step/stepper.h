@@ -25,6 +25,12 @@ class Stepper {
   void take_held_forces(StepReport&);
   void find_contacts(double h);
   void update_islands(double dt);
+  void wake(double dt);
+  void follow_contacts(double dt);
+  void look_along_ways(double dt);
+  bool may_go_beyond(island::Island&);
+  void look_along_way_of_part(std::uint32_t leader, std::optional<double> part, double dt);
+  bool meets_on_its_way(island::Island&, double h, bool is_part);
   void advance_in_parts(StepReport&);
   void advance_islands(StepReport&);
   void add(const solver::AdvanceReport&, StepReport&);
@@ -43,6 +49,8 @@ class Stepper {
   island::Island::Clock::time_point deadline_;
   ingredient::Outcome outcome_;
   std::vector<std::uint32_t> flagged_, dirty_, woken_;  // articulates: both, velocities to project, sleepers to wake
+  std::vector<std::uint32_t> sprung_;                   // articulates whose islands springs or motors move
+  std::vector<std::pair<std::uint32_t, Vec3>> ways_;    // rings, with their mean velocities on their ways
   std::vector<std::uint32_t> hasty_;                    // articulates whose islands take the step in parts
   std::vector<std::optional<double>> parts_;            // of each of them: the next one, s, if it is not the last
 };
