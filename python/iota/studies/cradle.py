@@ -222,21 +222,33 @@ class Cradle:
         return ball
 
 
-def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look) -> None:
-    """Balls with their strings; two bars on posts on a plate."""
-    strings = [
-        looks.cylinder(
-            0.0006, "rope", math.hypot(STRING, SPREAD), offset=(0, STRING / 2, side / 2),
-            rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
-        )
-        for side in (-SPREAD, SPREAD)
-    ]  # fmt: skip
-    world.draw(balls, [look, *strings])
-    reach = len(balls) * RADIUS + 0.05
-    upright = (0, 0, 0.5**0.5, 0.5**0.5)
-    parts = [looks.box((2 * reach + 0.03, 0.016, 2 * SPREAD + 0.03), "wood", 0.003, offset=(0, 0.008, 0))]
-    for side in (-SPREAD, SPREAD):
-        parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
+def present(
+    world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look, size: float = 1.0
+) -> None:
+    """Balls with their strings; two bars on posts on a plate. size: times the usual one."""
+    world.draw(balls, strung(look, size))
+    radius, height, spread = size * RADIUS, size * HEIGHT, size * SPREAD
+    reach = len(balls) * radius + size * 0.05
+    bar, upright = size * 0.003, (0, 0, 0.5**0.5, 0.5**0.5)
+    plate = (2 * reach + 10 * bar, size * 0.016, 2 * spread + 10 * bar)
+    parts = [looks.box(plate, "wood", bar, offset=(0, plate[1] / 2, 0))]
+    for side in (-spread, spread):
+        parts.append(looks.capsule(bar, "brass", 2 * reach, offset=(0, height, side)))
         for x in (-reach, reach):
-            parts.append(looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright))
+            parts.append(looks.capsule(bar, "brass", height, offset=(x, height / 2, side), rotation=upright))
     world.draw(frame, parts)
+
+
+def strung(look: looks.Look, size: float = 1.0) -> list[looks.Look]:
+    """A ball with its two strings."""
+    spread, string = size * SPREAD, size * STRING
+    return [
+        look,
+        *(
+            looks.cylinder(
+                size * 0.0006, "rope", math.hypot(string, spread), offset=(0, string / 2, side / 2),
+                rotation=turn_from_x(iota.Vec3(0, string, side).unit()),
+            )
+            for side in (-spread, spread)
+        ),
+    ]  # fmt: skip
