@@ -184,7 +184,7 @@ def acrobat(world: iota.World, at: iota.Vec3, color: str, number: int) -> iota.B
 
 def cradle(world: iota.World, at: iota.Vec3, color: str, number: int) -> list[iota.Body]:
     """Stands on the ground, with one or two balls lifted."""
-    row = cradle_contact.Row(world, "steel", at=iota.Vec3(at.x, 0, at.z), label=False, size=BALL / RADIUS)
+    row = cradle_contact.Row(world, "steel", at=at - (0, HEIGHT, 0), label=False, size=BALL / RADIUS)
     row.lift(lifted := 1 + number % 2, 0)
     swing = iota.Vec3(0, 0, -0.9 * abs(math.sin(number)))  # rad/s, so that not all of them hit in the same step
     for ball, top in zip(row.balls[:lifted], row.tops, strict=False):
@@ -219,8 +219,8 @@ def water(system: iota.System) -> tuple[iota.Group, iota.Group]:
         return known["heads"], known["tails"]
     heads, tails = system.group("heads"), system.group("tails")
     up = abs(system.gravity)
-    system.field(SWIM, group=heads, p=APART, k=3.0, u=1.4, s=12.0, o=0.6, g=up, e=0.7, h=HOME, b=0.3, w=0.9)
-    system.field(TRAIL, group=tails, k=1.0, g=up)
+    system.field(SWIM, group=heads, p=APART, k=3.0, u=2.1, s=12.0, o=0.72, g=up, e=0.7, h=HOME, b=0.3, w=0.9)
+    system.field(TRAIL, group=tails, k=4.0, g=up)
     system.pair_force(
         "attract_repel", cutoff=0.8, group=heads, attraction=0.1, attraction_range=0.8, repulsion=0.18, repulsion_range=0.2,
         alignment=0.02,
@@ -273,10 +273,10 @@ class Kind:
 
 KINDS = (
     Kind(gallows, acrobat, solid),
-    Kind(None, cradle, steel, ("full", "frozen")),  # balls touch, and what touches takes every step
     Kind(gallows, ladder, rod),
-    Kind(pole, shoal, paper),
     Kind(gallows, chain, rod),
+    Kind(None, cradle, steel, ("full", "frozen")),  # balls touch, and what touches takes every step
+    Kind(pole, shoal, paper),
 )
 
 
