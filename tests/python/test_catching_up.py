@@ -563,7 +563,8 @@ def test_a_shoal_swims_on_though_others_obey_the_same_laws() -> None:
         system = iota.System(damping=0.02)
         world = iota.World(system, ground=0.0)
         shoals = [
-            crowd.shoal(world, iota.Vec3(3 * crowd.APART * number, crowd.HEIGHT, 0), "#888888", 1) for number in range(3)
+            crowd.shoal(world, iota.Vec3(3 * crowd.APART * number, crowd.HEIGHT, 0), "#888888", 1)
+            for number in range(3)
         ]
         for _ in range(60):
             system.step(DT)

@@ -16,7 +16,7 @@ from page_client import PageClient
 import iota
 from iota.studies import crowd
 from iota.world import levels
-from iota.world.clients import Client
+from iota.world.clients import Client, Hold
 from iota.world.levels import OWN_REST, Level, Managed
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -225,6 +225,23 @@ def test_a_loose_part_of_a_thing_that_comes_to_a_viewer_makes_it_full(
     assert thing.level.name == "frozen"
 
 
+def test_a_thing_is_full_in_each_step_in_which_a_user_holds_a_loose_part_of_it(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    """The others were frozen in every ninth step."""
+    world, roots = made
+    thing = world.levels.manage([roots[4], roots[5]])
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    assert thing.level.name == "frozen"
+    client = world._state.clients.by_id[1] = Client(1)
+    client.holds[1] = hold = Hold(1, 1, roots[4], roots[4])
+    world._state.clients.grip(hold, roots[4], iota.Vec3(0, 0, 0), roots[4].position + (0, 0.5, 0))
+    for _ in range(60):
+        world.step()
+        assert thing.level.name == "full" and all(body.stride == 1 for body in thing.bodies)
+
+
 def test_a_part_that_an_undo_brings_back_belongs_to_its_thing(made: tuple[iota.World, list[iota.Body]]) -> None:
     world, roots = made
     thing = world.levels.manage([roots[3], roots[4], roots[5]])
@@ -232,13 +249,13 @@ def test_a_part_that_an_undo_brings_back_belongs_to_its_thing(made: tuple[iota.W
     run(world, 150)
     assert thing.level.name == "frozen"
     with world.system.edit():
-        roots[3].articulate.destroy() if hasattr(roots[3].articulate, "destroy") else roots[3].destroy()
+        roots[3].destroy()
     run(world, 60)
     assert thing.root == roots[4]
     world.system.undo()
     run(world, 60)
     assert roots[3] in thing.bodies and all(each.root != roots[3] for each in world.levels.things)
-    assert all(body.stride == 0 for body in thing.bodies) or thing.level.name != "frozen"
+    assert thing.level.name == "frozen" and all(body.stride == 0 for body in thing.bodies)
 
 
 def test_things_are_managed_without_a_look_at_all_others(monkeypatch: pytest.MonkeyPatch) -> None:

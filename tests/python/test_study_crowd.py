@@ -71,8 +71,8 @@ def test_a_shoal_swims_together_around_its_pole_and_no_fish_touches_another() ->
             places = np.array([list(fish.position) for fish in shoal]) - pole
             gaps = np.linalg.norm(places[:, None] - places, axis=2) + 9 * np.eye(len(shoal))
             away = np.hypot(places[:, 0], places[:, 2])
-            assert gaps.min() > crowd.LONG and 0.7 < away.min() and away.max() < 1.0
-            assert 1.7 < places[:, 1].min() and places[:, 1].max() < 3.0
+            assert gaps.min() > crowd.LONG and away.min() > 0.7 and away.max() < 1.0
+            assert places[:, 1].min() > 1.7 and places[:, 1].max() < 3.0
             around = np.exp(1j * np.arctan2(places[:, 2], places[:, 0]))
             assert abs(around.mean()) > 0.5, "they keep together"
     assert min(abs(fish.velocity) for fish in shoal) > 0.8

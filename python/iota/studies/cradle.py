@@ -222,9 +222,7 @@ class Cradle:
         return ball
 
 
-def present(
-    world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look, size: float = 1.0
-) -> None:
+def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look, size: float = 1.0) -> None:
     """Balls with their strings; two bars on posts on a plate. size: times the usual one."""
     world.draw(balls, strung(look, size))
     radius, height, spread = size * RADIUS, size * HEIGHT, size * SPREAD

@@ -166,7 +166,7 @@ class Managed:
     _welded: deque[frozenset[Body]] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
     _members: list[Body] = field(default_factory=list, repr=False)  # its bodies when its level was decided last
     _version: int = field(default=-1, repr=False)  # of the structure then
-    _middles: dict[Body, tuple[Particle, float]] = field(default_factory=dict, repr=False)  # of several articulates, by roots
+    _middles: dict[Body, tuple[Particle, float]] = field(default_factory=dict, repr=False)  # by the roots of several
 
     @property
     def level(self) -> Level:
@@ -201,8 +201,8 @@ class Managed:
     def _middle_of(self, root: Body) -> tuple[Particle, float]:
         known = self._middles.get(root)
         if known is None or not known[0].alive:
-            _, *rest = _measured(root.articulate.bodies)
-            self._middles[root] = known = rest[0], rest[1]
+            _, middle, extent = _measured(root.articulate.bodies)
+            self._middles[root] = known = middle, extent
         return known
 
     @property
@@ -1161,7 +1161,10 @@ class Levels(Part):
         for hold in self._clients.holds():
             body = hold.body
             thing = self._find(body) if body is not None else None
-            if thing is not None and thing.index:
+            if thing is None:
+                continue
+            self._arrays.keep_full(thing)
+            if thing.index:
                 self._change(thing, 0, 1.0, 0.0, "held")
 
     def _follow_engine(self) -> None:
@@ -1400,6 +1403,11 @@ class _Arrays:
         """Its bodies have become one, or come apart: its middle may be another particle."""
         if (row := self._row.get(thing)) is not None:
             self._is_old[row % self.slices] = True
+
+    def keep_full(self, thing: Managed) -> None:
+        """In this step it may not be reduced."""
+        if (row := self._row.get(thing)) is not None:
+            self.near[row] = True
 
     def is_free(self, thing: Managed) -> bool:
         """Whether it may be reduced."""
