@@ -225,28 +225,22 @@ class Cradle:
 def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look, size: float = 1.0) -> None:
     """Balls with their strings; two bars on posts on a plate. size: times the usual one."""
     world.draw(balls, strung(look, size))
-    radius, height, spread = size * RADIUS, size * HEIGHT, size * SPREAD
-    reach = len(balls) * radius + size * 0.05
-    bar, upright = size * 0.003, (0, 0, 0.5**0.5, 0.5**0.5)
-    plate = (2 * reach + 10 * bar, size * 0.016, 2 * spread + 10 * bar)
-    parts = [looks.box(plate, "wood", bar, offset=(0, plate[1] / 2, 0))]
-    for side in (-spread, spread):
-        parts.append(looks.capsule(bar, "brass", 2 * reach, offset=(0, height, side)))
+    reach, bar, high, wide, low = (size * each for each in (len(balls) * RADIUS + 0.05, 0.003, HEIGHT, SPREAD, 0.008))
+    upright = (0, 0, 0.5**0.5, 0.5**0.5)
+    parts = [looks.box((2 * reach + 10 * bar, 2 * low, 2 * wide + 10 * bar), "wood", bar, offset=(0, low, 0))]
+    for side in (-wide, wide):
+        parts.append(looks.capsule(bar, "brass", 2 * reach, offset=(0, high, side)))
         for x in (-reach, reach):
-            parts.append(looks.capsule(bar, "brass", height, offset=(x, height / 2, side), rotation=upright))
+            parts.append(looks.capsule(bar, "brass", high, offset=(x, high / 2, side), rotation=upright))
     world.draw(frame, parts)
 
 
 def strung(look: looks.Look, size: float = 1.0) -> list[looks.Look]:
     """A ball with its two strings."""
-    spread, string = size * SPREAD, size * STRING
-    return [
-        look,
-        *(
-            looks.cylinder(
-                size * 0.0006, "rope", math.hypot(string, spread), offset=(0, string / 2, side / 2),
-                rotation=turn_from_x(iota.Vec3(0, string, side).unit()),
-            )
-            for side in (-spread, spread)
-        ),
-    ]  # fmt: skip
+    return [look, *(
+        looks.cylinder(
+            size * 0.0006, "rope", size * math.hypot(STRING, SPREAD), offset=(0, size * STRING / 2, size * side / 2),
+            rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
+        )
+        for side in (-SPREAD, SPREAD)
+    )]  # fmt: skip
