@@ -48,7 +48,8 @@ def kind(name: str, count: int) -> iota.World:
     made.is_tinted = False
     for number in range(count):
         before = set(world.system.bodies)
-        HANGS[name](world, iota.Vec3(3.0 * (number % 20), 3.4, 3.0 * (number // 20)), number)
+        at = iota.Vec3(crowd.APART * (number % 20), crowd.HEIGHT, crowd.APART * (number // 20))
+        HANGS[name](world, at, number)
         made.things.append(
             world.levels.manage([body for body in world.system.bodies if body not in before and body.kind == "dynamic"])
         )
@@ -70,6 +71,7 @@ HANGS: dict[str, Callable[[iota.World, iota.Vec3, int], object]] = {
     "cradles": hang_cradle,
     "cloths": lambda world, at, number: weather.flag(world, at),
     "shoals": swim,
+    "paper fish": lambda world, at, number: crowd.shoal(world, at, "#888888", number),
 }
 COUNTS = {"cradles": 20, "cloths": 8, "shoals": 2}
 STIFFENS = ("acrobats", "rope ladders", "chains")
@@ -197,6 +199,7 @@ def draw(rows: list[Row]) -> None:
         "cradles": "#8a5a83",
         "cloths": "#b8860b",
         "shoals": "#4a7fb5",
+        "paper fish": "#c06c84",
         "together": "#222222",
     }
 
@@ -217,7 +220,7 @@ def draw(rows: list[Row]) -> None:
     parts.append('<text x="6" y="14">times cheaper than full</text>')
     for i, (name, color) in enumerate(colors.items()):
         mine = [row for row in rows if name in row.name and row.level != "full"]
-        parts.append(f'<text x="{70 + 82 * i}" y="32" fill="{color}">{name}</text>')
+        parts.append(f'<text x="{70 + 71 * i}" y="32" fill="{color}">{name}</text>')
         for row in mine:
             x, y = at(row)
             label = row.name.split(", ")[1].split()[0] + "x" if name == "together" else row.level

@@ -556,6 +556,30 @@ def test_what_others_attract_goes_on_from_where_it_was(is_nailed: bool) -> None:
     assert left_alone(system, [planet.body], 1.0), "nobody is near"
 
 
+def test_a_shoal_swims_on_though_others_obey_the_same_laws() -> None:
+    """Not so beside a fish of another shoal, which its own ones keep away from."""
+    places = []
+    for is_left in (True, False):
+        system = iota.System(damping=0.02)
+        world = iota.World(system, ground=0.0)
+        shoals = [
+            crowd.shoal(world, iota.Vec3(3 * crowd.APART * number, crowd.HEIGHT, 0), "#888888", 1)
+            for number in range(3)
+        ]
+        for _ in range(60):
+            system.step(DT)
+        if is_left:
+            assert left_alone(system, shoals[1], 1.5)
+        else:
+            for _ in range(180):
+                system.step(DT)
+        places.append(np.array([list(fish.position) for fish in shoals[1]]))
+        if not is_left:
+            shoals[0][0].position = shoals[1][0].position + (0.3, 0, 0)
+            assert not left_alone(system, shoals[1], 1.5)
+    assert np.abs(places[0] - places[1]).max() < 0.1
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -16,7 +16,7 @@ from page_client import PageClient
 import iota
 from iota.studies import crowd
 from iota.world import levels
-from iota.world.clients import Client
+from iota.world.clients import Client, Hold
 from iota.world.levels import OWN_REST, Level, Managed
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -198,6 +198,88 @@ def test_a_thing_of_several_articulates_has_one_level(made: tuple[iota.World, li
     world.levels.budget_ms = PLENTY
     run(world, 60)
     assert thing.root == roots[4] and thing.level.name == "full" and world.system.validate() == []
+
+
+def test_a_loose_part_of_a_thing_that_comes_to_a_viewer_makes_it_full(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    """A fish of a shoal may leave it: where it was when it came under management counts no more."""
+    world, _ = made
+    system = world.system
+    system.gravity = (0, 0, 0)
+    rods = [system.body() for _ in range(3)]
+    for number, rod in enumerate(rods):
+        for x in (0.0, 0.3):
+            rod.particle((x, number, -FAR))
+    thing = world.levels.manage(rods)
+    world.levels.budget_ms = LITTLE
+    run(world, 150)
+    assert thing.level.name == "frozen"
+    rods[1].position = (0, 0, 0)
+    run(world, 2)
+    world.levels.budget_ms = 2 * LITTLE
+    run(world, 150)
+    assert thing.level.name == "full" and all(rod.stride == 1 for rod in rods)
+    rods[1].position = (0, 1, -FAR)
+    run(world, 150)
+    assert thing.level.name == "frozen"
+
+
+def test_a_thing_is_full_in_each_step_in_which_a_user_holds_a_loose_part_of_it(
+    made: tuple[iota.World, list[iota.Body]],
+) -> None:
+    """The others were frozen in every ninth step."""
+    world, roots = made
+    thing = world.levels.manage([roots[4], roots[5]])
+    world.levels.budget_ms = LITTLE
+    run(world, 100)
+    assert thing.level.name == "frozen"
+    client = world._state.clients.by_id[1] = Client(1)
+    client.holds[1] = hold = Hold(1, 1, roots[4], roots[4])
+    world._state.clients.grip(hold, roots[4], iota.Vec3(0, 0, 0), roots[4].position + (0, 0.5, 0))
+    for _ in range(60):
+        world.step()
+        assert thing.level.name == "full" and all(body.stride == 1 for body in thing.bodies)
+
+
+def test_a_part_that_an_undo_brings_back_belongs_to_its_thing(made: tuple[iota.World, list[iota.Body]]) -> None:
+    world, roots = made
+    thing = world.levels.manage([roots[3], roots[4], roots[5]])
+    world.levels.budget_ms = LITTLE
+    run(world, 150)
+    assert thing.level.name == "frozen"
+    with world.system.edit():
+        roots[3].destroy()
+    run(world, 60)
+    assert thing.root == roots[4]
+    world.system.undo()
+    run(world, 60)
+    assert roots[3] in thing.bodies and all(each.root != roots[3] for each in world.levels.things)
+    assert thing.level.name == "frozen" and all(body.stride == 0 for body in thing.bodies)
+
+
+def test_things_are_managed_without_a_look_at_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A look at all joints for each thing took a minute for a thousand of them."""
+    world = iota.World(iota.System(), ground=None)
+    looks = 0
+    jointed = levels.Levels._jointed
+
+    def counted(self: levels.Levels) -> set[iota.Body]:
+        nonlocal looks
+        looks += 1
+        return jointed(self)
+
+    monkeypatch.setattr(levels.Levels, "_jointed", counted)
+    things = []
+    for number in range(20):
+        door = world.system.body(shape=iota.Box((1, 1, 0.1)), mass=1, position=(0, 0, -5.0 * number))
+        world.system.revolute(door, at=(-0.5, 0, -5.0 * number), axis=(0, 1, 0))
+        things.append(world.levels.manage(door))
+        things.append(world.levels.manage(chain(world.system, (3, 0, -5.0 * number))))
+    world.levels.budget_ms = LITTLE
+    run(world, 2)
+    assert looks <= 1
+    assert [thing.is_jointed for thing in things] == [True, False] * 20
 
 
 def test_what_is_made_and_what_is_parted_is_managed_soon(made: tuple[iota.World, list[iota.Body]]) -> None:

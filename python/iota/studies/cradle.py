@@ -222,21 +222,25 @@ class Cradle:
         return ball
 
 
-def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look) -> None:
-    """Balls with their strings; two bars on posts on a plate."""
-    strings = [
+def present(world: iota.World, balls: list[iota.Body], frame: iota.Body, look: looks.Look, size: float = 1.0) -> None:
+    """Balls with their strings; two bars on posts on a plate. size: times the usual one."""
+    world.draw(balls, strung(look, size))
+    reach, bar, high, wide, low = (size * each for each in (len(balls) * RADIUS + 0.05, 0.003, HEIGHT, SPREAD, 0.008))
+    upright = (0, 0, 0.5**0.5, 0.5**0.5)
+    parts = [looks.box((2 * reach + 10 * bar, 2 * low, 2 * wide + 10 * bar), "wood", bar, offset=(0, low, 0))]
+    for side in (-wide, wide):
+        parts.append(looks.capsule(bar, "brass", 2 * reach, offset=(0, high, side)))
+        for x in (-reach, reach):
+            parts.append(looks.capsule(bar, "brass", high, offset=(x, high / 2, side), rotation=upright))
+    world.draw(frame, parts)
+
+
+def strung(look: looks.Look, size: float = 1.0) -> list[looks.Look]:
+    """A ball with its two strings."""
+    return [look, *(
         looks.cylinder(
-            0.0006, "rope", math.hypot(STRING, SPREAD), offset=(0, STRING / 2, side / 2),
+            size * 0.0006, "rope", size * math.hypot(STRING, SPREAD), offset=(0, size * STRING / 2, size * side / 2),
             rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
         )
         for side in (-SPREAD, SPREAD)
-    ]  # fmt: skip
-    world.draw(balls, [look, *strings])
-    reach = len(balls) * RADIUS + 0.05
-    upright = (0, 0, 0.5**0.5, 0.5**0.5)
-    parts = [looks.box((2 * reach + 0.03, 0.016, 2 * SPREAD + 0.03), "wood", 0.003, offset=(0, 0.008, 0))]
-    for side in (-SPREAD, SPREAD):
-        parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
-        for x in (-reach, reach):
-            parts.append(looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright))
-    world.draw(frame, parts)
+    )]  # fmt: skip

@@ -11,9 +11,9 @@ from iota import looks
 from .cradle import HEIGHT, LIFT, RADIUS, STRING, present
 
 BALLS = 5
-METALS = {  # density, kg/m^3; restitution; look
-    "steel": (7800.0, 0.99, looks.sphere(RADIUS, "steel")),
-    "lead": (11300.0, 0.1, looks.sphere(RADIUS, "paint", color="#474c55")),
+METALS = {  # density, kg/m^3; restitution; material and color
+    "steel": (7800.0, 0.99, "steel", None),
+    "lead": (11300.0, 0.1, "paint", "#474c55"),
 }
 PLACES = {"steel": -0.15, "lead": 0.15}  # m
 
@@ -64,32 +64,39 @@ class Row:
     """Balls of a metal on strings. They do nothing but swing and touch."""
 
     def __init__(
-        self, world: iota.World, metal: str, count: int = BALLS, at: iota.Vec3 | None = None, label: bool = True
+        self,
+        world: iota.World,
+        metal: str,
+        count: int = BALLS,
+        at: iota.Vec3 | None = None,
+        label: bool = True,
+        size: float = 1.0,
     ) -> None:
-        """at: where it stands, m; None: at the place of its metal."""
-        density, restitution, look = METALS[metal]
+        """at: where it stands, m; None: at the place of its metal. size: times the usual one."""
+        density, restitution, material, color = METALS[metal]
         at = iota.Vec3(PLACES[metal], 0, 0) if at is None else at
-        frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
+        radius, height, self.string = size * RADIUS, size * HEIGHT, size * STRING
+        frame = world.system.body("static", shape=iota.Box((size * 0.01,) * 3), position=at)
         frame.name = f"frame of {metal}"
         self.balls, self.tops = [], []
         for number in range(count):
-            top = at + (2 * RADIUS * (number - (count - 1) / 2), HEIGHT, 0)
-            ball = world.system.body(shape=iota.Sphere(RADIUS), density=density, position=top - (0, STRING, 0))
+            top = at + (2 * radius * (number - (count - 1) / 2), height, 0)
+            ball = world.system.body(shape=iota.Sphere(radius), density=density, position=top - (0, self.string, 0))
             ball.name = f"ball of {metal}"
             ball.material = iota.Material(friction=0.05, restitution=restitution)
             world.system.revolute(ball, frame, at=top, axis=(0, 0, 1))
             self.balls.append(ball)
             self.tops.append(top)
-        present(world, self.balls, frame, look)
+        present(world, self.balls, frame, looks.sphere(radius, material, color=color), size)
         if label:
-            world.label(metal, at + (0, HEIGHT + 0.02, 0))
+            world.label(metal, at + (0, height + size * 0.02, 0))
 
     def lift(self, left: int, right: int) -> None:
         """Balls on both sides are held up and let go."""
         for number, (ball, top) in enumerate(zip(self.balls, self.tops, strict=True)):
             angle = -LIFT if number < left else LIFT if number >= len(self.balls) - right else 0.0
             ball.set_pose(
-                top + (STRING * math.sin(angle), -STRING * math.cos(angle), 0),
+                top + (self.string * math.sin(angle), -self.string * math.cos(angle), 0),
                 (0, 0, math.sin(angle / 2), math.cos(angle / 2)),
             )
             ball.velocity = ball.angular_velocity = (0, 0, 0)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Field, Group, PairForce, Particle, ParticleBatch, System
+from iota._core import Body, Box, Field, Group, PairForce, Particle, ParticleBatch, Places, System, Vec3
 from iota.world.ties import at_time, can_be_shifted, can_copy_law, copy_of_law
 
 Force = Field | PairForce
@@ -22,13 +22,13 @@ def forces_on(system: System, bodies: Sequence[Body]) -> list[Force]:
     return [force for force in forces if force.active and any(_has_any(group, particles) for group in _groups(force))]
 
 
-def can_copy_force(force: Force, bodies: Sequence[Body]) -> bool:
-    """Whether `copy_forces` can copy it for these bodies. A function of the script gets all of its group, in its order."""
+def can_copy_force(force: Force, bodies: Sequence[Body], places: Places) -> bool:
+    """Whether `copy_forces` can copy it for these bodies. A function of the script gets all of its group, in its order. places: of the system."""
     for group in _groups(force):
         if group is not None and any(len({p in group for p in _own_points(body)}) > 1 for body in bodies):
             return False  # a copy of a solid has points of its own: all of them, or none
     if isinstance(force, PairForce):
-        return can_copy_law(force.law) and not _meets_others(force, bodies)
+        return can_copy_law(force.law) and not _meets_others(force, bodies, places)
     if force.kind == "expression":
         return can_be_shifted(force.text)
     if force.kind != "function":
@@ -62,9 +62,10 @@ def copy_forces(
         if own in groups:
             return groups[own]
         groups[own] = made = system.group(own.name)
-        for p in own.particles:
-            if p.mass > 0 and p.body in body_of:
-                made.add(*([particle_of[p]] if p in particle_of else _own_points(body_of[p.body])))
+        for body, twin in body_of.items():  # a group may have thousands of others
+            for p in body.particles:
+                if p.mass > 0 and p in own:
+                    made.add(*([particle_of[p]] if p in particle_of else _own_points(twin)))
         return made
 
     for force in forces:
@@ -120,22 +121,22 @@ def _groups(force: Force) -> list[Group | None]:
     return [force.group] if isinstance(force, Field) or force.other is None else [force.group, force.other]
 
 
-def _meets_others(force: PairForce, bodies: Sequence[Body]) -> bool:
+def _meets_others(force: PairForce, bodies: Sequence[Body], places: Places) -> bool:
     """Whether others are as near as it reaches: copies without them would have an energy of their own."""
     own = _particles_of(bodies)
     first, second = force.group, force.other or force.group
     pairs = [(first, second)] if first == second else [(first, second), (second, first)]
     for mine, others in pairs:
-        places = _places([p for p in own if mine is None or p in mine])
-        theirs = force.system.positions if others is None else _places([p for p in others.particles if p not in own])
-        if not (len(places) and len(theirs)):
+        at = _places([p for p in own if mine is None or p in mine])
+        if not len(at):
             continue
-        low, high = places.min(axis=0) - force.cutoff, places.max(axis=0) + force.cutoff
-        near = theirs[((theirs >= low) & (theirs <= high)).all(axis=1)]
-        if others is not None and len(near):
+        low, high = at.min(axis=0) - force.cutoff, at.max(axis=0) + force.cutoff
+        if not np.isfinite(high - low).all():
             return True
-        known = {tuple(place) for place in _places(list(own)).tolist()}
-        if any(tuple(place) not in known for place in near.tolist()):
+        near = places.overlap(Box(high - low), Vec3(*(low + high) / 2), (0, 0, 0, 1), None)
+        points = [p for body in near for p in body.particles if p not in own and (others is None or p in others)]
+        found = _places(points)
+        if ((found >= low) & (found <= high)).all(axis=1).any():
             return True
     return False
 

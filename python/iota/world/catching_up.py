@@ -51,7 +51,7 @@ class CatchUp:
         forces = forces_on(system, bodies)
         parts: list[Body | Tie | Force] = [*bodies, *ties, *forces]
         self._parts = [(part, getattr(part, "active", True)) for part in parts]
-        if seconds > 0 and _can_be_copied(bodies, ties, forces):
+        if seconds > 0 and _can_be_copied(bodies, ties, forces, places):
             self._places = _places_of(bodies)
             self._pieces = self._work(bodies, seconds, ties, forces, places)
 
@@ -120,8 +120,10 @@ def _places_of(bodies: Sequence[Body]) -> list[Vec3]:
     return [p.position for body in bodies for p in body.particles]
 
 
-def _can_be_copied(bodies: Sequence[Body], ties: Sequence[Tie], forces: Sequence[Force]) -> bool:
-    if not (all(can_be_copied(tie) for tie in ties) and all(can_copy_force(force, bodies) for force in forces)):
+def _can_be_copied(bodies: Sequence[Body], ties: Sequence[Tie], forces: Sequence[Force], places: Places) -> bool:
+    if not all(can_be_copied(tie) for tie in ties):
+        return False
+    if not all(can_copy_force(force, bodies, places) for force in forces):
         return False
     if forces and sum(len(body.particles) for body in bodies) > MOST_POINTS:
         return False

@@ -166,6 +166,7 @@ class Managed:
     _welded: deque[frozenset[Body]] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
     _members: list[Body] = field(default_factory=list, repr=False)  # its bodies when its level was decided last
     _version: int = field(default=-1, repr=False)  # of the structure then
+    _middles: dict[Body, tuple[Particle, float]] = field(default_factory=dict, repr=False)  # by the roots of several
 
     @property
     def level(self) -> Level:
@@ -174,30 +175,35 @@ class Managed:
 
     @property
     def bodies(self) -> list[Body]:
-        """Its bodies, of which there is one while it is stiff; those of the structure that stands in for it. Those of a thing that was
-        stiff are others than before, but for the first one."""
+        """Its bodies that are left, of which there is one while it is stiff; those of the structure that stands in for it. Those of a thing that
+        was stiff are others than before, but for the first one."""
         if self._stand_in is not None:
             stands: list[Body] = [body for body in self._stand_in.bodies if body.alive]
             return stands
-        found = self.root.articulate.bodies
-        for other in self.others:
-            if other.alive and other not in found:
-                found = [*found, *other.articulate.bodies]
+        found: list[Body] = []
+        for root in self._roots:
+            if root not in found:
+                found = [*found, *root.articulate.bodies]
         return found
 
     @property
-    def _middle(self) -> Particle:
-        """The present one; stiffness may end that of the start."""
+    def _spots(self) -> list[tuple[Particle, float]]:
+        """Particles by which it is looked at, and from each to the farthest point of its articulate at most, m. Of several articulates each has
+        one, as loose ones go their own ways."""
         if self._stand_in is not None:
-            return self.bodies[0].particles[0]
-        return self.middle if self.middle.alive else self.root.particles[0]
+            return [(self.bodies[0].particles[0], 2 * max(self.extent, self.size))]
+        if self.others:
+            return [self._middle_of(root) for root in self._roots]
+        if self.middle.alive:
+            return [(self.middle, self.extent)]
+        return [(self.root.particles[0], 2 * max(self.extent, self.size))]  # stiffness has ended the middle
 
-    @property
-    def _extent(self) -> float:
-        """From the present middle to the farthest point at most, m."""
-        if self._stand_in is None and self.middle.alive:
-            return self.extent
-        return 2 * max(self.extent, self.size)
+    def _middle_of(self, root: Body) -> tuple[Particle, float]:
+        known = self._middles.get(root)
+        if known is None or not known[0].alive:
+            _, middle, extent = _measured(root.articulate.bodies)
+            self._middles[root] = known = middle, extent
+        return known
 
     @property
     def _roots(self) -> list[Body]:
@@ -233,6 +239,7 @@ class Managed:
     def _measure(self) -> None:
         """Its size, its middle and its extent now."""
         self.size, self.middle, self.extent = _measured(self.bodies)
+        self._middles.clear()
 
     @property
     def mass(self) -> float:
@@ -256,7 +263,9 @@ class Managed:
             self._keep_stand_in()
         if not self.root.alive:
             left = [self.root.survivor, *self.others]
-            self.root = next((body for body in left if body is not None and body.alive), self.root)
+            before, self.root = self.root, next((body for body in left if body is not None and body.alive), self.root)
+            if self.others:  # an undo may bring the former root back
+                self.others = (before, *(body for body in self.others if body not in (before, self.root)))
         return self.root.alive
 
     def _has(self, body: Body) -> bool:
@@ -322,6 +331,7 @@ class Levels(Part):
         self._ties: Ties | None = None  # None: to be found when they are needed
         self._version = -1  # of the structure after the latest changes of levels, which make and end no ties
         self._by_root: dict[Body, Managed] = {}  # empty: as of no time
+        self._unchecked: list[Managed] = []  # for joints: all at once, as each look goes through all joints
         self._things: list[Managed] = []
         self._names: set[str] = set()  # theirs, and of some that were
         self._was_on = False  # there was a budget, so an undo may bring strides back
@@ -423,8 +433,8 @@ class Levels(Part):
         on_level: Callable[[Managed, Level], None] | None = None,
         name: str = "",
     ) -> Managed:
-        """Says how a thing is managed: an articulate, or several that belong together, as the parts of an engine do, which joints hold: then all
-        bodies that are given, and what is hinged to them, have one level. Without a call each articulate is a thing. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
+        """Says how a thing is managed: an articulate, or several that belong together, as the parts of an engine do, which joints hold, or the
+        fish of a shoal: then all bodies that are given, and what is hinged to them, have one level. Without a call each articulate is a thing. levels: from "full" downwards, names of the standard ones ("full", "1/2", "1/4",
         "1/8", "stiff", "frozen") or `Level`s of one's own; None: all that it can have. significance: a function that returns a
         number, instead of visual angle times speed (rad^2/s) for the most interested viewer. on_level: is told each change.
 
@@ -454,15 +464,23 @@ class Levels(Part):
             raise ValueError(f"{chosen_before.root!r} is managed already, as {chosen_before.name!r}")
         if not any(body.particles for body in members):
             raise ValueError(f"{bodies[0]!r} has no particles, so it never moves, and costs nothing")
-        is_jointed = self._has_joints(members)
-        can_be_stiff = len(roots) == 1 and len(members) > 1 and not is_jointed
-        chosen = None if levels is None else self._levels(levels, can_be_stiff)
+        chosen = None if levels is None else self._levels(levels)
+        wants_stiff = not _is_hung(members) if chosen is None else any(level.is_stiff for level in chosen)
+        is_one = len(roots) == 1 and len(members) > 1
+        is_jointed = is_one and wants_stiff and self._has_joints(members)
+        can_be_stiff = is_one and not is_jointed
+        if chosen is not None and wants_stiff and not can_be_stiff:
+            raise ValueError(
+                "a thing can be stiff if it is one articulate of several bodies, held together by hinges alone: joints would end when its bodies become one"
+            )
         for managed in before:
             self._release(managed)
             self._things.remove(managed)
+            self._by_root = {}
         made = self._add(roots[0], members, can_be_stiff, name, self._lined(), tuple(roots[1:]))
         made.levels = chosen or made.levels
         made.is_jointed = is_jointed
+        self._unchecked.append(made)
         made.significance, made.on_level = significance, on_level
         made.is_chosen, made.is_pinned = True, any(each.is_pinned for each in before)
         return made
@@ -496,6 +514,7 @@ class Levels(Part):
         self._end_strides()
         self._coming.clear()
         self._things = [thing for thing in self._things if thing.is_chosen or thing.is_pinned]
+        self._by_root = {}
         self._names = {thing.name for thing in self._things}
         self._gone.clear()
         self._count, self._looked_at = -1, self._steps - HOLD
@@ -687,6 +706,10 @@ class Levels(Part):
             self._manage_all()
         is_new = self._is_old or self._steps == 0
         if self._is_old:
+            for thing in self._unchecked:
+                if thing.root.alive:
+                    self._is_jointed_by_now(thing, thing.bodies)
+            self._unchecked.clear()
             self._things = self._living()
             self._arrays.build(self._things)
             self._by_root = {}
@@ -825,6 +848,7 @@ class Levels(Part):
                 before.leave(thing)
             if before.structure is not None or after.structure is not None:
                 thing._swap(self._scene, after)
+                self._by_root = {}
             if not thing.root.alive or after not in thing.levels:
                 return  # the script has destroyed it meanwhile, or taken what stood in for it apart
             was_stiff = bool(thing._welds)
@@ -1031,6 +1055,7 @@ class Levels(Part):
                 is_jointed = any(body in jointed for body in members)
                 made = self._add(moving[0], members, len(members) > 1 and not is_jointed, "", lined)
                 made.is_jointed = is_jointed
+                self._reread(made)  # a part of something that had a stride has it, too
 
     def _add(
         self,
@@ -1045,8 +1070,7 @@ class Levels(Part):
         size, middle, extent = _measured(members)
         stiff = replace(STIFF, share=min(1.0, 1.2 / len(members)))
         # A thing that hangs saves little by stiffness, and loses its swing: strides of 8 cost less.
-        is_hung = any(p.is_nailed for body in members for p in body.particles)
-        has_stiff = can_be_stiff and not is_hung
+        has_stiff = can_be_stiff and not _is_hung(members)
         levels = tuple(stiff if level is STIFF else level for level in STANDARD if has_stiff or level is not STIFF)
         lines: list[tuple[Particle, Particle]] = []
         if can_be_stiff:  # as they are drawn now
@@ -1065,6 +1089,8 @@ class Levels(Part):
         made._members = made.bodies
         self._names.add(made.name)
         self._things.append(made)
+        if self._by_root:
+            self._by_root.update(dict.fromkeys(made._roots, made))
         self._is_old = True
         return made
 
@@ -1080,7 +1106,8 @@ class Levels(Part):
         called = f"{kind} {name!r}"
         return called if called not in self._names else f"{kind} {f'{name} {root.slot}'!r}"
 
-    def _levels(self, given: Sequence[str | Level], can_be_stiff: bool) -> tuple[Level, ...]:
+    @staticmethod
+    def _levels(given: Sequence[str | Level]) -> tuple[Level, ...]:
         levels: list[Level] = []
         for level in [given] if isinstance(given, str) else given:
             if isinstance(level, str) and level not in BY_NAME:
@@ -1095,10 +1122,6 @@ class Levels(Part):
         names = [level.name for level in levels]
         if twice := next((each for each in names if names.count(each) > 1), None):
             raise ValueError(f"there are two levels {twice!r}: reports tell them by their names")
-        if any(level.is_stiff for level in levels) and not can_be_stiff:
-            raise ValueError(
-                "a thing can be stiff if it is one articulate of several bodies, held together by hinges alone: joints would end when its bodies become one"
-            )
         return tuple(levels)
 
     def _lined(self) -> set[Body]:
@@ -1116,8 +1139,8 @@ class Levels(Part):
         return any(body in jointed for body in members)
 
     def _find(self, thing: Body | Articulate) -> Managed | None:
-        body = thing if isinstance(thing, Body) else thing.bodies[0]
-        return next((each for each in self._things if each._has(body)), None)
+        members = thing.articulate.bodies if isinstance(thing, Body) else thing.bodies
+        return next((each for body in members if (each := self._thing_of_root(body)) is not None), None)
 
     def _eyes(self) -> Floats:
         """The finite places of viewers. If the function of the script fails, the eyes of users count instead from then on."""
@@ -1138,7 +1161,10 @@ class Levels(Part):
         for hold in self._clients.holds():
             body = hold.body
             thing = self._find(body) if body is not None else None
-            if thing is not None and thing.index:
+            if thing is None:
+                continue
+            self._arrays.keep_full(thing)
+            if thing.index:
                 self._change(thing, 0, 1.0, 0.0, "held")
 
     def _follow_engine(self) -> None:
@@ -1189,6 +1215,7 @@ class Levels(Part):
                 self._gone.remove(thing)
                 found.append(thing)
         self._things += found
+        self._by_root = {}
         return found
 
     @staticmethod
@@ -1220,6 +1247,10 @@ def _places(given: Iterable[Place]) -> list[list[float]]:
         raise TypeError(
             f"levels.viewers must return a list of places, (x, y, z) in m, not {SHORT.repr(given)}"
         ) from None
+
+
+def _is_hung(bodies: list[Body]) -> bool:
+    return any(p.is_nailed for body in bodies for p in body.particles)
 
 
 def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
@@ -1259,6 +1290,33 @@ def _eye_of(client: Client) -> Place | None:
     return client.camera.position
 
 
+class _Spots:
+    """Where things are: the middles of their articulates."""
+
+    def __init__(self, system: System, things: list[Managed]) -> None:
+        spots = [thing._spots for thing in things]
+        counts = [len(each) for each in spots]
+        self._starts = np.cumsum([0, *counts[:-1]])
+        self._middles: ParticleArray = system.array([middle for each in spots for middle, _ in each])
+        self._extents = np.array([extent for each in spots for _, extent in each])
+        halves = np.repeat([0.5 * thing.size for thing in things], counts)
+        self._halves = np.where(np.repeat(counts, counts) > 1, self._extents, halves)
+        self._has_several = len(self._extents) > len(things)
+
+    def speeds(self) -> Floats:
+        """Of the fastest middle of each thing, m/s."""
+        speeds = _lengths(self._middles.velocities)
+        return np.maximum.reduceat(speeds, self._starts) if self._has_several else speeds
+
+    def distances(self, eyes: Floats) -> tuple[Floats, Floats]:
+        """From the nearest viewer to the nearest point that each thing may have, and to about where its picture is, m."""
+        distance = _lengths(self._middles.positions[:, None, :] - eyes[None, :, :]).min(axis=1)
+        gap, seen = distance - self._extents, np.maximum(distance - self._halves, 1e-3)
+        if self._has_several:
+            gap, seen = np.minimum.reduceat(gap, self._starts), np.minimum.reduceat(seen, self._starts)
+        return gap, seen
+
+
 class _Arrays:
     """The numbers that decisions are made of, with a row for each thing."""
 
@@ -1288,7 +1346,6 @@ class _Arrays:
         self.lowest = (self._mildest if self.is_mild else self._last).copy()  # level that it may have now
         self.pinned = np.array([thing.is_pinned for thing in things], dtype=bool)
         self.size = np.array([thing.size for thing in things], dtype=float)
-        self.extent = np.array([thing._extent for thing in things], dtype=float)
         self.qualities, self.shares = np.zeros((count, width)), np.zeros((count, width))
         self.strides = np.ones((count, width), dtype=int)
         for row, thing in enumerate(things):
@@ -1313,8 +1370,8 @@ class _Arrays:
                 self.since[row], self._refused[row] = since[former], refused[former]
         self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
         self._roots: list[BodyArray | None] = [None] * self.slices
-        self._middles: list[ParticleArray | None] = [None] * self.slices
         self._starts = [np.zeros(0, dtype=int)] * self.slices
+        self._spots: list[_Spots | None] = [None] * self.slices
         self._is_old = np.ones(self.slices, dtype=bool)
         self._things = things
 
@@ -1325,9 +1382,8 @@ class _Arrays:
         if not all(roots):
             raise StaleIdError("a thing was destroyed since the last step")
         self._roots[part] = self._system.array([root for each in roots for root in each]) if roots else None
-        self._middles[part] = self._system.array([thing._middle for thing in things]) if things else None
         self._starts[part] = np.cumsum([0, *(len(each) for each in roots[:-1])])
-        self.extent[part :: self.slices] = [thing._extent for thing in things]
+        self._spots[part] = _Spots(self._system, things) if things else None
         self._is_old[part] = False
 
     def note(self, thing: Managed, step: int) -> None:
@@ -1347,6 +1403,11 @@ class _Arrays:
         """Its bodies have become one, or come apart: its middle may be another particle."""
         if (row := self._row.get(thing)) is not None:
             self._is_old[row % self.slices] = True
+
+    def keep_full(self, thing: Managed) -> None:
+        """In this step it may not be reduced."""
+        if (row := self._row.get(thing)) is not None:
+            self.near[row] = True
 
     def is_free(self, thing: Managed) -> bool:
         """Whether it may be reduced."""
@@ -1399,16 +1460,16 @@ class _Arrays:
         """Reads some things, and what they mean to the viewers."""
         if self._is_old[part]:
             self._find_points(part)
-        roots, middles = self._roots[part], self._middles[part]
-        if roots is None or middles is None:
+        roots, spots = self._roots[part], self._spots[part]
+        if roots is None or spots is None:
             return
-        places, speeds = middles.positions, _lengths(middles.velocities)
+        speeds = spots.speeds()
         work, steps = roots.work.T
         size = self.size[rows]
         load = np.where(steps > 0, work / np.maximum(steps, 1), 0.0)
         takes_each = steps == 1
         starts = self._starts[part]
-        if len(load) > len(places):  # things of several articulates
+        if len(load) > len(size):  # things of several articulates
             of_roots = _lengths(roots.velocities)
             speeds = np.maximum(speeds, np.maximum.reduceat(of_roots, starts))
             load, takes_each = np.add.reduceat(load, starts), np.logical_or.reduceat(takes_each, starts)
@@ -1420,11 +1481,10 @@ class _Arrays:
         self.touches[rows] = (stride > 1) & takes_each
         self.runs[rows] = (stride != 1) & takes_each
         if len(eyes):
-            distance = _lengths(places[:, None, :] - eyes[None, :, :]).min(axis=1)
-            self.near[rows] = distance - self.extent[rows] <= NEAR * reach
-            self.is_far[rows] = distance - self.extent[rows] > EARLY * sight
-            self.is_near[rows] = distance - self.extent[rows] < LATE * sight
-            distance = np.maximum(distance - 0.5 * size, 1e-3)
+            gap, distance = spots.distances(eyes)
+            self.near[rows] = gap <= NEAR * reach
+            self.is_far[rows] = gap > EARLY * sight
+            self.is_near[rows] = gap < LATE * sight
             seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
             if self.is_mild:
                 is_unseen = self.is_far[rows] & (np.maximum(size, speeds) < UNSEEN * distance)
