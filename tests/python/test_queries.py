@@ -456,3 +456,20 @@ def test_many_questions_have_the_answers_of_each() -> None:
         world.queries.rays(origins, directions[:3])
     with pytest.raises(ValueError, match="finite"):
         world.queries.rays((0, 0, math.nan), (1, 0, 0))
+
+
+@pytest.mark.parametrize("ground", [0, None])
+def test_a_question_before_the_world_begins_does_not_let_its_bodies_touch_each_other(ground: float | None) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    left = system.body(shape=iota.Sphere(0.1), position=(-1, 1, 0), velocity=(4, 0, 0))
+    system.body(shape=iota.Sphere(0.1), position=(0, 1, 0))
+    world = iota.World(system, ground=ground)
+    assert world.queries.nearest((-1, 1, 0)).body == left and (world.scene.ground == 0) == (ground == 0)
+    assert system.usual_material is None
+    system.step(1 / 120, count=60)
+    assert left.velocity.x == pytest.approx(4, rel=1e-12)
+    world.advance(1)  # it begins
+    assert system.usual_material == iota.Material(friction=0.6)
+    world.reset()
+    assert system.usual_material == iota.Material(friction=0.6)
+    world.close()

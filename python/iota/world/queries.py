@@ -157,7 +157,7 @@ class Queries(Part):
             if not isinstance(self._system, System):
                 raise TypeError("questions about places need a System; this world has a simulator of its own")
             self._places = Places(self._system)
-        self._scene.keep_ground()
+        self._scene.find_ground()
         return self._places
 
 

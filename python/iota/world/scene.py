@@ -63,6 +63,7 @@ class Scene(Part):
         self._visuals = Visuals() if visuals is None else visuals
         self._style, self._height = style, ground
         self._ground: Body | None = None
+        self._needs_material = False  # for what has none: the ground was made or sought since `keep_ground`
         self._camera: Camera | None = None
         self._shows_edits = True
 
@@ -106,12 +107,23 @@ class Scene(Part):
     def ground_body(self) -> Body | None:
         """The obstacle that is the ground, a HalfSpace named "ground"; None without one, and for another Simulator. It is made
         when the world begins, or is asked for it if its height is given. One that the system has already is taken as it is."""
-        self.keep_ground()
+        self.find_ground()
         return self._ground
 
     def keep_ground(self, height: float | None = None) -> None:
         """Makes the ground, and gives what has no material the usual one, if there is none: the script may have restored a state of
         before it. height: m; None: the former."""
+        self.find_ground(height)
+        if not self._needs_material:  # as in nearly each step
+            return
+        self._needs_material = False
+        system: object = self._system
+        if isinstance(system, System):
+            system.usual_material = system.usual_material or MATERIAL
+
+    def find_ground(self, height: float | None = None) -> None:
+        """Makes the ground, and no more: a question before the world begins does not let its bodies touch. height: m; None: the
+        former."""
         system: object = self._system
         if not isinstance(system, System):
             self._height = self._height if height is None else height
@@ -126,7 +138,7 @@ class Scene(Part):
             self._ground.name = GROUND
         if self._ground is not None:
             self._ground.material = self._ground.material or MATERIAL
-        system.usual_material = system.usual_material or MATERIAL
+        self._needs_material = True
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
         """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between
