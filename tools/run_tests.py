@@ -48,7 +48,7 @@ STAMPS = ROOT / "build" / "stamps"
 CORES = len(os.sched_getaffinity(0))
 SHOWN_LINES = 60
 SHOWN_SLOWEST = 10
-#: What the name of a suite ends with that repeats failed tests.
+#: The end of the name of a suite that repeats failed tests.
 AGAIN = "-again"
 #: Patterns of tests that may be skipped here; all others run, or fail. Pictures to look at are taken by make test-all.
 EXPECTED_SKIPS: tuple[str, ...] = (

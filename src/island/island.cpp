@@ -284,8 +284,9 @@ void Island::try_step(const Model& model, double h, const Limits& limits) {
 bool Island::is_sprung() const {
   bool is = false;
   problem_.for_each_force_pool([&](const auto& pool) { is = is || !pool.items.empty(); });
-  problem_.for_each_constraint_pool(
-      [&]<class C>(const solver::ConstraintPool<C>& pool) { is = is || (pool.has_laws() && !solver::ConeConstraint<C>); });
+  problem_.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
+    is = is || (pool.has_laws() && !solver::ConeConstraint<C>);
+  });
   return is;
 }
 

@@ -240,7 +240,7 @@ class Integrator {
   int iterations_left_ = std::numeric_limits<int>::max();
   int resort_left_ = 0;  ///< iterations of the last resort beyond a budget
   bool is_cut_short_ = false;
-  bool makes_energy_ = false;  ///< the latest solution, and was refused for that
+  bool makes_energy_ = false;   ///< the latest solution, and was refused for that
   bool solves_part_ = false;    ///< of the step
   bool is_instant_ = false;     ///< see is_instant
   bool has_corrected_ = false;  ///< velocities after the latest (sub-)step; Newton has the correction

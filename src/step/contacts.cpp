@@ -437,8 +437,7 @@ bool ContactFinder::find_on_ways(model::Model& model, contact::Outlines& outline
   begin_look(model, h_, are_placed_);
   std::vector<Pair> known = std::exchange(pairs_, {});
   std::vector<std::uint32_t> movers;
-  std::ranges::copy_if(bodies, std::back_inserter(movers),
-                       [&](std::uint32_t body) { return is_watched(model, body); });
+  std::ranges::copy_if(bodies, std::back_inserter(movers), [&](std::uint32_t body) { return is_watched(model, body); });
   movers_.swap(movers);
   list_pairs(model, outlines);
   movers_.swap(movers);

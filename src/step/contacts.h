@@ -171,9 +171,9 @@ class ContactFinder {
     std::uint64_t look = 0;  ///< in which it was measured
     bool is = true;
   };
-  std::vector<Moved> all_moved_;  ///< by body slot
+  std::vector<Moved> all_moved_;             ///< by body slot
   std::uint64_t look_ = 0, first_look_ = 0;  ///< the latter: of this step
-  std::vector<std::uint32_t> movers_;  ///< those that are awake
+  std::vector<std::uint32_t> movers_;        ///< those that are awake
   std::vector<Pair> pairs_;
   std::vector<Sensed> sensed_;
   /// A pair of which one may pass the other, a sensor, within the step, with the centers at its start.

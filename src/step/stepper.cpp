@@ -85,17 +85,18 @@ void Stepper::update_islands(double dt) {
   if (model.has_edits) ingredient::book_edits(model, islands.energies(model).total());
 }
 
-// Those that an edit, a force or a law of the time wakes.
+// Edits, forces and laws of the time wake islands.
 void Stepper::wake(double dt) {
   editor_.islands.wake(editor_.model, woken_);
   editor_.islands.wake_stirred(editor_.model, dt);
 }
 
 // Contacts that are found within a step join islands, and a joined one does not know any more that it is to wake.
-void Stepper::follow_contacts(double dt) {
+void Stepper::renew_islands(double dt) {
   editor_.islands.update(editor_.model, editor_.parallel);
   wake(dt);
-  (void)editor_.islands.awake(editor_.model);  // they share the budget by their sizes now, not by those of the step before
+  (void)editor_.islands.awake(
+      editor_.model);  // they share the budget by their sizes now, not by those of the step before
 }
 
 namespace {
@@ -155,10 +156,9 @@ void Stepper::look_along_ways(double dt) {
     editor_.parallel.for_each(sprung_.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
       islands.try_ahead(model, *islands.of_articulate(sprung_[i]), dt, dt, deadline_);
     });
-    std::erase_if(sprung_, [&](std::uint32_t leader) {
-      return !meets_on_its_way(*islands.of_articulate(leader), dt, false);
-    });
-    if (!sprung_.empty()) follow_contacts(dt);
+    std::erase_if(sprung_,
+                  [&](std::uint32_t leader) { return !meets_on_its_way(*islands.of_articulate(leader), dt, false); });
+    if (!sprung_.empty()) renew_islands(dt);
   }
 }
 
@@ -170,7 +170,7 @@ void Stepper::look_along_way_of_part(std::uint32_t leader, std::optional<double>
   for (int round = 0; round < most_looks && may_go_beyond(*islands.of_articulate(leader)); ++round) {
     islands.try_ahead(model, *islands.of_articulate(leader), h, dt, deadline_);
     if (!meets_on_its_way(*islands.of_articulate(leader), h, true)) return;
-    follow_contacts(dt);
+    renew_islands(dt);
   }
 }
 
@@ -224,7 +224,7 @@ void Stepper::advance_in_parts(StepReport& report) {
       parts_.push_back(contacts_.find_part(model, outlines_, island.bodies(), report.dt - islands.ahead(model, island),
                                            {.is_first = round == 0, .may_cut = may_cut, .of_sweeps = of_sweeps}));
     }
-    follow_contacts(report.dt);
+    renew_islands(report.dt);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < hasty_.size(); ++i) {
       if (!islands.of_articulate(hasty_[i])) continue;

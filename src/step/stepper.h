@@ -26,7 +26,7 @@ class Stepper {
   void find_contacts(double h);
   void update_islands(double dt);
   void wake(double dt);
-  void follow_contacts(double dt);
+  void renew_islands(double dt);
   void look_along_ways(double dt);
   bool may_go_beyond(island::Island&);
   void look_along_way_of_part(std::uint32_t leader, std::optional<double> part, double dt);

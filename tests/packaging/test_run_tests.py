@@ -191,7 +191,9 @@ def test_a_failed_test_of_python_is_repeated_by_its_name(runner: ModuleType) -> 
 
 def test_failed_tests_are_repeated_when_nothing_else_runs(runner: ModuleType, tmp_path: Path) -> None:
     failing = repeating(runner, vitest(b="failed"), vitest(b="passed"))
-    began = f"{failing.command[2]}\nimport time; open({str(tmp_path / 'repeated')!r}, 'w').write(f'{{time.monotonic()}}')"
+    began = (
+        f"{failing.command[2]}\nimport time; open({str(tmp_path / 'repeated')!r}, 'w').write(f'{{time.monotonic()}}')"
+    )
     failing = replace(failing, command=[sys.executable, "-c", began])
     runner.SUITES = [failing, *(sleeper(runner, name, tmp_path) for name in ("a", "b", "c"))]
     assert runner.main([]) == 0

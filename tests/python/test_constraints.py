@@ -540,3 +540,12 @@ def test_accurate_surfaces_have_the_forces_and_the_motion_of_a_curve(rate: int) 
         needed = 9.81 * along.y - ball.velocity.dot(ball.velocity) / distance
         assert joint.force.dot(along) == pytest.approx(needed, abs=0.02 * 60 / rate * (1 + abs(needed)))
     assert math.dist(tuple(ball.position), tuple(point.position)) < 1e-7
+
+
+@pytest.mark.parametrize(("thickness", "is_told"), [(0.01, False), (1e-4, True)])
+def test_a_joint_far_outside_of_a_thin_body_is_told(thickness: float, is_told: bool) -> None:
+    system = iota.System()
+    sheet = system.body(shape=iota.Box((0.3, thickness, 0.4)), mass=1, position=(0, -0.3, 0))
+    system.revolute(sheet, at=(0, 0, 0), axis=(0, 0, 1))
+    told = system.step(1 / 60).warnings
+    assert any("times its thickness outside of it" in warning for warning in told) == is_told

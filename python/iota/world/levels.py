@@ -1291,7 +1291,7 @@ def _eye_of(client: Client) -> Place | None:
 
 
 class _Spots:
-    """Where things are: the middles of their articulates."""
+    """The middles of the articulates of things, which say where these are."""
 
     def __init__(self, system: System, things: list[Managed]) -> None:
         spots = [thing._spots for thing in things]
@@ -1304,7 +1304,7 @@ class _Spots:
         self._has_several = len(self._extents) > len(things)
 
     def speeds(self) -> Floats:
-        """Of the fastest middle of each thing, m/s."""
+        """The speed of the fastest middle of each thing, m/s."""
         speeds = _lengths(self._middles.velocities)
         return np.maximum.reduceat(speeds, self._starts) if self._has_several else speeds
 
