@@ -251,7 +251,7 @@ SUITES = [
     # A few tests are long, so a worker that is done takes over tests of another. At least two workers: many tests wait
     # for a process or a browser, and so do those of the suite beside this one.
     Suite(
-        "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 1200, read_junit,
+        "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 2400, read_junit,
         repeats=4, again=nodes_again, about_s=300, cores=OTHER_CORES,
     ),
     # After what draws, beside short suites: a busy machine answers Ray too late, and is taken for a dead one.

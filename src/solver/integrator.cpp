@@ -438,7 +438,10 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   else if (is_mid_point)
     project_velocities_after_step(problem, stage, report);
   const bool keeps_momenta = !keeps_offsets_ || restore_momenta(problem);
-  if (!is_mid_point || keeps_offsets_) remove_made_energy(problem, energy.total_before);
+  if (!is_mid_point || keeps_offsets_)
+    remove_made_energy(problem, energy.total_before);
+  else
+    remove_energy_of_gaps(problem);
   if (!keeps_momenta || (keeps_offsets_ && has_taken_off(energy))) {
     report.external_work = before.external_work, report.dissipated = before.dissipated;
     move_rigidly_instead(problem, part, report);

@@ -44,12 +44,6 @@ StepReport Stepper::step(double dt) {
   return report;
 }
 
-namespace {
-
-constexpr int most_looks = 3;  ///< along the ways of an island in a step or a part of it
-
-}  // namespace
-
 // 1. Functions of the script, and other held forces, at the start of the step.
 void Stepper::take_held_forces(StepReport& report) {
   const Timed timed(times_of_thread(), &StepTimes::forces);
@@ -95,8 +89,7 @@ void Stepper::wake(double dt) {
 void Stepper::renew_islands(double dt) {
   editor_.islands.update(editor_.model, editor_.parallel);
   wake(dt);
-  (void)editor_.islands.awake(
-      editor_.model);  // they share the budget by their sizes now, not by those of the step before
+  (void)editor_.islands.awake(editor_.model);  // they share the budget by their sizes now, not by those before
 }
 
 namespace {
@@ -113,12 +106,14 @@ void tell_cut_short(island::Islands& islands, StepReport& report) {
   if (count > most) report.warnings.push_back(text("the budget of a step ended too early for ", count, " islands"));
 }
 
-/// Parallel::for_each, with the times of all threads.
+/// Parallel::for_each, with the times of all threads if those of this one are taken.
 template <class Work>
-void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t grain, StepTimes& sum, Work work) {
+void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t grain, Work work) {
+  StepTimes* const sum = times_of_thread();
+  if (!sum) return parallel.for_each(count, grain, work);
   std::vector<StepTimes> all(count);
   {
-    const Timed timed(&sum, Timed::none);  // not this thread's alone
+    const Timed timed(sum, Timed::none);  // not this thread's alone
     parallel.for_each(count, grain, [&](std::size_t i) {
       const TimedSteps here(all[i]);
       const Timed timed_island(&all[i], &StepTimes::integrate, Timed::none);
@@ -128,12 +123,14 @@ void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t gra
   for (const StepTimes& each : all)
     for (const Timed::Part part :
          {&StepTimes::forces, &StepTimes::analyze, &StepTimes::factor, &StepTimes::solve, &StepTimes::integrate})
-      sum.*part += each.*part;
+      sum->*part += each.*part;
 }
 
 }  // namespace
 
 namespace {
+
+constexpr int most_looks = 3;  ///< along the ways of an island in a step or a part of it
 
 bool is_of_sweeps(const model::Model& model, const island::Island& island) {
   return std::ranges::any_of(island.bodies(),
@@ -153,7 +150,7 @@ void Stepper::look_along_ways(double dt) {
     if (may_go_beyond(*island)) sprung_.push_back(model.bodies[island->bodies().front()].articulate);
   for (int round = 0; round < most_looks && !sprung_.empty(); ++round) {
     islands.replace_by_leaders(sprung_);
-    editor_.parallel.for_each(sprung_.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
+    for_each_timed(editor_.parallel, sprung_.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
       islands.try_ahead(model, *islands.of_articulate(sprung_[i]), dt, dt, deadline_);
     });
     std::erase_if(sprung_,
@@ -244,11 +241,8 @@ void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
   const std::size_t count = islands.awake(model).size() + islands.loose(model).size();
-  const auto advance = [&](std::size_t i) { islands.advance(model, i, report.dt, deadline_); };
-  if (StepTimes* const times = times_of_thread())
-    for_each_timed(editor_.parallel, count, islands.grain(editor_.parallel), *times, advance);
-  else
-    editor_.parallel.for_each(count, islands.grain(editor_.parallel), advance);
+  for_each_timed(editor_.parallel, count, islands.grain(editor_.parallel),
+                 [&](std::size_t i) { islands.advance(model, i, report.dt, deadline_); });
   if (model.corrections.lacks_room()) model.corrections.make_room(model.rings.slot_count());
   tell_cut_short(islands, report);
   islands.for_each_advanced([&](std::uint32_t, const solver::AdvanceReport& r) { add(r, report); });

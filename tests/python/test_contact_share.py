@@ -135,6 +135,7 @@ def test_a_world_that_somebody_sees_has_it_without_a_budget_too() -> None:
     for _ in range(20):
         world.step()
     assert system.contacts_share < 1 and levels.budget_ms is None
+    assert levels._shown_ms is not None and "contacts" in levels._shown()[1][-1], "pages tell it"
     world._state.clients.by_id.clear()
     levels._keep_pace(1.0, 1e-6)
     assert system.contacts_share == 1, "nobody looks"

@@ -254,7 +254,6 @@ def paper(color: str) -> list[looks.Look]:
     return [
         looks.ellipsoid((0.3, 0.13, 0.13), "paint", color=color, offset=(0.03, 0, 0)),
         looks.cone(0.08, 0.17, "paint", color=color, offset=(-0.145, 0, 0)),
-        looks.torus(0.03, 0.012, "paint", color="#f4ead8", offset=(0.17, 0, 0), rotation=("y", 90)),
     ]
 
 

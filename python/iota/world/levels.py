@@ -593,6 +593,14 @@ class Levels(Part):
             f"[{'#' * filled}{'.' * (10 - filled)}] {self._ms:.2g} of {self._budget:.3g} ms{whose}: {counts}{contacts}"
         )
 
+    @property
+    def _shown_ms(self) -> float | None:
+        """The time that pages show as the budget of a step, ms: without one, what a step may take while contacts are solved less exactly
+        for it. None: neither."""
+        if self._budget is None and isinstance(self._system, System) and self._system.contacts_share < 1:
+            return self._paced_ms
+        return self._budget
+
     def _shown(self) -> tuple[list[tuple[str, int, list[int]]], list[str]]:
         """For pages: each level with the number of its things and slots of their bodies, the best first, and the latest
         changes as lines. Found anew twice a second."""

@@ -117,12 +117,12 @@ class Publisher:
     def _budget(self) -> dict[str, Any]:
         """The budget of a step; for pages that show costs also the levels of things and their latest changes."""
         levels = self._state.levels
-        if levels is None or levels.budget_ms is None:
+        if levels is None or (ms := levels._shown_ms) is None:
             return {}
         if not self._state.clients.is_profiled:
-            return {"budget_ms": levels.budget_ms}
+            return {"budget_ms": ms}
         groups, lines = levels._shown()
-        return {"budget_ms": levels.budget_ms, "levels": groups, "changes": lines}
+        return {"budget_ms": ms, "levels": groups, "changes": lines}
 
     def bodies_of(self, ids: Sequence[Id]) -> list[Any]:
         """The bodies with these ids that still exist, each once."""
