@@ -232,7 +232,10 @@ def test_a_thing_is_full_in_each_step_in_which_a_user_holds_a_loose_part_of_it(
     world, roots = made
     thing = world.levels.manage([roots[4], roots[5]])
     world.levels.budget_ms = LITTLE
-    run(world, 100)
+    for _ in range(50):  # on a busy machine a step changes fewer levels
+        run(world, 10)
+        if thing.level.name == "frozen":
+            break
     assert thing.level.name == "frozen"
     client = world._state.clients.by_id[1] = Client(1)
     client.holds[1] = hold = Hold(1, 1, roots[4], roots[4])

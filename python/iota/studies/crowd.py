@@ -16,7 +16,7 @@ from . import cradle_contact
 from ._figure import ALONG, UPRIGHT, Figure, Part
 from .cradle import RADIUS, strung
 
-COUNT = 30
+COUNT = 24
 BUDGET = 0.8  # ms of processor time a step
 ROWS, APART, HEIGHT = 3, 2.6, 3.4  # of gallows; m
 PACE = 2.0  # of the lamp, m/s
