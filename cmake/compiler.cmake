@@ -29,6 +29,9 @@ function(iota_compile target)
     -ffp-contract=off
     # Nothing here reads errno; without this a square root is a call instead of one instruction. Results are the same.
     -fno-math-errno
+    # Nothing here traps, and nothing replaces a function of ours at run time: comparisons need no branches, and exported functions
+    # are inlined within a file. 2 % fewer instructions of a step, and the same bits.
+    -fno-trapping-math -fno-semantic-interposition
     # Without it the place of a function within a cache line changes with any line of code elsewhere: an edit of a chain
     # took 294 or 334 ns by luck.
     -falign-functions=64)

@@ -47,15 +47,22 @@ void Spin::begin(const Problem& problem) {
 
 // The parts are found once for a structure and the rows that act. What holds them is updated in each step, since nails move.
 void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
-  auto& [parts, connected] = all_parts;
-  if (connected.of.size() != problem.size())
-    parts.resize(find_pieces(problem, connection, connected, room_for_pieces_, Nails::apart));
+  auto& [parts, connected, nail] = all_parts;
+  const bool is_new = connected.of.size() != problem.size();
+  if (is_new) parts.resize(find_pieces(problem, connection, connected, room_for_pieces_, Nails::apart));
   const bool skips_contacts = connection == Connection::joints && problem.has_used<ContactConstraint>();
-  for (Part& part : parts) part.holds = {}, part.touches = false;
-  if (parts.size() == 1 && !skips_contacts)
-    parts.front().holds = all;
-  else
-    add_holds(problem, connection, connected, [&](std::uint32_t part) -> Holds& { return parts[part].holds; });
+  const bool is_alone = parts.size() == 1 && !skips_contacts;
+  // A walk over all rows is not needed where all hangs on a nail that has not moved.
+  const std::optional<Vec3> pivot =
+      is_alone || skips_contacts || problem.items_of<AffineConstraint>().size() != 1 ? std::nullopt : all.pivot();
+  if (is_new || !pivot || nail != pivot) {
+    for (Part& part : parts) part.holds = {}, part.touches = false;
+    if (is_alone)
+      parts.front().holds = all;
+    else if (!all.are_none())
+      add_holds(problem, connection, connected, [&](std::uint32_t part) -> Holds& { return parts[part].holds; });
+  }
+  nail = pivot;
   if (skips_contacts) {
     const auto& contacts = problem.pool_of<ContactConstraint>();
     for (std::size_t i = 0; i < contacts.items.size(); ++i)
@@ -99,10 +106,10 @@ bool Spin::find_members(const Problem& problem) {
     if constexpr (is_joint<C>) rows_of_joints += C::rows;
   });
   if (rows_of_joints < fewest_rows) return false;
-  auto& [members, connected] = members_;
-  const std::vector<std::uint32_t>& member_of = connected.of;
+  auto& members = members_.parts;
+  const std::vector<std::uint32_t>& member_of = members_.connected.of;
   if (member_of.size() != problem.size()) {
-    members.resize(find_pieces(problem, Connection::lengths, connected, room_for_pieces_));
+    members.resize(find_pieces(problem, Connection::lengths, members_.connected, room_for_pieces_));
     piece_of_.assign(members.size(), Pieces::none);
     nodes_of_.assign(members.size(), 0), rows_of_.assign(members.size(), 0);
     for (std::uint32_t i = 0; i < problem.size(); ++i) {
@@ -240,17 +247,31 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
     sums.center += mass * problem.position[i];
     sums.momentum += mass * v, sums.wanted_momentum += mass * start;
   };
+  const auto add_loss = [&](Sums& sums, double mass, std::uint32_t i, const Vec3& start) {
+    const Vec3& v = problem.velocity[i];
+    sums.lost += (mass * h) * cross(v, start), sums.kinetic += mass * dot(v, v);
+    sums.lost += h * cross(problem.position[i], unbalanced[i]), sums.unbalanced += h * unbalanced[i];
+  };
   for (std::uint32_t i = 0; i < problem.size();) {
-    const std::uint32_t part = parts.connected.of[i];
-    Sums sums = parts.parts[part];  // in registers while the part stays the same
-    do {
-      const Vec3 &v = problem.velocity[i], start = start_velocity(i);
-      const double mass = problem.mass[i];
-      add(sums, mass, i, start);
-      sums.lost += (mass * h) * cross(v, start), sums.kinetic += mass * dot(v, v);
-      sums.lost += h * cross(problem.position[i], unbalanced[i]), sums.unbalanced += h * unbalanced[i];
-    } while (++i < problem.size() && parts.connected.of[i] == part);
-    static_cast<Sums&>(parts.parts[part]) = sums;
+    const std::uint32_t index = parts.connected.of[i];
+    Part& part = parts.parts[index];
+    Sums sums = part;  // in registers while the part stays the same
+    const auto for_each_of_part = [&](auto visit) {
+      do visit(i, problem.mass[i], start_velocity(i));
+      while (++i < problem.size() && parts.connected.of[i] == index);
+    };
+    if (!part.is_kept)
+      while (++i < problem.size() && parts.connected.of[i] == index) {
+      }
+    else if (part.holds.count > 0)  // the point that holds it is its center
+      for_each_of_part([&](std::uint32_t node, double mass, const Vec3& start) {
+        sums.mass += mass, add_loss(sums, mass, node, start);
+      });
+    else
+      for_each_of_part([&](std::uint32_t node, double mass, const Vec3& start) {
+        add(sums, mass, node, start), add_loss(sums, mass, node, start);
+      });
+    static_cast<Sums&>(part) = sums;
   }
   for (const auto& c : problem.mass_couplings) {
     Part& part = parts.of(c.a);

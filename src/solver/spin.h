@@ -87,6 +87,7 @@ class Spin {
   struct Parts {
     std::vector<Part> parts;
     Pieces connected;
+    std::optional<Vec3> nail;  ///< on which all hangs, when it was found last
     Part& of(std::uint32_t node) { return parts[connected.of[node]]; }
   };
   /// A force and a torque about the center, or what a row makes of a multiplier of 1.
