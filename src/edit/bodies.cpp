@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <tuple>
 
 namespace iota::edit {
 
@@ -126,24 +125,14 @@ ParticleId apply(Editor& e, const CreateAttachment& c) {
   if (model.bodies[body].first_solid == none)
     throw std::invalid_argument(text("create_attachment is for bodies given by shape, but body ", body,
                                      " is made of particles alone: use create_particle"));
-  std::uint32_t solid = none;
-  double nearest = 0;
-  model.for_each_solid_of(body, [&](std::uint32_t s) {
-    const double distance = norm(solid_pose(model, s).position - c.position);
-    if (may_move_points(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
-  });
+  const std::uint32_t solid = solid_that_gives(model, body, c.position);
   if (solid == none)
     throw std::invalid_argument(
         text("create_attachment: something is hinged, nailed or bonded to the own four points of "
              "body ",
              body, ", which therefore cannot give; use attachments for that"));
   const std::uint32_t particle = attach(model, solid, c.position);
-  // Velocities of the mid-point rule are rigid only on average: a new basis may give the others different ones.
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (model.is_unknown(model.particles[p])) return;
-    model::Ring& ring = model.rings[model.particles[p].ring];
-    std::tie(ring.position, ring.velocity) = model.carried(p);
-  });
+  carry_points(model, body);
   e.mark_velocity_dirty(particle);
   e.structure_changed();
   return model.particles.id(particle);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace iota::model {
 
@@ -85,6 +86,16 @@ bool may_move_points(const Structure& model, std::uint32_t slot) {
   });
 }
 
+std::uint32_t solid_that_gives(const Structure& model, std::uint32_t body, const Vec3& position) {
+  std::uint32_t solid = none;
+  double nearest = 0;
+  model.for_each_solid_of(body, [&](std::uint32_t s) {
+    const double distance = norm(solid_pose(model, s).position - position);
+    if (may_move_points(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
+  });
+  return solid;
+}
+
 std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position) {
   const SolidPose pose = solid_pose(model, slot);
   Solid& solid = model.solids[slot];
@@ -120,6 +131,14 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
   model.rebuild_basis(body);
   model.mark_body(body);
   return particle;
+}
+
+void carry_points(Structure& model, std::uint32_t body) {
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.is_unknown(model.particles[p])) return;
+    Ring& ring = model.rings[model.particles[p].ring];
+    std::tie(ring.position, ring.velocity) = model.carried(p);
+  });
 }
 
 // The four points of each solid have all of the center and spread, and an equal share of the mass.

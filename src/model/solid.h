@@ -30,9 +30,16 @@ bool lacks_volume(const Structure&, const shape::Data&);
 /// Whether the four points of a solid may still be moved: they have no hinge, nail or bond, and equal masses.
 bool may_move_points(const Structure&, std::uint32_t solid);
 
+/// The solid of a body nearest to a place whose points may move, so that it can give mass to an attachment; `none` if there is none.
+std::uint32_t solid_that_gives(const Structure&, std::uint32_t body, const Vec3& position);
+
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
 /// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.
 std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);
+
+/// After a change of a body's basis: places and velocities of its other points. Velocities of the mid-point rule are rigid only on
+/// average, so that a new basis may give them different ones.
+void carry_points(Structure&, std::uint32_t body);
 
 /// Gives a body made of solids alone this mass, center of mass (world) and mean squares about it (world axes), whatever its
 /// shapes are, which stay where they are. Its motion stays that of the same rigid body.
