@@ -222,7 +222,8 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
   const Vec3 relative = other ? mover.velocity - other->velocity : mover.velocity;
   const double thrust = mover.thrust + (other ? other->thrust : 0);
   const double speed = norm(relative) + mover.spread + (other ? other->spread : 0) + steps * (fall_ + thrust);
-  return of_way * steps * h_ * speed + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
+  const double thrown = mover.thrown + (other ? other->thrown : 0);
+  return of_way * steps * h_ * speed + thrown + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
 namespace {
@@ -385,7 +386,7 @@ void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines)
 }
 
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
-  hasty_.clear(), sensed_.clear(), passing_.clear();
+  hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear();
   joined_.forget();
   first_look_ = look_ + 1;
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
@@ -413,10 +414,13 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
       return renew(model, outlines, pair, meeting, former) || touch(model, outlines, pair, meeting, former);
     };
     const bool is_touching = !(ahead.apart > 0) && touches();
+    if (is_touching && !(ahead.part < h)) note_touches(model, outlines, pair, meeting);
     if (!(ahead.part < h)) continue;
+    note_impact(model, meeting, pair.second, meeting.speed(), true);
     if (!is_touching) ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
   }
+  look_around_thrown(model, outlines);
   if (model.contacts.size() > 0)
     for (const std::uint32_t slot : movers_) ingredient::Contacts::end_old(model, slot);
 }
@@ -710,19 +714,134 @@ ContactFinder::Ahead ContactFinder::look_ahead(const model::Model& model, contac
   if (time > least * h_) return {time, time};
   found_.clear();
   touches_.find(outline, {}, other_outline, {}, within(*mover, other), found_);
-  double approach = 0, swing = 0;
+  const auto [approach, swing] = approach_of(motions, of_size * size);
+  if (h_ * approach > closing * size) return {0, std::max(least * h_, near * size / speed)};
+  if (h_ * swing > far * size) return {0, std::max(least * h_, near * size / swing)};
+  return {0, never};
+}
+
+ContactFinder::Approach ContactFinder::approach_of(const contact::Motion (&motions)[2], double slack) const {
+  Approach most;
   for (const contact::Touch& touch : found_) {
     const Vec3 swings[2] = {cross(motions[0].spin, touch.center - motions[0].center),
                             cross(motions[1].spin, touch.center - motions[1].center)};
     const Vec3 velocity = motions[0].velocity + swings[0] - motions[1].velocity - swings[1];
     const double turning = norm(swings[0]) + norm(swings[1]);
     const double each = (touch.is_turned ? 1.0 : -1.0) * dot(touch.normal, velocity);
-    if (touch.gap <= of_size * size + h_ * std::max(each, turning))
-      approach = std::max(approach, each), swing = std::max(swing, turning);
+    if (touch.gap <= slack + h_ * std::max(each, turning))
+      most.speed = std::max(most.speed, each), most.swing = std::max(most.swing, turning);
   }
-  if (h_ * approach > closing * size) return {0, std::max(least * h_, near * size / speed)};
-  if (h_ * swing > far * size) return {0, std::max(least * h_, near * size / swing)};
-  return {0, never};
+  return most;
+}
+
+void ContactFinder::note_touches(const model::Model& model, contact::Outlines& outlines, const Pair& pair,
+                                 const Meeting& meeting) {
+  if (!(h_ * meeting.speed() > of_size * meeting.size) || is_of_sweeps(model, meeting)) return;
+  const contact::Motion motions[2] = {motion_of(model, outlines, pair.first), motion_of(model, outlines, pair.second)};
+  note_impact(model, meeting, pair.second, approach_of(motions, 0).speed, false);
+}
+
+// By momentum and restitution. A body that is struck at its end moves there as if it had a quarter of its mass; one with joints may bring the
+// momentum of others.
+void ContactFinder::note_impact(const model::Model& model, const Meeting& meeting, std::uint32_t second, double speed,
+                                bool is_hasty) {
+  constexpr double at_end = 0.25;
+  if (is_of_sweeps(model, meeting)) return;  // whose sub-steps look by themselves
+  const std::uint32_t bodies[2] = {meeting.first->body, second};
+  const auto restitution = [&](std::uint32_t body) { return model.material(body)->restitution; };
+  const auto weighs_alone = [&](std::uint32_t body) {
+    return model::is_free(model.bodies[body].kind) && model.articulates[model.bodies[body].articulate].count == 1;
+  };
+  const double change = (1 + std::max(restitution(bodies[0]), restitution(bodies[1]))) * speed;
+  for (const bool k : {false, true}) {
+    const std::uint32_t body = bodies[k], other = bodies[!k];
+    if (!model::is_free(model.bodies[body].kind)) continue;
+    const double own = at_end * model.body_mass(body), others = model.body_mass(other);
+    const double share = weighs_alone(other) ? others / (own + others) : 1;
+    thrown_.push_back({body, h_ * share * change, is_hasty});
+  }
+}
+
+namespace {
+
+double distance_of(const geometry::Bounds& a, const geometry::Bounds& b) {
+  const auto apart = [&](double Vec3::* axis) {
+    return std::max({0.0, a.low.*axis - b.high.*axis, b.low.*axis - a.high.*axis});
+  };
+  return norm({apart(&Vec3::x), apart(&Vec3::y), apart(&Vec3::z)});
+}
+
+}  // namespace
+
+// By their velocities at the begin of the step bodies do not meet what an impact throws them at: a ball went through a plate behind it
+// after it had bounced off a wall. What is thrown at a body may throw that one, too. Islands that take parts of the step look
+// again in each part, and so need what they may meet among them, from the begin on.
+void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& outlines) {
+  if (thrown_.empty()) return;
+  const contact::OutlineTree& tree = outlines.refresh(model.step);
+  std::vector<Pair> near_thrown;
+  for (std::size_t k = 0; k < thrown_.size(); ++k) {
+    const Thrown thrown = thrown_[k];
+    Mover& mover = mover_at(model, outlines, thrown.body);
+    if (!(thrown.reach > of_size * mover.reach)) continue;
+    if (thrown.reach <= mover.thrown && (mover.is_hasty || !thrown.is_hasty)) continue;
+    mover.thrown = std::max(mover.thrown, thrown.reach), mover.is_hasty = mover.is_hasty || thrown.is_hasty;
+    const geometry::Bounds box = contact::bounds(placed(outlines, mover));
+    const Vec3 way = mover.thrown * Vec3{1, 1, 1};
+    const Thrown all{mover.body, mover.thrown, mover.is_hasty};
+    tree.overlapping({box.low - way, box.high + way}, [&](std::uint32_t body) {
+      const bool is_fixed = model.bodies[body].kind == BodyKind::static_;
+      if (body == all.body || !(is_fixed ? model.material(body) != nullptr : may_touch(model, outlines, body))) return;
+      const Pair pair = is_fixed ? Pair{all.body, body} : Pair{std::min(all.body, body), std::max(all.body, body)};
+      if (is_sensor(model, pair) || !touch_each_other(model, outlines, joined_, pair)) return;
+      const double left = all.reach - distance_of(box, contact::bounds(outlines.placed(body)));
+      if (!(left > 0)) return;
+      near_thrown.push_back(pair);
+      if (model::is_free(model.bodies[body].kind)) thrown_.push_back({body, left, all.is_hasty});
+    });
+  }
+  sort_unique(near_thrown);
+  pairs_.insert(pairs_.end(), near_thrown.begin(), near_thrown.end());
+  sort_unique(pairs_);
+  known_.forget(), looked_around_ = {};
+  for (const Pair& pair : near_thrown) {
+    const std::span<const std::uint32_t> former = known_.of(model, pair);
+    if (std::ranges::any_of(former,
+                            [&](std::uint32_t slot) { return model.contacts[slot].found_in == model.step + 1; }))
+      continue;
+    const Meeting meeting = meeting_of(model, outlines, pair);
+    if (!(meeting.first->is_hasty || (meeting.second && meeting.second->is_hasty))) {
+      (void)touch(model, outlines, pair, meeting, former);
+    } else {
+      if (meeting.second) ingredient::Contacts::tie(model, pair.first, pair.second);
+      hasty_.push_back(model.bodies[pair.first].articulate);
+    }
+  }
+}
+
+// The same for the pairs of an island in a part of the step. Without it plates of 1 cm that were struck went through each other.
+void ContactFinder::throw_in_part(const model::Model& model, contact::Outlines& outlines) {
+  thrown_.clear();
+  for (const auto& [pair, meeting, apart] : listed_)
+    if (apart < h_ && h_ * meeting.speed() > of_size * meeting.size)
+      note_impact(model, meeting, pair.second, meeting.speed(), true);
+  for (const Thrown& thrown : thrown_) {
+    Mover& mover = mover_at(model, outlines, thrown.body);
+    if (thrown.reach > of_size * mover.reach) mover.thrown = std::max(mover.thrown, thrown.reach);
+  }
+  const auto box_of = [&](Mover& mover) -> const geometry::Bounds& {
+    if (!mover.box) mover.box = contact::bounds(placed(outlines, mover));
+    return *mover.box;
+  };
+  for (bool goes_on = !thrown_.empty(); std::exchange(goes_on, false);)
+    for (const auto& [pair, meeting, apart] : listed_) {
+      if (!meeting.second || !meeting.is_thrown()) continue;
+      const double gap = distance_of(box_of(*meeting.first), box_of(*meeting.second));
+      for (const auto& [from, to] :
+           {std::pair(meeting.first, meeting.second), std::pair(meeting.second, meeting.first)})
+        if (const double left = from->thrown - gap; left > to->thrown && model::is_free(model.bodies[to->body].kind))
+          to->thrown = left, goes_on = true;
+    }
 }
 
 // Only pairs of one island: all that is in it has taken the same part of the step.
@@ -777,10 +896,11 @@ std::optional<double> ContactFinder::find_part(model::Model& model, contact::Out
     }
   if (left - part < least * step_) part = left;  // the rest is round-off
   set_length(model, part);
+  if (!which.of_sweeps) throw_in_part(model, outlines);
   known_.forget();
   ingredient::Contacts::begin_part(model, contacts_, which.is_first);
   for (const auto& [pair, meeting, apart] : listed_) {
-    if (!(apart < part)) continue;
+    if (!(apart < part || meeting.is_thrown())) continue;
     const std::span<const std::uint32_t> former = known_.of(model, pair);
     const bool is_calm = step_ * meeting.speed() < still * meeting.size;
     if (!which.of_sweeps || !(is_calm || which.is_first) || !ingredient::Contacts::keep(model, former))

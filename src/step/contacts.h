@@ -76,6 +76,8 @@ class ContactFinder {
     double spread = 0;     ///< of the velocities of its points, m/s
     double thrust =
         0;  ///< speed that other forces than gravity and contacts give in this time, as far as they are known, m/s
+    double thrown = 0;       ///< how far an impact in this step may move it beside its way, m
+    bool is_hasty = false;   ///< it takes the step in parts then
     double steps = 1;        ///< that it may take at once
     std::uint64_t look = 0;  ///< in which it was measured
     bool is_placed = false;  ///< its outline is where the body is now; this and the following: where asked for
@@ -103,6 +105,7 @@ class ContactFinder {
     Mover* second;  ///< of what moves
     double size;    ///< of the smaller one that moves, m
     double speed() const;
+    bool is_thrown() const { return first->thrown > 0 || (second && second->thrown > 0); }
   };
   const contact::Outline& placed(contact::Outlines&, Mover&);
   bool is_of_sweeps(const model::Model&, const Meeting&);
@@ -133,6 +136,17 @@ class ContactFinder {
   };
   Ahead look_ahead(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
   contact::Motion motion_of(const model::Model&, const contact::Outlines&, std::uint32_t body) const;
+  /// How two bodies with these touches, in found_, come nearer to each other, m/s: towards each other, and by their turns.
+  struct Approach {
+    double speed = 0, swing = 0;
+  };
+  Approach approach_of(const contact::Motion (&)[2], double slack) const;
+  /// Two bodies hit each other in this step with at most this speed, m/s: that throws them.
+  void note_impact(const model::Model&, const Meeting&, std::uint32_t second, double speed, bool is_hasty);
+  void note_touches(const model::Model&, contact::Outlines&, const Pair&, const Meeting&);
+  /// Adds pairs and contacts of what impacts throw with what it may meet then in the same step.
+  void look_around_thrown(model::Model&, contact::Outlines&);
+  void throw_in_part(const model::Model&, contact::Outlines&);
   void list_pairs_of(const model::Model&, contact::Outlines&, std::span<const std::uint32_t> bodies);
   void list_contacts_of(const model::Model&, std::span<const std::uint32_t> bodies);
   void add_pairs_of_woken(const model::Model&);
@@ -183,6 +197,12 @@ class ContactFinder {
     Vec3 centers[2];
   };
   std::vector<Passing> passing_;
+  struct Thrown {
+    std::uint32_t body;
+    double reach;  ///< m
+    bool is_hasty;
+  };
+  std::vector<Thrown> thrown_;
   std::vector<contact::Touch> found_;
   std::vector<contact::TouchOfPart> of_parts_;
   std::vector<contact::Seam> seams_;

@@ -103,6 +103,46 @@ TEST(FastBodies, do_not_get_through_walls_and_make_no_energy) {
   }
 }
 
+TEST(FastBodies, that_bounce_off_a_wall_do_not_get_through_what_is_behind_them) {
+  for (const auto mode : {IntegrationMode::energy_keeping, IntegrationMode::robust, IntegrationMode::accurate})
+    for (const double speed : {10, 20, 40, 60})
+      for (const double gap : {0.005, 0.05, 0.2}) {
+        System system({.gravity = {}});
+        system.set_mode(mode);
+        system.set_usual_material(Material{.friction = 0, .restitution = 0.9});
+        (void)system.bodies().create_obstacle(Box{{0.1, 2, 2}}, {0.15, 0, 0}, {});
+        const BodyId plate =
+            system.bodies().create(Box{{0.03, 1, 1}}, {.density = 160, .position = {-0.065 - gap, 0, 0}});
+        const BodyId ball = system.bodies().create(Sphere{0.05}, {.density = 2000, .velocity = {speed, 0, 0}});
+        for (int k = 0; k < 6; ++k) {
+          EXPECT_EQ(system.step(1.0 / 60).unconverged, 0);
+          EXPECT_GT(system.bodies().center_of_mass(ball).x, system.bodies().center_of_mass(plate).x)
+              << speed << ' ' << gap;
+        }
+      }
+}
+
+TEST(FastBodies, that_are_struck_meet_what_is_beside_them_in_the_same_step) {
+  for (const auto mode : {IntegrationMode::energy_keeping, IntegrationMode::robust})
+    for (const double speed : {2, 5, 20})
+      for (const double e : {0.0, 0.8}) {
+        System system({.gravity = {}});
+        system.set_mode(mode);
+        system.set_usual_material(Material{.friction = 0, .restitution = e});
+        (void)system.bodies().create_obstacle(Box{{0.03, 2, 2}}, {0.3, 0, 0}, {});
+        std::vector<BodyId> row{system.bodies().create(
+            Sphere{0.05}, {.density = 2000, .position = {-0.1, 0, 0}, .velocity = {speed, 0, 0}})};
+        for (int i = 0; i < 5; ++i)
+          row.push_back(system.bodies().create(Box{{0.01, 0.3, 0.3}}, {.density = 220, .position = {0.02 * i, 0, 0}}));
+        for (int k = 0; k < 20; ++k) {
+          (void)system.step(1.0 / 60);
+          const auto place = [&](BodyId body) { return system.bodies().center_of_mass(body).x; };
+          EXPECT_TRUE(std::ranges::is_sorted(row, {}, place)) << speed << ' ' << e << ' ' << k;
+          EXPECT_LT(place(row.back()), 0.3);
+        }
+      }
+}
+
 TEST(FastBodies, that_pass_beside_a_wall_are_not_deflected) {
   int deflected = 0;
   for (int i = 0; i < 300; ++i) {
