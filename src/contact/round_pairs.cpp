@@ -18,6 +18,8 @@ constexpr double leaning = 1e-3;    ///< sine: an edge that lies on something ra
 constexpr double flush_end = 1e-5;  ///< of the size: what is so far beyond an end is still beside it
 constexpr double end_share = 1e-9;  ///< share of a segment
 constexpr double same_end = 1e-3;   ///< of the size
+constexpr double least_apart =
+    0.5;  ///< of two lines that cross, of their radii: deeper the way between them does not tell where to
 
 struct Segment {
   const ConvexPart& part;
@@ -127,8 +129,14 @@ void add_touches(TouchWriter& writer, const Segment& a, const Segment& b) {
     const double side = dot(normal, nearest.on_first - nearest.on_second);
     const bool is_clear = std::abs(side) > 1e-12 * norm(normal) * std::min(a.part.size, b.part.size);
     const double sign = (is_clear ? side : dot(normal, a.part.middle - b.part.middle)) < 0 ? -1 : 1;
-    writer.add_edges(nearest.on_first, nearest.on_second, (sign / norm(normal)) * normal, a.part.edge_name(a.edge),
-                     b.part.edge_name(b.edge));
+    const Vec3 out = (sign / norm(normal)) * normal;
+    const FeatureName of_first = a.part.edge_name(a.edge), of_second = b.part.edge_name(b.edge);
+    // What is round turns about itself: a rope of rods on a post slid off, as its rods rocked on fixed planes.
+    if (dot(out, nearest.on_first - nearest.on_second) > least_apart * (a.part.radius + b.part.radius))
+      writer.add_wires(nearest.on_first, nearest.on_second, (1 / norm(u)) * u, {}, (1 / norm(v)) * v, {}, of_first,
+                       of_second);
+    else
+      writer.add_edges(nearest.on_first, nearest.on_second, out, of_first, of_second);
   }
   list.write(writer);
 }

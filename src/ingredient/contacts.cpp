@@ -172,14 +172,19 @@ struct Places {
       const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
       for (std::uint32_t i = 0; i < count; ++i) c.weights[arm][first + i] = end[i] - start[i];
     };
-    const bool with_q = !has_world_plane(c) && q.rank == 4, with_p = !has_world_point(c) && p.rank == 4;
+    const auto may_turn = [&](const model::Body& body, bool is_world) {
+      return !is_world && (body.rank == 4 || (c.form == TouchForm::wires && body.rank == 2));
+    };
+    const bool with_q = may_turn(q, has_world_plane(c)), with_p = may_turn(p, has_world_point(c));
+    const bool has_wires = c.form == TouchForm::wires;
     c.slips_turn = !has_world_plane(c) && (with_q || with_p);
-    if (c.slips_turn)
-      set_direction(Arm::first_tangent, c.first, with_q), set_direction(Arm::second_tangent, c.second, with_q);
+    if (c.slips_turn) {
+      set_direction(Arm::first_tangent, c.first, with_q);
+      set_direction(Arm::second_tangent, c.second, has_wires && q.rank == 2 ? !with_p : with_q);
+    }
     const bool is_axis_of_q = c.form == TouchForm::round && !has_world_plane(c) && q.rank > 1;
-    const bool is_of_p = c.form == TouchForm::wires;
-    c.turns = is_of_p ? with_p : with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
-    if (c.turns) set_direction(Arm::turned, c.is_round() ? c.axis : c.normal, !is_of_p && (with_q || is_axis_of_q));
+    c.turns = has_wires ? with_p : with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
+    if (c.turns) set_direction(Arm::turned, c.is_round() ? c.axis : c.normal, !has_wires && (with_q || is_axis_of_q));
   }
 
  private:
@@ -189,6 +194,14 @@ struct Places {
     for (std::uint32_t i = c.of_p; i < c.point_count; ++i) c.weights[arm][i] = -minus[i - c.of_p];
   }
 };
+
+/// Whether a direction turns with a body: with any of three dimensions, the axis of a rod with the rod.
+bool turns_with(const Model& model, const model::Body& body, const Vec3& direction) {
+  constexpr double askew = 0.2;
+  if (body.rank != 2) return body.rank == 4;
+  const Vec3 axis = model.position(body.basis[1]) - model.position(body.basis[0]);
+  return norm(cross(axis, direction)) <= askew * norm(axis);
+}
 
 /// The velocity of the center less that of the origin, m/s.
 Vec3 relative_velocity(const Model& model, const Contact& c) {
@@ -200,8 +213,8 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
                   double h, Sides& sides) {
   const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
   take_basis(c, p, q);
-  // The axes of wires turn with what has three dimensions.
-  const bool has_wires = (has_world_point(c) || p.rank == 4) && (has_world_plane(c) || q.rank == 4);
+  const bool has_wires = (has_world_point(c) || turns_with(model, p, t.axis)) &&
+                         (has_world_plane(c) || turns_with(model, q, cross(t.normal, t.axis)));
   c.form = t.form == TouchForm::wires && !has_wires ? TouchForm::edges : t.form;
   c.axis = t.axis, c.bends = {t.bends[0], t.bends[1]};
   c.normal = t.normal, c.first = c.form == TouchForm::wires ? cross(c.normal, c.axis) : any_perpendicular(c.normal);

@@ -51,9 +51,13 @@ TEST(RoundPairs, of_crossed_rods_have_their_common_normal) {
   const auto found =
       touches_of(placed(Capsule{0.1, 1}, {0, 0.21, 0}, axis_angle({0, 1, 0}, 1)), placed(Capsule{0.1, 1}, {}), 0.02);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].form, TouchForm::edges);
+  EXPECT_EQ(found[0].form, TouchForm::wires);
   EXPECT_NEAR(norm(found[0].normal - Vec3{0, 1, 0}), 0, 1e-15);
   EXPECT_NEAR(found[0].gap, 0.01, 1e-15);
+  const auto deep =
+      touches_of(placed(Capsule{0.1, 1}, {0, 0.05, 0}, axis_angle({0, 1, 0}, 1)), placed(Capsule{0.1, 1}, {}), 0.02);
+  ASSERT_EQ(deep.size(), 1u);
+  EXPECT_EQ(deep[0].form, TouchForm::edges);
 }
 
 TEST(RoundPairs, of_rounded_boxes_with_parallel_edges_touch_at_two_points) {

@@ -43,7 +43,7 @@ TEST(RoundTouches, of_parallel_and_crossed_cylinders_are_those_of_their_middle_l
   EXPECT_EQ(touches_of(placed(log, {0, 0.4 - 1e-9, 0}), placed(log, {}), 0.01).size(), 2u);
   const auto found = touches_of(placed(log, {0, 0.4, 0}, axis_angle({0, 1, 0}, 1)), placed(log, {}), 0.01);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].form, TouchForm::edges);
+  EXPECT_EQ(found[0].form, TouchForm::wires);
   EXPECT_NEAR(found[0].gap, 0, 1e-12);
 }
 
