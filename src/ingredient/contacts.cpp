@@ -172,18 +172,15 @@ struct Places {
       const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
       for (std::uint32_t i = 0; i < count; ++i) c.weights[arm][first + i] = end[i] - start[i];
     };
-    const auto may_turn = [&](const model::Body& body, bool is_world) {
-      return !is_world && (body.rank == 4 || (c.form == TouchForm::wires && body.rank == 2));
-    };
-    const bool with_q = may_turn(q, has_world_plane(c)), with_p = may_turn(p, has_world_point(c));
-    const bool has_wires = c.form == TouchForm::wires;
+    const bool with_q = !has_world_plane(c) && q.rank == 4, with_p = !has_world_point(c) && p.rank == 4;
     c.slips_turn = !has_world_plane(c) && (with_q || with_p);
+    const bool has_wires = c.form == TouchForm::wires;
     if (c.slips_turn) {
-      set_direction(Arm::first_tangent, c.first, with_q);
-      set_direction(Arm::second_tangent, c.second, has_wires && q.rank == 2 ? !with_p : with_q);
+      set_direction(Arm::first_tangent, c.first, with_q || has_wires);
+      set_direction(Arm::second_tangent, c.second, with_q);
     }
     const bool is_axis_of_q = c.form == TouchForm::round && !has_world_plane(c) && q.rank > 1;
-    c.turns = has_wires ? with_p : with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
+    c.turns = has_wires ? !has_world_point(c) : with_q || is_axis_of_q || (c.slips_turn && c.form != TouchForm::face);
     if (c.turns) set_direction(Arm::turned, c.is_round() ? c.axis : c.normal, !has_wires && (with_q || is_axis_of_q));
   }
 
@@ -195,12 +192,12 @@ struct Places {
   }
 };
 
-/// Whether a direction turns with a body: with any of three dimensions, the axis of a rod with the rod.
-bool turns_with(const Model& model, const model::Body& body, const Vec3& direction) {
+/// Whether the axis of a wire turns with its body: with any of three dimensions, with a rod along its own.
+bool turns_with(const Model& model, const model::Body& body, const Vec3& axis) {
   constexpr double askew = 0.2;
   if (body.rank != 2) return body.rank == 4;
-  const Vec3 axis = model.position(body.basis[1]) - model.position(body.basis[0]);
-  return norm(cross(axis, direction)) <= askew * norm(axis);
+  const Vec3 along = model.position(body.basis[1]) - model.position(body.basis[0]);
+  return norm(cross(along, axis)) <= askew * norm(along);
 }
 
 /// The velocity of the center less that of the origin, m/s.
@@ -213,8 +210,11 @@ void set_geometry(const Model& model, Contact& c, const contact::Touch& t, const
                   double h, Sides& sides) {
   const model::Body &p = model.bodies[c.p], &q = model.bodies[c.q];
   take_basis(c, p, q);
-  const bool has_wires = (has_world_point(c) || turns_with(model, p, t.axis)) &&
-                         (has_world_plane(c) || turns_with(model, q, cross(t.normal, t.axis)));
+  // The side of the second wire is a direction of friction, too. A rod has no places beside its axis: friction of two that turned with
+  // one of them would act there at the axis of the other one.
+  const bool has_wires =
+      (has_world_point(c) || turns_with(model, p, t.axis)) &&
+      (has_world_plane(c) || q.rank == 4 || (p.rank == 4 && turns_with(model, q, cross(t.normal, t.axis))));
   c.form = t.form == TouchForm::wires && !has_wires ? TouchForm::edges : t.form;
   c.axis = t.axis, c.bends = {t.bends[0], t.bends[1]};
   c.normal = t.normal, c.first = c.form == TouchForm::wires ? cross(c.normal, c.axis) : any_perpendicular(c.normal);
