@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::held {
 
@@ -19,21 +20,27 @@ double HeldForceError::estimate(const model::Model& model, double h) {
   if (h != h_) forget();
   h_ = h;
   now_.assign(applied_.size(), {});
+  last_.resize(now_.size()), change_before_.resize(now_.size());
   double worst = 0;
   model.pushes.for_each([&](std::uint32_t slot, const ingredient::Push& push) {
     const std::uint32_t first = model.rings[slot].first;
     if (first == model::none) return;
-    now_[slot] = push.force - applied_[slot];
+    Held& now = now_[slot];
+    now.force = push.force - applied_[slot];
     const model::Body& body = model.bodies[model.particles[first].body];
-    // Sub-steps have the part that is linear in the velocity; single particles have none.
     const bool is_single = body.rank < 2;
-    if (const auto* const part = model.pushes_by_velocity.find(slot); part && !is_single) now_[slot] -= part->force;
+    // Sub-steps have the part that is linear in the velocity, with a rate that is held; single particles have none.
+    if (const auto* const part = model.pushes_by_velocity.find(slot); part && !is_single)
+      now.force -= part->force, now.rate = part->rate;
     const double mass = model.ring_mass(slot), length = is_single ? 1 : body.first_row.length;
+    if (known_ < 1) return;
+    const Held& last = last_[slot];
+    const Vec3 change = now.force - last.force + (now.rate + -1.0 * last.rate) * model.rings[slot].velocity;
+    const Vec3 change_before = std::exchange(change_before_[slot], change);
     if (known_ < 2 || !(mass > 0)) return;
-    const Vec3 change = now_[slot] - last_[slot], change_before = last_[slot] - earlier_[slot];
     worst = std::max(worst, (norm(change - change_before) / 24 + h * norm(change) / 12) / (mass * length));
   });
-  earlier_.swap(last_), last_.swap(now_);
+  last_.swap(now_);
   ++known_;
   return worst;
 }

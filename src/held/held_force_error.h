@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ingredient/model.h"
+#include "math/mat3.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,8 +23,14 @@ class HeldForceError {
   double estimate(const model::Model&, double h);
 
  private:
-  std::vector<Vec3> applied_, now_, last_, earlier_;  // N, by slot of the ring
-  int known_ = 0;                                     // steps
+  struct Held {
+    Vec3 force;  ///< N
+    Mat3 rate;   ///< of the part that is linear in the velocity, N s/m
+  };
+  // By slot of the ring.
+  std::vector<Vec3> applied_, change_before_;  // N
+  std::vector<Held> now_, last_;
+  int known_ = 0;  // steps
   double h_ = 0;
   std::uint64_t structure_ = 0;
 };

@@ -100,6 +100,7 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
   const Node damping = formula.make(Op::subtract, force, push);
   has_energy_ = energy != zero, has_push_ = push != zero, has_drag_ = drag != zero;
   has_damping_ = formula.depends_on(damping, var_v);
+  damping_depends_on_distance_ = formula.depends_on(damping, var_r) || formula.depends_on(drag, var_r);
   const auto sees_normals = [&](Node part) {
     return std::ranges::any_of(cosines, [&](Variable cosine) { return formula.depends_on(part, cosine); });
   };

@@ -47,6 +47,7 @@ class PairLaw {
   bool has_damping() const { return has_damping_; }  ///< forces of v
   bool has_drag() const { return has_drag_; }
   bool depends_on_time() const { return depends_on_time_; }
+  bool damping_depends_on_distance() const { return damping_depends_on_distance_; }  ///< or the drag
   bool depends_on_mass() const { return depends_on_mass_; }
   bool depends_on_normals() const { return depends_on_normals_; }
   /// Whether it may add energy to the world, as forces of a user's expression without an energy may.
@@ -77,7 +78,7 @@ class PairLaw {
 
   std::uint32_t number_ = pair_law_count;  // of the list; else an expression
   bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false,
-       depends_on_mass_ = false, depends_on_normals_ = false;
+       depends_on_mass_ = false, depends_on_normals_ = false, damping_depends_on_distance_ = false;
   std::size_t parameter_count_ = 0;
   expression::Program elastic_, push_, damping_, drag_;
   // Programs for batches, with parameters of each pair, or equal ones: force and drag, energy.

@@ -32,6 +32,14 @@ def drag(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
     return system.bond(p, q, "drag = c*(1.1 + sin(9*t))", c=1)
 
 
+def damper_of_the_distance(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    return system.bond(p, q, "energy = 0.5*k*(r - r0)^2; force = -c*r^2*v", k=30, r0=0.9, c=2)
+
+
+def drag_of_the_distance(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
+    return system.bond(p, q, "drag = c*r^2", c=2)
+
+
 def damped(system: iota.System, p: iota.Particle, q: iota.Particle) -> Any:
     system.damping = 2
 
@@ -89,7 +97,9 @@ def end(mode: Any, act: Act, jointed: bool, per_second: int) -> np.ndarray[Any, 
 
 
 @pytest.mark.parametrize("jointed", [False, True])
-@pytest.mark.parametrize("act", [muscle, push, damper, drag, damped, one_damped, hand])
+@pytest.mark.parametrize(
+    "act", [muscle, push, damper, drag, damper_of_the_distance, drag_of_the_distance, damped, one_damped, hand]
+)
 def test_motions_tend_to_one_limit_by_the_order_of_the_mode(act: Act, jointed: bool) -> None:
     limit = end("accurate", act, jointed, FINE)
 

@@ -11,10 +11,10 @@
 namespace iota::solver {
 
 /// Any law between two points. With r = |e|, n = e/r, T = U'(r) - push(r) the pull, D the damping and c the drag:
-///   end point: F = -T(r1) n1 + D(r0, n.(e1-e0)/h) n - c (e1-e0)/h, n as Dashpot says; with -T(r0) n0, held at the start, where
+///   end point: F = -T(r1) n1 + D(r0, n.(e1-e0)/h) n - c(r0) (e1-e0)/h, n as Dashpot says; with -T(r0) n0, held at the start, where
 ///   that attracts and U''(r0) < 0. At the end of a step an attracting pole has a second root beside the pole, in which Newton's
 ///   method caught two bodies for good.
-///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
+///   mid-point: D and c are those of (r0+r1)/2; T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
 ///   of the elastic part is exactly minus the change of energy (Gonzalez 1996). Of a law that depends on the time T* is the mean
 ///   for both times, and the others are taken in the middle; the energy is that at the end, so that the difference is external work.
 /// If r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
@@ -38,14 +38,14 @@ struct RadialForce {
       f = !s.instant && attracts_more_nearby(r0) ? (-pull(r0).value / (r0 + tiny)) * e0
                                                  : (-pull(r1).value / (r1 + tiny)) * e1;
     if (has_dashpot()) f += dashpot_force(e0, e1, s);
-    if (law->has_drag()) f -= (law->drag(acting(r0, s), parameters.data()) / s.h) * (e1 - e0);
+    if (law->has_drag()) f -= (law->drag(acting(distance(e0, e1, s), s), parameters.data()) / s.h) * (e1 - e0);
     return f;
   }
 
   bool has_dashpot() const { return law->has_damping(); }
   Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Dashpot dashpot(e0, e1, s);
-    const laws::PairState state = acting(norm(s.instant ? e1 : e0), s, dashpot.along / s.h);
+    const laws::PairState state = acting(distance(e0, e1, s), s, dashpot.along / s.h);
     return law->damping(state, parameters.data()).value * dashpot.n;
   }
 
@@ -59,10 +59,10 @@ struct RadialForce {
 
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_damping() && !law->has_drag()) return 0;
-    const double r0 = norm(s.instant ? e1 : e0), along = Dashpot(e0, e1, s).along;
+    const double r = distance(e0, e1, s), along = Dashpot(e0, e1, s).along;
     double taken = 0;
-    if (law->has_damping()) taken -= law->damping(acting(r0, s, along / s.h), parameters.data()).value * along;
-    if (law->has_drag()) taken += law->drag(acting(r0, s), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
+    if (law->has_damping()) taken -= law->damping(acting(r, s, along / s.h), parameters.data()).value * along;
+    if (law->has_drag()) taken += law->drag(acting(r, s), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
     return taken;
   }
 
@@ -75,13 +75,27 @@ struct RadialForce {
     if (s.clamp) along = std::max(along, 0.0), across = std::max(across, 0.0);
     Mat3 k = Mat3::diagonal(across);
     k += (along - across) * Mat3::outer(s.midpoint ? (1 / length) * (e0 + e1) : n1, n1);
+    const double r = distance(e0, e1, s);
+    // In the middle of the step the distance is half of that at its end.
+    const bool follows = s.midpoint && !s.clamp && law->damping_depends_on_distance();
+    const auto slope_of_distance = [&](auto value) {
+      const double step = 1e-6 * r + tiny;
+      return follows ? (value(r + step) - value(r - step)) / (4 * step) : 0.0;
+    };
     if (law->has_damping()) {
       const Dashpot dashpot(e0, e1, s);
-      const Slope damping = law->damping(acting(r0, s, dashpot.along / s.h), parameters.data());
-      const double rate = -damping.slope / s.h;
-      k += dashpot.stiffness_matrix(e1, s.clamp ? std::max(rate, 0.0) : rate, -damping.value, s);
+      const auto damping = [&](double at) {
+        return law->damping(acting(at, s, dashpot.along / s.h), parameters.data());
+      };
+      const Slope now = damping(r);
+      const double rate = -now.slope / s.h;
+      k += dashpot.stiffness_matrix(e1, s.clamp ? std::max(rate, 0.0) : rate, -now.value, s);
+      k += -slope_of_distance([&](double at) { return damping(at).value; }) * Mat3::outer(dashpot.n, n1);
     }
-    if (law->has_drag()) k += Mat3::diagonal(law->drag(acting(r0, s), parameters.data()) / s.h);
+    if (law->has_drag()) {
+      const auto drag = [&](double at) { return law->drag(acting(at, s), parameters.data()) / s.h; };
+      k += Mat3::diagonal(drag(r)) + slope_of_distance(drag) * Mat3::outer(e1 - e0, n1);
+    }
     return k;
   }
 
@@ -126,6 +140,10 @@ struct RadialForce {
   static constexpr double tiny = 1e-300;
   using Slope = laws::PairLaw::Slope;
 
+  /// At which the parts without an energy are taken: in the middle of a step for its second order, at the start of an end-point step.
+  static double distance(const Vec3& e0, const Vec3& e1, const ForceStage& s) {
+    return s.instant ? norm(e1) : s.midpoint ? 0.5 * (norm(e0) + norm(e1)) : norm(e0);
+  }
   laws::PairState at(double r, double v = 0) const { return {r, v, time, m_p, m_q}; }
   /// The state for the parts without an energy.
   laws::PairState acting(double r, const ForceStage& s, double v = 0) const {

@@ -29,6 +29,22 @@ TEST(HeldForceError, of_a_field_that_changes_over_a_step_is_told_of_second_order
   EXPECT_EQ(told(IntegrationMode::energy_keeping, 1.0 / 60), 0);
 }
 
+TEST(HeldForceError, of_a_field_across_the_velocity_whose_strength_depends_on_the_place_is_told_of_bodies) {
+  const auto end = [](double h, double& told) {
+    System system({.gravity = {}, .mode = IntegrationMode::accurate});
+    const BodyId box =
+        system.bodies().create(Box{{0.6, 0.4, 0.2}}, {.density = 40, .position = {1, 0, 0}, .velocity = {0, 1, 0}});
+    (void)system.fields().create("fx = c*vy*y*m; fy = -c*vx*y*m; fz = 0", {.parameters = {{"c", 5.0}}});
+    for (int i = 0; i < std::lround(2 / h); ++i) told += h * system.step(h).error;
+    return system.bodies().center_of_mass(box);
+  };
+  double told = 0, of_fine = 0;
+  const double off = norm(end(1.0 / 60, told) - end(1.0 / 960, of_fine));
+  EXPECT_GT(off, 1e-5);
+  EXPECT_GT(told, off);
+  EXPECT_LT(told, 20 * off);
+}
+
 TEST(HeldForceError, of_a_fall_with_drag_is_that_of_its_place_although_its_velocity_is_exact) {
   constexpr double drag = 0.05, g = 9.81, h = 1.0 / 60;
   System system({.mode = IntegrationMode::accurate});
