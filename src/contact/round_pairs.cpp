@@ -131,7 +131,7 @@ void add_touches(TouchWriter& writer, const Segment& a, const Segment& b) {
     const double sign = (is_clear ? side : dot(normal, a.part.middle - b.part.middle)) < 0 ? -1 : 1;
     const Vec3 out = (sign / norm(normal)) * normal;
     const FeatureName of_first = a.part.edge_name(a.edge), of_second = b.part.edge_name(b.edge);
-    // What is round turns about itself: a rope of rods on a post slid off, as its rods rocked on fixed planes.
+    // Their normal turns with both: a rope of rods on a post slid off, as its rods rocked on planes that stayed.
     if (dot(out, nearest.on_first - nearest.on_second) > least_apart * (a.part.radius + b.part.radius))
       writer.add_wires(nearest.on_first, nearest.on_second, (1 / norm(u)) * u, {}, (1 / norm(v)) * v, {}, of_first,
                        of_second);
