@@ -416,7 +416,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     const bool is_touching = !(ahead.apart > 0) && touches();
     if (is_touching && !(ahead.part < h)) note_touches(model, outlines, pair, meeting);
     if (!(ahead.part < h)) continue;
-    note_impact(model, meeting, pair.second, meeting.speed(), true);
+    note_impact(model, meeting, pair.second, meeting.speed() + fall_, true);
     if (!is_touching) ingredient::Contacts::tie(model, pair.first, pair.second);
     hasty_.push_back(model.bodies[pair.first].articulate);
   }
@@ -738,7 +738,9 @@ void ContactFinder::note_touches(const model::Model& model, contact::Outlines& o
                                  const Meeting& meeting) {
   if (!(h_ * meeting.speed() > of_size * meeting.size) || is_of_sweeps(model, meeting)) return;
   const contact::Motion motions[2] = {motion_of(model, outlines, pair.first), motion_of(model, outlines, pair.second)};
-  note_impact(model, meeting, pair.second, approach_of(motions, 0).speed, false);
+  const double fall = fall_ + meeting.first->thrust + (meeting.second ? meeting.second->thrust : 0);
+  const double speed = approach_of(motions, of_size * meeting.size + h_ * fall).speed;
+  if (speed > 0) note_impact(model, meeting, pair.second, speed + fall, false);
 }
 
 // By momentum and restitution. A body that is struck at its end moves there as if it had a quarter of its mass; one with joints may bring the
@@ -757,8 +759,11 @@ void ContactFinder::note_impact(const model::Model& model, const Meeting& meetin
     const std::uint32_t body = bodies[k], other = bodies[!k];
     if (!model::is_free(model.bodies[body].kind)) continue;
     const double own = at_end * model.body_mass(body), others = model.body_mass(other);
-    const double share = weighs_alone(other) ? others / (own + others) : 1;
-    thrown_.push_back({body, h_ * share * change, is_hasty});
+    const Mover* const mover = k ? meeting.first : meeting.second;  // the other one
+    if (weighs_alone(other))
+      thrown_.push_back({body, h_ * others / (own + others) * change, is_hasty});
+    else
+      thrown_.push_back({body, h_ * change, is_hasty, 0, change / speed, mover ? mover->velocity : Vec3{}});
   }
 }
 
@@ -788,16 +793,23 @@ void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& o
     mover.thrown = std::max(mover.thrown, thrown.reach), mover.is_hasty = mover.is_hasty || thrown.is_hasty;
     const geometry::Bounds box = contact::bounds(placed(outlines, mover));
     const Vec3 way = mover.thrown * Vec3{1, 1, 1};
-    const Thrown all{mover.body, mover.thrown, mover.is_hasty};
+    Thrown all = thrown;
+    all.reach = mover.thrown, all.is_hasty = mover.is_hasty;
     tree.overlapping({box.low - way, box.high + way}, [&](std::uint32_t body) {
       const bool is_fixed = model.bodies[body].kind == BodyKind::static_;
       if (body == all.body || !(is_fixed ? model.material(body) != nullptr : may_touch(model, outlines, body))) return;
       const Pair pair = is_fixed ? Pair{all.body, body} : Pair{std::min(all.body, body), std::max(all.body, body)};
       if (is_sensor(model, pair) || !touch_each_other(model, outlines, joined_, pair)) return;
-      const double left = all.reach - distance_of(box, contact::bounds(outlines.placed(body)));
-      if (!(left > 0)) return;
+      const double gap = distance_of(box, contact::bounds(outlines.placed(body)));
+      Thrown next = all;
+      next.body = body, next.reach -= gap, next.crossed += gap;
+      if (!(next.reach > 0)) return;
       near_thrown.push_back(pair);
-      if (model::is_free(model.bodies[body].kind)) thrown_.push_back({body, left, all.is_hasty});
+      if (!model::is_free(model.bodies[body].kind)) return;
+      if (next.stop)
+        next.reach = std::max(
+            next.reach, h_ * next.bounce * norm(mover_at(model, outlines, body).velocity - *next.stop) - next.crossed);
+      thrown_.push_back(next);
     });
   }
   sort_unique(near_thrown);
@@ -824,7 +836,7 @@ void ContactFinder::throw_in_part(const model::Model& model, contact::Outlines& 
   thrown_.clear();
   for (const auto& [pair, meeting, apart] : listed_)
     if (apart < h_ && h_ * meeting.speed() > of_size * meeting.size)
-      note_impact(model, meeting, pair.second, meeting.speed(), true);
+      note_impact(model, meeting, pair.second, meeting.speed() + fall_, true);
   for (const Thrown& thrown : thrown_) {
     Mover& mover = mover_at(model, outlines, thrown.body);
     if (thrown.reach > of_size * mover.reach) mover.thrown = std::max(mover.thrown, thrown.reach);

@@ -201,6 +201,8 @@ class ContactFinder {
     std::uint32_t body;
     double reach;  ///< m
     bool is_hasty;
+    double crossed = 0, bounce = 1;  ///< the gaps from the impact to here, m; one and its restitution
+    std::optional<Vec3> stop{};      ///< the velocity of what does not give way there: all in a row may get it
   };
   std::vector<Thrown> thrown_;
   std::vector<contact::Touch> found_;

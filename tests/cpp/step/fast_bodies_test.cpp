@@ -143,6 +143,32 @@ TEST(FastBodies, that_are_struck_meet_what_is_beside_them_in_the_same_step) {
       }
 }
 
+TEST(FastBodies, that_fall_one_above_the_other_do_not_fall_into_each_other) {
+  for (const auto mode : {IntegrationMode::energy_keeping, IntegrationMode::robust})
+    for (const double speed : {3, 5, 10})
+      for (const double gap : {0.001, 0.01})
+        for (const double size : {0.05, 0.2}) {
+          System system;
+          system.set_mode(mode);
+          system.set_usual_material(Material{});
+          (void)system.bodies().create_obstacle(HalfSpace{{0, 1, 0}}, {}, {});
+          std::vector<BodyId> boxes;
+          for (int i = 0; i < 4; ++i)
+            boxes.push_back(system.bodies().create(
+                Box{{size, size, size}},
+                {.density = 500, .position = {0, 0.05 + size / 2 + i * (size + gap), 0}, .velocity = {0, -speed, 0}}));
+          for (int k = 0; k < 30; ++k) {
+            (void)system.step(1.0 / 60);
+            double below = -size / 2;
+            for (const BodyId box : boxes) {
+              const double height = system.bodies().center_of_mass(box).y;
+              EXPECT_GT(height - below, (1 - 1e-3) * size) << speed << ' ' << gap << ' ' << size << ' ' << k;
+              below = height;
+            }
+          }
+        }
+}
+
 TEST(FastBodies, that_pass_beside_a_wall_are_not_deflected) {
   int deflected = 0;
   for (int i = 0; i < 300; ++i) {
