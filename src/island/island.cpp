@@ -72,7 +72,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for_each_ingredient([&](auto& i) { i.owner = ++owner; });
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
-  take_positions(model);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
   thread_local solver::KnownOrder order;
   orders.find(nodes_.rings, order);
   integrator_->compile(problem_, order);
@@ -371,15 +371,6 @@ void Island::commit_motion(Model& model, double h) {
   last_.lost += virtual_energy(model) - virtual_before;
   last_.converged = last_.converged && meets_pinned(model);
   update_sleep_timer(model, h, last_);
-}
-
-void Island::forget_past(const Model& model) {
-  take_positions(model);
-  integrator_->forget_past(problem_);
-}
-
-void Island::take_positions(const Model& model) {
-  for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
 }
 
 IslandReport Island::report(const Model& model, const solver::AdvanceReport& last) const {

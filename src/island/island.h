@@ -136,8 +136,6 @@ class Island {
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
 
-  void forget_past(const model::Model&);  ///< the next step depends on the model alone
-
   bool is_driven(const model::Model&) const;  ///< by prescribed motion
 
   /// Wakes it in the next step.
@@ -185,7 +183,6 @@ class Island {
   }
 
   void clear();
-  void take_positions(const model::Model&);
   /// Passes the momentum of carried particles with velocities of their own to the basis. False if there are none.
   bool pass_on_assigned(model::Model&, MovedRings&);
   Vec3 choose_origin(const model::Model&) const;

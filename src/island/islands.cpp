@@ -30,7 +30,6 @@ void Islands::renew(Model& model) {
   rings.clear(), ends.clear(), work.clear();
   for (const auto& home : home_of_leader_) {
     if (!home || !home->is_built) continue;
-    home->island.forget_past(model);
     // An order of few points is found again: it depends on the structure alone, unlike that of a dissection by places.
     if (home->is_small() || !home->island.keeps_order()) continue;
     home->island.append_order(rings);
@@ -115,7 +114,7 @@ void Islands::make_ready(Model& model, std::uint32_t body) {
 
 bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) {
   model.take_marked(marked_);
-  const bool renews = std::exchange(renew_, false);
+  if (std::exchange(renew_, false)) forget();
   kept_orders_.read(model);
   if (!model.eliminations.ends.empty()) model.eliminations = {};
   if (!knows_all_) {
@@ -125,9 +124,6 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
     knows_all_ = true;
   }
   waiting_.clear(), changed_.clear(), fresh_.clear(), fresh_loose_.clear();
-  if (renews)
-    for (const auto& home : home_of_leader_)
-      if (home && home->has_followed) drop(*home);
   const bool any_is_due =
       std::any_of(suspected_.begin(), suspected_.end(), [&](const Home* home) { return is_due(*home, model); });
   if (marked_.articulates.empty() && marked_.local.pulled.empty() && waiting_.empty() && !any_is_due)
@@ -137,7 +133,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   entries_.resize(model.articulates.slot_count()), home_of_leader_.resize(entries_.size());
   node_of_ring_.resize(model.rings.slot_count(), none), is_own_.resize(model.bodies.slot_count(), 0);
 
-  drop_marked(model, renews);
+  drop_marked(model);
   find_changed(model);
   take_parts_out(model);
   find_groups(model);
@@ -152,11 +148,10 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   return any || !fresh_.empty() || !fresh_loose_.empty();
 }
 
-// 1. Homes with other than local changes are dropped. After a snapshot all changed ones are, as a restored system has
-// none of them.
-void Islands::drop_marked(const Model& model, bool all) {
+// 1. Homes with other than local changes are dropped.
+void Islands::drop_marked(const Model& model) {
   for (std::size_t i = 0; i < marked_.articulates.size(); ++i) {
-    if (marked_.only_locally[i] && !all) continue;
+    if (marked_.only_locally[i]) continue;
     const std::uint32_t a = marked_.articulates[i];
     if (Home* const home = entries_[a].home)
       drop(*home);

@@ -53,8 +53,8 @@ class Islands {
   }
   bool update(model::Model&, const Parallel&, MovedRings&);
   void forget();
-  /// The next steps depend on the model alone, for a snapshot of it: rebuilds islands that have followed edits, and forgets
-  /// factors. Their orders of elimination become part of the model until they are built.
+  /// The next steps depend on the model alone, for a snapshot of it: the next update begins as one of a restored model. The
+  /// orders of elimination become part of the model until then.
   void renew(model::Model&);
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
@@ -211,7 +211,7 @@ class Islands {
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 
-  void drop_marked(const model::Model&, bool all);
+  void drop_marked(const model::Model&);
   void find_changed(const model::Model&);
   void find_members(const model::Model&, Home&);
   void take_parts_out(const model::Model&);
@@ -234,7 +234,7 @@ class Islands {
   /// With room for the next ones, by the bits of the number of points for which they have it.
   std::array<std::vector<std::unique_ptr<Home>>, 14> spare_;
   std::vector<Home*> suspected_;  // homes with suspects
-  bool renew_ = false;
+  bool renew_ = false;            // in the next update
 
   // State of the present update.
   model::Model::Marked marked_;

@@ -140,7 +140,8 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
   const double give = row_compliance(stage);
   const bool gives = stage.compliance != 0;
   double largest_multiplier = largest_multiplier_, redundancy = redundancy_;
-  const double* const reciprocal_pivots = factor_.diagonals();
+  const double* const reciprocal_pivots =
+      factored_ ? factor_.diagonals() : nullptr;  // else they are of another problem
   Largest worst{worst_}, violation{violation_};
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const Kept<C> c = pool.items[k];
@@ -189,9 +190,10 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       }
       if constexpr (!ConeConstraint<C>) {
         const auto& slots = pool.slots[k];
-        const double reciprocal = std::abs(reciprocal_pivots[slots.diagonal + r * (slots.stride + 1)]);
-        if (!Laws || pool.is_equation(k, r))
+        if (reciprocal_pivots && (!Laws || pool.is_equation(k, r))) {
+          const double reciprocal = std::abs(reciprocal_pivots[slots.diagonal + r * (slots.stride + 1)]);
           redundancy = std::max(redundancy, reciprocal * (Laws ? compliances[r] * give : compliance));
+        }
       }
       unknowns_[pool.slots[k].unknown + r] = value;
       worst.add(std::abs(value) * per_length);

@@ -96,8 +96,6 @@ class Assembly {
   /// a change of structure.
   bool has_factors_of(const Stage&) const;
   void forget_factors() { factored_.reset(); }
-  /// Sets the reference length by the positions of now: `compile` and `follow` do it by those of then.
-  void measure(Problem&);
   /// Whether a factorization costs much more than the rest of an iteration.
   bool is_dear() const { return factor_.is_dear(); }
   const BlockPattern& pattern() const { return *pattern_; }

@@ -159,10 +159,8 @@ double set_reference_lengths(Problem& problem) {
   return length;
 }
 
-void Assembly::measure(Problem& problem) { reference_length_ = set_reference_lengths(problem); }
-
 bool Assembly::compile(Problem& problem, const KnownOrder& order) {
-  measure(problem);
+  reference_length_ = set_reference_lengths(problem);
   if (const std::uint64_t before = std::exchange(structure_, problem.structure());
       before == structure_ && problem.has_slots() && node_unknown_.size() == problem.size() &&
       pattern_ != own_pattern_) {
@@ -223,7 +221,7 @@ void Assembly::follow(Problem& problem) {
     compile(problem);
     return;
   }
-  measure(problem);
+  reference_length_ = set_reference_lengths(problem);
   factor_.grow(*pattern_);
   forget_factors();
   set_slots_of_nodes(problem);

@@ -51,12 +51,6 @@ void Integrator::compile(Problem& problem, const KnownOrder& order) {
   make_room(problem);
 }
 
-void Integrator::forget_past(Problem& problem) {
-  forget_steps(problem);
-  if (!is_due_) newton_.measure(problem);
-  reference_length_ = is_due_ ? set_reference_lengths(problem) : newton_.reference_length();
-}
-
 void Integrator::forget_steps(Problem& problem) {
   newton_.forget_factors();
   const auto affines = problem.items_of<AffineConstraint>();

@@ -78,8 +78,6 @@ class Integrator {
     return !is_due_ && newton_.pattern().calc_work() <= most * order_work();
   }
   double order_work() const { return newton_.pattern().usual_work(); }
-  /// The next step depends on the problem alone, to the bit, as of one that is compiled now.
-  void forget_past(Problem&);
   double reference_length() const { return reference_length_; }  ///< of what is compiled, m
 
   /// The solver of the equations of steps; null: the built-in Newton.

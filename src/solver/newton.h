@@ -63,7 +63,6 @@ class Newton {
   bool has_external() const { return external_ != nullptr; }
   /// The next step does not begin with the factors of the last one: it depends on nothing but the problem's state.
   void forget_factors() { assembly_.forget_factors(); }
-  void measure(Problem& problem) { assembly_.measure(problem); }  ///< see Assembly::measure
   std::uint32_t node_rank(std::uint32_t node) const { return pattern().node_rank(node); }
   const BlockPattern& pattern() const { return assembly_.pattern(); }
 
