@@ -38,8 +38,10 @@ void apply(Editor& e, const SetAttributes& c) {
   require_not_negative("radius", c.value.radius);
   require_color(c.value.color);
   model::Attributes& a = attributes_of(e, particle);
+  const std::uint32_t body = e.model.particles[particle].body;
+  if (c.value.radius != a.radius && e.model.material(body)) ingredient::Contacts::wake(e.model, body);
   a.age = c.value.age, a.lifetime = c.value.lifetime, a.radius = c.value.radius, a.color = c.value.color;
-  e.model.note_body(e.model.particles[particle].body);
+  e.model.note_body(body);
 }
 
 void apply(Editor& e, const SetOrientation& c) {

@@ -276,7 +276,9 @@ void apply(Editor& e, const SetRadius& c) {
   require_size("radius", c.value);
   if (model.bodies[body].first_solid != none)
     throw std::invalid_argument(text("body ", body, " is given by shape: its outline is that, and it has no radius"));
+  const double before = radius_of(model, body);
   set_radius(model, body, c.value);
+  if (c.value != before && model.material(body)) ingredient::Contacts::wake(model, body);
 }
 
 void apply(Editor& e, const SetColor& c) {
@@ -305,7 +307,6 @@ void apply(Editor& e, const SetMaterial& c) {
     ingredient::Contacts::end(model, body);  // it wakes what lies there
   ingredient::Contacts::wake(model, body);
   model.changed_outlines.note(body);
-  if (model::is_free(model.bodies[body].kind)) model.wake(model.bodies[body].articulate);
 }
 
 // --- motion -----------------------------------------------------------------------------------------------------------

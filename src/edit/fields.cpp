@@ -26,9 +26,13 @@ GroupId apply(Editor& e, const CreateGroup& c) {
 void apply(Editor& e, const SetMember& c) {
   model::Model& model = e.model;
   const std::uint32_t bit = 1u << e.require(c.group);
-  std::uint32_t& groups = model.particles[e.require(c.particle)].groups;
-  groups = c.member ? groups | bit : groups & ~bit;
+  model::Particle& particle = model.particles[e.require(c.particle)];
+  const bool may_matter = !model.ignored_contacts.empty();
+  const auto belongs = [&] { return may_matter && ingredient::belongs(model, particle.body, {{}, c.group}); };
+  const bool belonged = belongs();
+  particle.groups = c.member ? particle.groups | bit : particle.groups & ~bit;
   ++model.members_revision;
+  if (belongs() != belonged) ingredient::IgnoredContacts::change_member(model, particle.body, c.group);
 }
 
 std::optional<GroupId> group_at(const model::Model& model, std::uint32_t slot) {
@@ -49,9 +53,9 @@ void apply(Editor& e, const Destroy<GroupId>& c) {
   model.pairs.for_each([&](std::uint32_t p, const ingredient::PairForce& pairs) {
     if (pairs.group == slot || pairs.other == slot) refuse("pairwise force", p);
   });
+  ingredient::IgnoredContacts::forget_group(model, c.id);
   model.particles.for_each(
       [&](std::uint32_t p, const model::Particle&) { model.particles[p].groups &= ~(1u << slot); });
-  ingredient::IgnoredContacts::forget_group(model, c.id);
   model.groups.destroy(slot);
   ++model.members_revision;
 }

@@ -6,6 +6,8 @@
 
 #include <iota/solver.h>
 
+#include <utility>
+
 namespace iota::edit {
 
 void apply(Editor& e, const SetGravity& c) {
@@ -55,7 +57,10 @@ void apply(Editor& e, const SetDamping& c) {
 
 void apply(Editor& e, const SetUsualRadius& c) {
   require_size("usual_radius", c.value);
-  e.model.usual_radius = c.value;
+  model::Model& model = e.model;
+  const double before = std::exchange(model.usual_radius, c.value);
+  const bool may_touch = model.has_usual_material || !model.materials.is_empty();
+  if (c.value != before && may_touch) model.wake_all();
 }
 
 void apply(Editor& e, const SetUsualMaterial& c) {

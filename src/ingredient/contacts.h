@@ -123,7 +123,7 @@ class Contacts : public NoAnswers {
   static bool is_of_sweeps(const Model&, std::uint32_t body);
   /// Ends all contacts of a body that were not taken in this step.
   static void end_old(Model&, std::uint32_t body);
-  /// Wakes what touches a body whose place or material changes.
+  /// Wakes a body whose place, material or size changes, and what touches it.
   static void wake(Model&, std::uint32_t body);
   /// Ends all contacts of a body.
   static void end(Model&, std::uint32_t body);

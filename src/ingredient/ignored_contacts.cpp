@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace iota::ingredient {
 
@@ -30,12 +31,17 @@ void insert(std::vector<IgnoredPair>& pairs, const IgnoredPair& pair) {
   if (place == pairs.end() || *place != pair) pairs.insert(place, pair);
 }
 
-/// The bodies of a party begin anew to look for contacts.
+/// A body begins anew to look for contacts.
+void look_anew(Model& model, std::uint32_t slot) {
+  const model::Body& body = model.bodies[slot];
+  Contacts::end(model, slot);
+  if (model::is_free(body.kind)) model.wake(body.articulate);
+}
+
+/// The same for the bodies of a party. Static ones do not look: the other party does.
 void look_anew(Model& model, const ContactParty& party) {
   model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
-    if (body.kind == BodyKind::static_ || !belongs(model, slot, party)) return;
-    Contacts::end(model, slot);
-    if (model::is_free(body.kind)) model.wake(body.articulate);
+    if (body.kind != BodyKind::static_ && belongs(model, slot, party)) look_anew(model, slot);
   });
 }
 
@@ -110,9 +116,19 @@ void IgnoredContacts::reattach(Model& model, const Memory& memory) {
   }
 }
 
+void IgnoredContacts::change_member(Model& model, std::uint32_t body, GroupId group) {
+  const bool looks = model.bodies[body].kind != BodyKind::static_;
+  for (const IgnoredPair& pair : model.ignored_contacts)
+    for (const auto& [own, other] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)})
+      if (own.group == group) looks ? look_anew(model, body) : look_anew(model, other);
+}
+
 void IgnoredContacts::forget_group(Model& model, GroupId group) {
-  std::erase_if(model.ignored_contacts,
-                [&](const IgnoredPair& pair) { return pair.a.group == group || pair.b.group == group; });
+  std::erase_if(model.ignored_contacts, [&](const IgnoredPair& pair) {
+    const bool names = pair.a.group == group || pair.b.group == group;
+    if (names) look_anew(model, pair.a), look_anew(model, pair.b);
+    return names;
+  });
 }
 
 void IgnoredContacts::validate(const Model& model, model::Audit& audit) {

@@ -42,6 +42,9 @@ class IgnoredContacts : public NoAnswers {
   using Memory = std::vector<Kept>;
   static Memory remember(const Model&, std::span<const std::uint32_t> bodies);
   static void reattach(Model&, const Memory&);
+  /// A body has joined or left a group.
+  static void change_member(Model&, std::uint32_t body, GroupId);
+  /// A group will be destroyed, with the exceptions that name it. It still has its members.
   static void forget_group(Model&, GroupId);
 
   using Commands = std::tuple<IgnoreContacts>;

@@ -486,3 +486,77 @@ def test_a_tower_that_is_hit_within_a_step_touches_at_each_place_once(speed: flo
         system.step(1 / 60)
         places = np.round(system.contacts.positions, 9)
         assert len(np.unique(places, axis=0)) == len(places)
+
+
+# Whether the floor and the box are members of the two groups before.
+MEMBERS: dict[str, tuple[tuple[bool, bool], Callable[..., Any]]] = {
+    "the box joins": ((True, False), lambda system, groups, floor, box: groups[1].add(box)),
+    "the floor joins": ((False, True), lambda system, groups, floor, box: groups[0].add(floor)),
+    "the box leaves": ((True, True), lambda system, groups, floor, box: groups[1].remove(box)),
+    "the floor leaves": ((True, True), lambda system, groups, floor, box: groups[0].remove(floor)),
+    "the group of the box ends": ((True, True), lambda system, groups, floor, box: groups[1].destroy()),
+    "the group of the floor ends": ((True, True), lambda system, groups, floor, box: groups[0].destroy()),
+    "they touch again": ((True, True), lambda system, groups, floor, box: system.allow_contacts(*groups)),
+    "they ignore each other": ((False, False), lambda system, groups, floor, box: system.ignore_contacts(floor, box)),
+}
+
+
+@pytest.mark.parametrize("kind", ["static", "scripted"])
+@pytest.mark.parametrize("change", MEMBERS)
+def test_a_change_of_groups_that_ignore_each_other_wakes_their_members(
+    change: str, kind: Literal["static", "scripted"]
+) -> None:
+    """A box that joined a group which ignores the floor slept on in the air."""
+    members, alter = MEMBERS[change]
+    is_within = all(members)  # without gravity, until they touch
+
+    def way(rest_after: float) -> float:
+        system = iota.System(gravity=(0, 0 if is_within else -9.81, 0))
+        system.usual_material = iota.Material(friction=0)
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        floor = system.body(kind, shape=iota.Box((1, 0.2, 1)), mass=1, position=(0, -0.17 if is_within else -0.1, 0))
+        box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1, position=(0, 0 if is_within else 0.1, 0))
+        groups = (system.group("floors"), system.group("boxes"))
+        if change != "they ignore each other":
+            system.ignore_contacts(*groups)
+        for group, thing, is_member in zip(groups, (floor, box), members, strict=True):
+            if is_member:
+                group.add(thing)
+        system.step(1 / 60, 60)
+        assert box.kind == ("resting" if rest_after else "dynamic")
+        start = box.position.y
+        alter(system, groups, floor, box)
+        system.step(1 / 60, 20)
+        return box.position.y - start
+
+    awake = way(0)
+    assert abs(awake) > 0.02
+    # What is pushed out of another body goes so slowly at last that it sleeps again.
+    assert way(0.2) == pytest.approx(awake, abs=0.01 if is_within else 1e-6)
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.09])
+@pytest.mark.parametrize("whose", ["own", "usual", "ball"])
+def test_what_lies_on_a_floor_wakes_when_its_radius_changes(whose: str, radius: float) -> None:
+    """It slept on in the air, or within the floor."""
+
+    def height(rest_after: float) -> float:
+        system = iota.System(gravity=(0, -9.81, 0))
+        system.usual_material = iota.Material(friction=0.5)
+        system.usual_radius, system.rest_after = 0.05, rest_after
+        system.obstacle(iota.HalfSpace((0, 1, 0)))
+        body = system.body()
+        for place in ((0, 0.05, 0), (0.5, 0.05, 0), (0, 0.05, 0.5))[: 1 if whose == "ball" else 3]:
+            body.particle(place, mass=1)
+        if whose == "ball":
+            body.radius = 0.05
+        system.step(1 / 120, 120)
+        assert body.kind == ("resting" if rest_after else "dynamic")
+        if whose == "usual":
+            system.usual_radius = radius
+        else:
+            body.radius = radius
+        system.step(1 / 120, 60)
+        return body.position.y
+
+    assert height(0.2) == pytest.approx(radius, abs=1e-3) == height(0)
