@@ -142,6 +142,18 @@ double acceleration_by_others(const model::Model& model, std::uint32_t slot) {
   return sum;
 }
 
+/// The speed that a script gives a body in a step of h seconds beside that of the step before, m/s.
+double calc_jump(const model::Model& model, const model::Body& body, double h) {
+  double most = 0;
+  for (std::size_t k = 0; k < body.rank; ++k) {
+    const std::uint32_t ring = model.particles[body.basis[k]].ring;
+    if (!model.rings[ring].nailed) continue;
+    const ingredient::Nail& nail = model.nails.at(ring);
+    most = std::max(most, norm((1 / h) * (nail.position - nail.position_before) - model.rings[ring].velocity));
+  }
+  return most;
+}
+
 }  // namespace
 
 ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact::Outlines& outlines,
@@ -161,6 +173,7 @@ ContactFinder::Mover& ContactFinder::mover_at(const model::Model& model, contact
   for (std::size_t k = 0; k < body.rank; ++k)
     mover.spread = std::max(mover.spread, norm(model.velocity(body.basis[k]) - mover.velocity));
   if (model::is_free(body.kind)) mover.thrust = h_ * acceleration_by_others(model, slot);
+  if (body.kind == BodyKind::scripted) mover.jump = calc_jump(model, body, step_);
   const std::uint32_t stride = ingredient::Strides::of(model, slot);
   mover.steps = stride == ingredient::Strides::frozen ? 1 : stride;
   return mover;
@@ -226,8 +239,11 @@ double ContactFinder::within(const Mover& mover, const Mover* other, double step
   return of_way * steps * h_ * speed + thrown + of_size * (other ? std::min(mover.reach, other->reach) : mover.reach);
 }
 
+double ContactFinder::way_of_jump(double jump) const { return of_way * h_ * jump; }
+
 namespace {
 
+bool is_sensor(const model::Model&, const std::pair<std::uint32_t, std::uint32_t>&);
 bool touch_each_other(model::Model&, contact::Outlines&, JoinedBodies&, const std::pair<std::uint32_t, std::uint32_t>&);
 
 }  // namespace
@@ -261,6 +277,7 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
     const bool is_scripted = model.bodies[mover.body].kind == BodyKind::scripted;
     const double reach = mover.reach + within(mover, nullptr);
     const double reach_of_stride = mover.steps > 1 ? mover.reach + within(mover, nullptr, mover.steps) : reach;
+    const double jump = way_of_jump(mover.jump);
     const auto is_in_the_way = [&](const Obstacle& obstacle) {
       return obstacle.is_half_space || geometry::overlap(way_of_stride(model, outlines, mover), obstacle.box);
     };
@@ -268,7 +285,7 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
       const Obstacle& obstacle = obstacle_at(model, outlines, body);
       if (is_scripted && !obstacle.is_sensor) return;
       const double distance = obstacle.distance(mover.place);
-      if (distance <= reach) pairs_.push_back({mover.body, body});
+      if (distance <= (obstacle.is_sensor ? reach + jump : reach)) pairs_.push_back({mover.body, body});
       if (mover.steps > 1 && distance <= reach_of_stride && is_in_the_way(obstacle) &&
           touch_each_other(model, outlines, joined_, {mover.body, body}))
         ingredient::Strides::note_near(model, mover.body);
@@ -277,7 +294,7 @@ void ContactFinder::find_obstacles(model::Model& model, contact::Outlines& outli
       for (const std::uint32_t body : obstacles_) look_at(body);
       continue;
     }
-    const Vec3 most = reach_of_stride * Vec3{1, 1, 1};
+    const Vec3 most = (reach_of_stride + jump) * Vec3{1, 1, 1};
     tree->overlapping({mover.place - most, mover.place + most}, [&](std::uint32_t body) {
       if (model.bodies[body].kind == BodyKind::static_ && model.material(body)) look_at(body);
     });
@@ -303,17 +320,21 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
     const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
     geometry::Bounds box = box_of(mover);
     box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
-    tree.overlapping(box, [&](std::uint32_t body) {
+    geometry::Bounds box_of_jump = box;
+    const double jump = way_of_jump(mover.jump);
+    box_of_jump.low -= Vec3{jump, jump, jump}, box_of_jump.high += Vec3{jump, jump, jump};
+    tree.overlapping(box_of_jump, [&](std::uint32_t body) {
       Mover* const other = body == slot ? nullptr : look_at(body);
       if (!other) return;
       const double apart = norm(other->place - mover.place) - mover.reach - other->reach;
-      const bool is_near = apart <= within(mover, other);
+      const Pair pair{std::min(body, slot), std::max(body, slot)};
+      const bool jumps = mover.jump + other->jump > 0 && is_sensor(model, pair);
+      const bool is_near = apart <= within(mover, other) + (jumps ? way_of_jump(mover.jump + other->jump) : 0);
       const bool may_be_met = mover.steps > 1 && model.bodies[body].articulate != model.bodies[slot].articulate &&
                               apart <= within(mover, other, mover.steps);
       if (!is_near && !may_be_met) return;
       // The boxes of the tree are wider than the outlines, by their history, which a restored system does not have.
-      if (!geometry::overlap(box, box_of(*other))) return;
-      const Pair pair{std::min(body, slot), std::max(body, slot)};
+      if (!geometry::overlap(jumps ? box_of_jump : box, box_of(*other))) return;
       if (may_be_met && touch_each_other(model, outlines, joined_, pair)) ingredient::Strides::note_near(model, slot);
       if (is_near) pairs_.push_back(pair);
     });
@@ -497,7 +518,7 @@ void ContactFinder::sense(const model::Model& model, contact::Outlines& outlines
   touches_.find(outline, {}, outlines.described(second), {}, close * mover.reach, found_);
   if (found_.empty()) {
     const Meeting meeting = meeting_of(model, outlines, pair);
-    if (h_ * meeting.speed() > far * meeting.size)
+    if (h_ * (meeting.speed() + meeting.jump()) > far * meeting.size)
       passing_.push_back({pair, meeting.size, {center_of(model, first), center_of(model, second)}});
     return;
   }

@@ -78,6 +78,7 @@ class ContactFinder {
         0;  ///< speed that other forces than gravity and contacts give in this time, as far as they are known, m/s
     double thrown = 0;       ///< how far an impact in this step may move it beside its way, m
     bool is_hasty = false;   ///< it takes the step in parts then
+    double jump = 0;         ///< speed of a scripted body in this step beside that of the last one: for sensors, m/s
     double steps = 1;        ///< that it may take at once
     std::uint64_t look = 0;  ///< in which it was measured
     bool is_placed = false;  ///< its outline is where the body is now; this and the following: where asked for
@@ -106,6 +107,7 @@ class ContactFinder {
     double size;    ///< of the smaller one that moves, m
     double speed() const;
     bool is_thrown() const { return first->thrown > 0 || (second && second->thrown > 0); }
+    double jump() const { return first->jump + (second ? second->jump : 0); }  ///< see Mover
   };
   const contact::Outline& placed(contact::Outlines&, Mover&);
   bool is_of_sweeps(const model::Model&, const Meeting&);
@@ -126,6 +128,8 @@ class ContactFinder {
   ingredient::Contacts::Motion motion_in(const model::Model&, const Meeting&) const;
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;
+  /// How much farther a scripted body is looked for by sensors, m.
+  double way_of_jump(double jump) const;
   /// The box that a body stays in for its stride.
   geometry::Bounds way_of_stride(const model::Model&, contact::Outlines&, const Mover&) const;
 

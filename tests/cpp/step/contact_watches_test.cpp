@@ -301,6 +301,35 @@ TEST(ContactWatches, tell_what_passes_a_sensor_between_two_steps) {
       }
 }
 
+// The velocity of a scripted body is that of its last step, which was none.
+TEST(ContactWatches, tell_what_a_scripted_body_passes_in_the_step_in_which_it_starts) {
+  for (const double way : {0.5, 5.0, 200.0})
+    for (const bool is_gate : {false, true}) {
+      Watched world;
+      System& system = world.system;
+      system.set_gravity({});
+      const BodyId moved =
+          system.bodies().create(Box{{0.02, 0.1, 0.1}}, {.position = {-0.1 * way, 5, 0}, .kind = BodyKind::scripted});
+      std::vector<BodyId> sensors;
+      for (const double share : {0.0, 0.3, 0.6})
+        if (is_gate)
+          sensors.push_back(system.bodies().create_obstacle(Box{{0.02, 1, 1}}, {share * way, 5, 0}));
+        else
+          (void)system.bodies().create(Sphere{0.01}, {.position = {share * way, 5, 0}});
+      if (!is_gate) sensors.push_back(moved);
+      for (const BodyId sensor : sensors) system.bodies().set_material(sensor, Material{.touches = Touches::sensor});
+      (void)system.contacts().watch({.a = {ContactParty{moved, {}}}});
+      system.bodies().set_pose(moved, {-0.1 * way, 5, 0}, {});
+      world.run(2.0 / 60, 1.0 / 60);
+      ASSERT_TRUE(world.events.empty());
+      system.bodies().set_pose(moved, {0.9 * way, 5, 0}, {});
+      world.run(2.0 / 60, 1.0 / 60);
+      ASSERT_EQ(world.events.size(), 6u) << way << (is_gate ? " by gates" : " as a gate");
+      for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(world.events[i].began, i < 3);
+      EXPECT_NEAR(world.events[0].speed, 60 * way, 1e-6 * way);
+    }
+}
+
 TEST(ContactWatches, forget_what_may_pass_a_sensor_when_nothing_touches_any_more) {
   System system;
   system.set_gravity({});
