@@ -90,7 +90,7 @@ void Spin::find_rigid_pieces(const Problem& problem) {
   const auto drop = [&](const auto& forces) {
     for (const auto& f : forces) pieces_.of(f.arm.nodes[0]).is_rigid = false;
   };
-  drop(problem.items_of<GyroscopicForce>()), drop(problem.items_of<VelocityForce>());
+  drop(problem.items_of<GyroscopicForce>());
   for (std::size_t k = 0; k < counts_.size(); ++k) {
     const auto [n, rods] = counts_[k];
     Part& part = pieces_.parts[k];
@@ -237,10 +237,10 @@ void Spin::find_free_clusters(const Problem& problem, const Holds& all, Parts& c
 // The end-point rule gives sum m x1 x (v1 - v0) = h moment, that is L1 - L0 = h moment + h sum m v1 x v0. The moment of what its
 // solution leaves unbalanced is small, and the same in each step: by it a free body at 20 rad/s gained 1e-11 of its speed a step.
 bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
-                       double h, Parts& parts) {
+                       double h, Supported supported, Parts& parts) {
   constexpr double round_off = 1e-13;
   const auto start_velocity = [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; };
-  for (Part& part : parts.parts) static_cast<Sums&>(part) = {}, part.given = {};
+  for (Part& part : parts.parts) static_cast<Sums&>(part) = {}, part.given = part.lost_momentum = {};
   const auto add = [&](Sums& sums, double mass, std::uint32_t i, const Vec3& start) {
     const Vec3& v = problem.velocity[i];
     sums.mass += mass;
@@ -295,20 +295,24 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
     }
   };
   add_moments(problem.items_of<SpringForce>()), add_moments(problem.items_of<RadialForce>());
-  bool any = false;
   for (Part& part : parts.parts) {
     part.is_due = part.is_kept && part.mass > 0;
     if (!part.is_due) continue;
     if (const auto pivot = part.holds.pivot()) {
       part.center = *pivot;
       part.lost -= cross(part.center, part.unbalanced);
-      const double g = dot(problem.gravity, problem.gravity);  // which changes the other components
-      if (g > 0) part.lost = (dot(part.lost, problem.gravity) / g) * problem.gravity;
     } else {
       part.center *= 1 / part.mass;
       part.lost_of_center = (h / part.mass) * cross(part.momentum, part.wanted_momentum);
       part.lost -= part.lost_of_center + cross(part.center, part.unbalanced);
     }
+  }
+  add_losses_of_fields(problem, displacement, h, supported, parts);
+  bool any = false;
+  for (Part& part : parts.parts) {
+    if (!part.is_due) continue;
+    const double g = dot(problem.gravity, problem.gravity);  // which changes the other components
+    if (part.holds.count > 0 && g > 0) part.lost = (dot(part.lost, problem.gravity) / g) * problem.gravity;
     part.is_due = norm(part.lost) > round_off * h * part.kinetic;
     any = any || part.is_due;
   }
@@ -351,12 +355,13 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, std::
   begin(problem);
   find_parts(problem, Connection::joints, all, pieces_);
   find_rigid_pieces(problem);
-  const bool are_pieces_due = find_losses(problem, displacement, unbalanced, h, pieces_);
+  const bool are_pieces_due = find_losses(problem, displacement, unbalanced, h, Supported::no, pieces_);
   const bool are_touching_due =
-      find_touching(problem, all) && find_losses(problem, displacement, unbalanced, h, touching_);
+      find_touching(problem, all) && find_losses(problem, displacement, unbalanced, h, Supported::no, touching_);
   const bool are_clusters_due =
-      find_clusters(problem, all) && find_losses(problem, displacement, unbalanced, h, clusters_);
-  are_members_due_ = find_members(problem) && find_losses(problem, displacement, unbalanced, h, members_);
+      find_clusters(problem, all) && find_losses(problem, displacement, unbalanced, h, Supported::no, clusters_);
+  are_members_due_ =
+      find_members(problem) && find_losses(problem, displacement, unbalanced, h, Supported::yes, members_);
   are_wheels_due_ = wheels_.find_losses(problem, displacement, h);
   if (are_members_due_) most_gain -= turn_members(problem, most_gain);
   if (are_wheels_due_)
@@ -396,7 +401,7 @@ double Spin::turn_members(Problem& problem, double most_gain) {
     part.is_due = part.is_due && supports_[k].count >= 4;
     if (!part.is_due) continue;
     const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_kept && problem.gravity == Vec3{};
-    Wrench impulse{{}, is_on_fixed_axle ? -part.lost - part.lost_of_center : -part.lost};
+    Wrench impulse{-part.lost_momentum, is_on_fixed_axle ? -part.lost - part.lost_of_center : -part.lost};
     const Vec3 turn = supports_[k].by_inertia * impulse.torque;
     for (int i = 0; i < supports_[k].count; ++i) {
       const Wrench& support = supports_[k].wrenches[i];

@@ -76,6 +76,7 @@ class Spin {
     bool is_rigid = false;       ///< a free body alone, whose motion has no rest
     bool is_due = false;         ///< it has lost something
     Vec3 angular;                ///< about the center
+    Vec3 lost_momentum;          ///< by fields that turn velocities, kg m/s
     Vec3 lost_of_center;         ///< by the motion of the center of mass
     Vec3 given;                  ///< back of what is lost, to it and to its members
     Mat3 inertia;                ///< about the center
@@ -111,8 +112,10 @@ class Spin {
   bool find_clusters(const Problem&, const Holds& all);
   void find_free_clusters(const Problem&, const Holds& all, Parts&);
   static void drop_turned(const Problem&, Parts&);
+  enum class Supported : std::uint8_t { no, yes };  // by rows of joints, as members
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
-                          double h, Parts&);
+                          double h, Supported, Parts&);
+  static void add_losses_of_fields(const Problem&, std::span<const Vec3> displacement, double h, Supported, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);
   enum class Rest : std::uint8_t { gives, is_kept };

@@ -144,24 +144,62 @@ void Wheels::for_each_mass(const Problem& problem, const Wheel& wheel, Visit vis
   }
 }
 
+namespace {
+
+struct Axle {
+  Vec3 origin, line;
+  double length = norm(line);
+
+  /// How a point moves if its wheel turns by 1 rad/s.
+  Vec3 turning(const Vec3& point) const { return length > 0 ? (1 / length) * cross(line, point - origin) : Vec3{}; }
+};
+
+/// place(node)
+template <class Place>
+Axle axle_at(const std::array<std::uint32_t, 2>& axis, Place place) {
+  const Vec3 origin = place(axis[0]);
+  return {origin, place(axis[1]) - origin};
+}
+
+}  // namespace
+
+// A field that turns velocities does no work along the chord of the step, but turns or brakes a wheel where the step ends.
+void Wheels::add_losses_of_fields(const Problem& problem, double h) {
+  for (const VelocityForce& f : problem.items_of<VelocityForce>()) {
+    if (!f.part.turns) continue;
+    const Vec3 rate = f.arm.rate(problem.velocity.data());
+    const Vec3 acts = f.part.turn(0.5 * (f.start + rate)), wanted = f.part.turn(rate);
+    for (std::uint32_t i = 0; i < f.arm.count; ++i) {
+      const std::uint32_t node = f.arm.nodes[i], k = wheel_of_[node];
+      if (k == wheels_.size()) continue;
+      const auto end = [&](std::uint32_t j) { return problem.position[j]; };
+      const auto start = [&](std::uint32_t j) { return problem.position[j] - h * problem.velocity[j]; };
+      const Vec3 after = axle_at(wheels_[k].axis, end).turning(end(node));
+      const Vec3 before = axle_at(wheels_[k].axis, start).turning(start(node));
+      wheels_[k].lost -= h * f.arm.weights[i] * (dot(acts, after) - 0.5 * dot(wanted, before + after));
+    }
+  }
+}
+
 bool Wheels::find_losses(const Problem& problem, std::span<const Vec3> displacement, double h) {
   if (!is_known_) find(problem);
+  if (wheels_.empty()) return false;
   constexpr double balanced = 1e-9;  // distance of the center of mass from the axis, of the radius
   constexpr double round_off = 1e-13;
+  for (Wheel& wheel : wheels_) wheel.lost = 0;
+  add_losses_of_fields(problem, h);
   bool any = false;
   for (Wheel& wheel : wheels_) {
     const auto find_turning = [&](const auto& place, std::array<Vec3, most_nodes>& turning) {
-      const Vec3 origin = place(wheel.axis[0]), line = place(wheel.axis[1]) - origin;
-      const double length = norm(line);
-      for (std::size_t i = 0; i < wheel.own_count; ++i)
-        turning[i] = length > 0 ? (1 / length) * cross(line, place(wheel.own[i]) - origin) : Vec3{};
+      const Axle axle = axle_at(wheel.axis, place);
+      for (std::size_t i = 0; i < wheel.own_count; ++i) turning[i] = axle.turning(place(wheel.own[i]));
     };
     std::array<Vec3, most_nodes> before;
     find_turning([&](std::uint32_t i) { return problem.position[i] - h * problem.velocity[i]; }, before);
     find_turning([&](std::uint32_t i) { return problem.position[i]; }, wheel.turning);
     double size = 0, kinetic = 0;
     Vec3 moment;  // of mass: zero if it is balanced
-    wheel.lost = wheel.inertia = 0;
+    wheel.inertia = 0;
     for_each_mass(problem, wheel, [&](double mass, std::size_t i, std::uint32_t node) {
       const Vec3& e = wheel.turning[i];
       moment += mass * e, size += std::abs(mass) * norm(e);

@@ -66,6 +66,7 @@ class Wheels {
   class Neighbors;
   void find(const Problem&);
   bool may_have_wheels(const Problem&);
+  void add_losses_of_fields(const Problem&, double h);
   template <class Visit>
   static void for_each_mass(const Problem&, const Wheel&, Visit);
 
@@ -73,10 +74,11 @@ class Wheels {
   bool depends_on_masses_ = false;  // whether there are any
   std::vector<Wheel> wheels_;
   std::vector<std::uint32_t> couplings_;  // of the wheels, one after the other
+  std::vector<std::uint32_t> wheel_of_;   // each node, as an own point; their number if it is none
   // Room to find them.
   std::unique_ptr<Neighbors> neighbors_;
   std::vector<std::uint8_t> is_own_;
-  std::vector<std::uint32_t> wheel_of_, end_of_couplings_;
+  std::vector<std::uint32_t> end_of_couplings_;
   std::vector<double> row_masses_;
 };
 

@@ -404,3 +404,91 @@ def test_a_shifted_cut_off_has_no_jump() -> None:
     system = iota.System()
     with pytest.raises(ValueError, match="gravity cannot be shifted"):
         system.pair_force("gravity", cutoff=2.0, shifted=True, strength=1.0)
+
+
+def kinetic_energy(bodies: list[iota.Body]) -> float:
+    energy = 0.0
+    for body in bodies:
+        velocity, spin = np.array(list(body.velocity)), np.array(list(body.angular_velocity))
+        energy += 0.5 * body.mass * velocity @ velocity + 0.5 * spin @ np.array(body.inertia) @ spin
+    return energy
+
+
+def turning_box(system: iota.System, x: float, spin: tuple[float, float, float]) -> iota.Body:
+    """A box that turns about the origin."""
+    velocity = tuple(np.cross(spin, (x, 0, 0)))
+    return system.body(shape=iota.Box((0.6, 0.4, 0.2)), mass=2, position=(x, 0, 0), velocity=velocity, spin=spin)
+
+
+def free_box(system: iota.System) -> list[iota.Body]:
+    return [turning_box(system, 0, (1, 2, 3))]
+
+
+def nailed_box(system: iota.System) -> list[iota.Body]:
+    box = turning_box(system, 0.1, (1, 2, 3))
+    box.attachment((0, 0, 0)).nail()
+    return [box]
+
+
+def door(system: iota.System) -> list[iota.Body]:
+    box = turning_box(system, 0.4, (0, 0, 3))
+    system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1))
+    return [box]
+
+
+def jointed_pair(system: iota.System) -> list[iota.Body]:
+    boxes = [turning_box(system, x, (1, 2, 3)) for x in (-0.4, 0.4)]
+    system.ball(*boxes, at=(0, 0, 0))
+    return boxes
+
+
+@pytest.mark.parametrize("mode", ["robust", "plausible", "energy_keeping"])
+@pytest.mark.parametrize("make", [free_box, nailed_box, door, jointed_pair])
+def test_a_field_that_turns_velocities_takes_no_energy_from_what_spins(mode: str, make: Any) -> None:
+    for turn, most in ((0.1, 2e-3), (3, 4e-3), (30, 4e-2)):
+        system = iota.System(mode=mode, gravity=(0, 0, 0))
+        bodies = make(system)
+        system.field("fx = B*m*vy; fy = -B*m*vx; fz = 0", B=turn)
+        before = kinetic_energy(bodies)
+        for _ in range(60):
+            system.step(1 / 60)
+            assert kinetic_energy(bodies) <= before * (1 + 1e-9)
+        assert kinetic_energy(bodies) >= before * (1 - most)
+
+
+@pytest.mark.parametrize("make", [free_box, nailed_box])
+def test_a_spin_in_a_field_that_turns_velocities_is_that_of_short_steps(make: Any) -> None:
+    def spin_after(mode: str, rate: int) -> Any:
+        system = iota.System(mode=mode, gravity=(0, 0, 0))
+        (body,) = make(system)
+        system.field("fx = B*m*vy - c*m*vx; fy = -B*m*vx - c*m*vy; fz = -c*m*vz", B=3, c=0.5)
+        for _ in range(rate // 2):
+            system.step(1 / rate)
+        return np.array(list(body.angular_velocity))
+
+    right = spin_after("energy_keeping", 1000)
+    errors = [np.linalg.norm(spin_after("robust", rate) - right) for rate in (60, 240)]
+    assert errors[0] < 0.1
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_a_field_that_turns_velocities_leaves_a_wheel_on_two_shared_points_its_spin(space: iota.System) -> None:
+    space.mode = "robust"
+    wheel, frame = space.body(), space.body()
+    axle = [wheel.particle((0, 0, z), mass=0.1) for z in (-0.1, 0.1)]
+    angles = 2 * math.pi / 3 * np.arange(3)
+    rim = [
+        wheel.particle((math.cos(a), math.sin(a), 0), velocity=(-5 * math.sin(a), 5 * math.cos(a), 0)) for a in angles
+    ]
+    for point in axle:
+        frame.particle(point.position).combine(point)
+    frame.particle((3, 0, 0))
+    space.field("fx = B*m*vy; fy = -B*m*vx; fz = 0", B=10)
+    before = sum(p.mass * norm_squared(p.velocity) for p in rim)
+    for _ in range(120):
+        space.step(1 / 60)
+    assert sum(p.mass * norm_squared(p.velocity) for p in rim) == pytest.approx(before, rel=2e-3)
+
+
+def norm_squared(vector: iota.Vec3) -> float:
+    return float(np.sum(np.square(list(vector))))
