@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace iota::model {
@@ -96,6 +97,42 @@ std::uint32_t solid_that_gives(const Structure& model, std::uint32_t body, const
   return solid;
 }
 
+namespace {
+
+/// Points that are not unknowns get the places and velocities that the basis gives them.
+void carry_others(Structure& model, std::uint32_t body) {
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.is_unknown(model.particles[p])) return;
+    Ring& ring = model.rings[model.particles[p].ring];
+    std::tie(ring.position, ring.velocity) = model.carried(p);
+  });
+}
+
+/// Gives a body a velocity and a spin although the points that other bodies share keep their velocities, which are not quite rigid:
+/// its own points take what these lack. As far as that is little: through shared points far outside it may grow.
+void match_motion(Structure& model, std::uint32_t body, const Vec3& velocity, const Vec3& spin) {
+  constexpr int most_passes = 60;
+  const Vec3 center = model.center_of_mass(body);
+  const auto add = [&](const Vec3& push, const Vec3& turn) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      Ring& ring = model.rings[model.particles[p].ring];
+      if (ring.count == 1) ring.velocity += push + cross(turn, ring.position - center);
+    });
+    carry_others(model, body);
+  };
+  Vec3 push, turn;
+  double lacks = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const Vec3 next_push = velocity - body_velocity(model, body), next_turn = spin - body_angular_velocity(model, body);
+    const double next = norm(next_push) + norm(next_turn) * model.extent(body);
+    if (!(next < lacks)) return add(-push, -turn);
+    push = next_push, turn = next_turn, lacks = next;
+    add(push, turn);
+  }
+}
+
+}  // namespace
+
 std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position) {
   const SolidPose pose = solid_pose(model, slot);
   Solid& solid = model.solids[slot];
@@ -122,23 +159,22 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
   for (const std::uint32_t p : solid.points) model.particles[p].mass = rest * mass / 4;
   place_points(model, solid, center + shift, symmetric_eigen(remaining), pose);
   const auto motion = [&](const Vec3& x) { return velocity + cross(spin, x - body_center); };
-  for (const std::uint32_t p : solid.points) {
-    Ring& ring = model.rings[model.particles[p].ring];
-    ring.velocity = motion(ring.position);
-  }
   const std::uint32_t body = solid.body;
   const std::uint32_t particle = model.make_particle(body, position, share * mass, motion(position));
   model.rebuild_basis(body);
+  // Velocities of the schemes are rigid only on average, or to the order of a step: a new basis would give the others different ones.
+  bool shares = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    Ring& ring = model.rings[model.particles[p].ring];
+    if (ring.count == 1)
+      ring.velocity = motion(ring.position);
+    else
+      shares = true;
+  });
+  carry_others(model, body);
+  if (shares) match_motion(model, body, velocity, spin);
   model.mark_body(body);
   return particle;
-}
-
-void carry_points(Structure& model, std::uint32_t body) {
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (model.is_unknown(model.particles[p])) return;
-    Ring& ring = model.rings[model.particles[p].ring];
-    std::tie(ring.position, ring.velocity) = model.carried(p);
-  });
 }
 
 // The four points of each solid have all of the center and spread, and an equal share of the mass.

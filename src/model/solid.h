@@ -37,10 +37,6 @@ std::uint32_t solid_that_gives(const Structure&, std::uint32_t body, const Vec3&
 /// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.
 std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);
 
-/// After a change of a body's basis: places and velocities of its other points. Velocities of the mid-point rule are rigid only on
-/// average, so that a new basis may give them different ones.
-void carry_points(Structure&, std::uint32_t body);
-
 /// Gives a body made of solids alone this mass, center of mass (world) and mean squares about it (world axes), whatever its
 /// shapes are, which stay where they are. Its motion stays that of the same rigid body.
 void set_mass_properties(Structure&, std::uint32_t body, double mass, const Vec3& center, const Mat3& mean_squares);

@@ -239,3 +239,35 @@ def test_a_massless_particle_that_is_combined_keeps_its_place_on_its_body(system
     assert report.closed_distance == pytest.approx(0.005 * turn, rel=1e-3)
     assert [abs(marker.position - p.position) for p in lower.particles] == pytest.approx(before, abs=1e-12)
     assert system.worst_gap < 1e-12
+
+
+@pytest.mark.parametrize("mode", ["robust", "plausible", "energy_keeping", "accurate"])
+@pytest.mark.parametrize("rate", [60, 1000])
+@pytest.mark.parametrize("tie", ["rod", "span", "ball", "combine", "nail"])
+def test_an_attachment_leaves_the_motion_of_a_jointed_body_as_it_is(mode: str, rate: int, tie: str) -> None:
+    system = iota.System(mode=mode, gravity=(0, 0, -3))
+    box = iota.Box((1, 0.7, 0.5))
+    first = system.body(shape=box, mass=2, velocity=(1, 2, -1), spin=(3, -5, 4))
+    second = system.body(shape=box, mass=2, position=(1.6, 0, 0))
+    p, q = first.attachment((-0.5, -0.3, -0.6)), second.attachment((1.3, 0.2, 0.1))
+    if tie == "rod":
+        system.rod(p, q)
+    elif tie == "span":
+        system.span(p, q, spring=(200, 2, 0.5))
+    elif tie == "ball":
+        system.ball(first, second, at=(0.8, 0, 0))
+    elif tie == "combine":
+        p.combine(second.attachment(p.position))
+    else:
+        p.nail()
+
+    def motion() -> list[float]:
+        return [x for body in (first, second) for x in (*body.velocity, *body.angular_velocity)]
+
+    for _ in range(3):
+        system.step(1 / rate)
+    before, inertia = motion(), first.inertia
+    x, y, z = first.position
+    first.attachment((x + 0.2, y + 0.3, z + 0.1))
+    assert motion() == pytest.approx(before, rel=1e-11, abs=1e-11)
+    assert first.inertia.trace() == pytest.approx(inertia.trace(), rel=1e-12)
