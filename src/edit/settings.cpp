@@ -59,8 +59,8 @@ void apply(Editor& e, const SetUsualRadius& c) {
   require_size("usual_radius", c.value);
   model::Model& model = e.model;
   const double before = std::exchange(model.usual_radius, c.value);
-  const bool may_touch = model.has_usual_material || !model.materials.is_empty();
-  if (c.value != before && may_touch) model.wake_all();
+  const bool has_any_material = model.has_usual_material || !model.materials.is_empty();
+  if (c.value != before && has_any_material) model.wake_all();
 }
 
 void apply(Editor& e, const SetUsualMaterial& c) {
