@@ -14,12 +14,11 @@ namespace {
 
 constexpr double parallel_segments = 1e-6;        ///< sine: there is no common normal
 constexpr double nearly_parallel_segments = 0.3;  ///< sine: the ends may touch too
-constexpr double leaning = 1e-3;    ///< sine: an edge that lies on something rather than one of its corners
-constexpr double flush_end = 1e-5;  ///< of the size: what is so far beyond an end is still beside it
-constexpr double end_share = 1e-9;  ///< share of a segment
-constexpr double same_end = 1e-3;   ///< of the size
-constexpr double least_apart =
-    0.5;  ///< of two lines that cross, of their radii: deeper the way between them does not tell where to
+constexpr double leaning = 1e-3;     ///< sine: an edge that lies on something rather than one of its corners
+constexpr double flush_end = 1e-5;   ///< of the size: what is so far beyond an end is still beside it
+constexpr double end_share = 1e-9;   ///< share of a segment
+constexpr double same_end = 1e-3;    ///< of the size
+constexpr double least_apart = 0.5;  ///< of two lines, of their radii: deeper their way from each other tells nothing
 
 struct Segment {
   const ConvexPart& part;

@@ -407,7 +407,7 @@ void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines)
 }
 
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
-  hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear();
+  hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear(), passed_.clear();
   joined_.forget();
   first_look_ = look_ + 1;
   if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
@@ -429,7 +429,10 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
     }
     const Meeting meeting = meeting_of(model, outlines, pair);
     const Ahead ahead = look_ahead(model, outlines, pair, meeting);
-    if (ahead.apart >= h) continue;
+    if (ahead.apart >= h) {
+      passed_.push_back(pair);
+      continue;
+    }
     const auto touches = [&] {
       const std::span<const std::uint32_t> former = known_.of(model, pair);
       return renew(model, outlines, pair, meeting, former) || touch(model, outlines, pair, meeting, former);
@@ -805,7 +808,7 @@ double distance_of(const geometry::Bounds& a, const geometry::Bounds& b) {
 void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& outlines) {
   if (thrown_.empty()) return;
   const contact::OutlineTree& tree = outlines.refresh(model.step);
-  std::vector<Pair> near_thrown;
+  near_thrown_.clear();
   for (std::size_t k = 0; k < thrown_.size(); ++k) {
     const Thrown thrown = thrown_[k];
     Mover& mover = mover_at(model, outlines, thrown.body);
@@ -825,7 +828,7 @@ void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& o
       Thrown next = all;
       next.body = body, next.reach -= gap, next.crossed += gap;
       if (!(next.reach > 0)) return;
-      near_thrown.push_back(pair);
+      near_thrown_.push_back(pair);
       if (!model::is_free(model.bodies[body].kind)) return;
       if (next.stop)
         next.reach = std::max(
@@ -833,11 +836,13 @@ void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& o
       thrown_.push_back(next);
     });
   }
-  sort_unique(near_thrown);
-  pairs_.insert(pairs_.end(), near_thrown.begin(), near_thrown.end());
+  std::ranges::copy_if(passed_, std::back_inserter(near_thrown_),
+                       [&](const Pair& pair) { return meeting_of(model, outlines, pair).is_thrown(); });
+  sort_unique(near_thrown_);
+  pairs_.insert(pairs_.end(), near_thrown_.begin(), near_thrown_.end());
   sort_unique(pairs_);
   known_.forget(), looked_around_ = {};
-  for (const Pair& pair : near_thrown) {
+  for (const Pair& pair : near_thrown_) {
     const std::span<const std::uint32_t> former = known_.of(model, pair);
     if (std::ranges::any_of(former,
                             [&](std::uint32_t slot) { return model.contacts[slot].found_in == model.step + 1; }))

@@ -209,6 +209,7 @@ class ContactFinder {
     std::optional<Vec3> stop{};      ///< the velocity of what does not give way there: all in a row may get it
   };
   std::vector<Thrown> thrown_;
+  std::vector<Pair> passed_, near_thrown_;  ///< the former: do not meet by their velocities at the begin of the step
   std::vector<contact::Touch> found_;
   std::vector<contact::TouchOfPart> of_parts_;
   std::vector<contact::Seam> seams_;
