@@ -124,10 +124,7 @@ class GapFinder {
   }
   const Gap& least() const { return least_; }
   bool may_be_nearer(const geometry::Bounds& a, const geometry::Bounds& b) const {
-    const auto apart = [](double low, double high) { return std::max(0.0, low - high); };
-    return norm({apart(a.low.x, b.high.x) + apart(b.low.x, a.high.x),
-                 apart(a.low.y, b.high.y) + apart(b.low.y, a.high.y),
-                 apart(a.low.z, b.high.z) + apart(b.low.z, a.high.z)}) < least_.distance;
+    return geometry::distance(a, b) < least_.distance;
   }
 
  private:

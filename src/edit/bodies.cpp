@@ -132,6 +132,7 @@ ParticleId apply(Editor& e, const CreateAttachment& c) {
              "body ",
              body, ", which therefore cannot give; use attachments for that"));
   const std::uint32_t particle = attach(model, solid, c.position);
+  carry_points(model, body);
   e.mark_velocity_dirty(particle);
   e.structure_changed();
   return model.particles.id(particle);

@@ -30,10 +30,11 @@ bool operator==(const Bounds& a, const Bounds& b) { return a.low == b.low && a.h
 
 }  // namespace
 
-double distance(const Bounds& box, const Vec3& place) {
-  const auto outside = [](double low, double high, double at) { return std::max({low - at, at - high, 0.0}); };
-  return norm({outside(box.low.x, box.high.x, place.x), outside(box.low.y, box.high.y, place.y),
-               outside(box.low.z, box.high.z, place.z)});
+double distance(const Bounds& a, const Bounds& b) {
+  const auto apart = [&](double Vec3::* axis) {
+    return std::max({a.low.*axis - b.high.*axis, b.low.*axis - a.high.*axis, 0.0});
+  };
+  return norm({apart(&Vec3::x), apart(&Vec3::y), apart(&Vec3::z)});
 }
 
 // Slabs (Ericson, section 5.3.3). A ray in the plane of a face has 0 times infinity, which the comparisons below ignore.

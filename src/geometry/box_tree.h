@@ -28,8 +28,9 @@ inline bool overlap(const Bounds& a, const Bounds& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
          a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
-/// The distance of a place, 0 inside, m.
-double distance(const Bounds& box, const Vec3& place);
+/// The distance of two boxes, 0 if they overlap, m; and of a place, 0 inside.
+double distance(const Bounds& a, const Bounds& b);
+inline double distance(const Bounds& box, const Vec3& place) { return distance(box, {place, place}); }
 /// The distance along a ray at which it comes into the box, 0 for a start inside; infinite if it does not. inverse: of
 /// each component of its unit vector.
 double entry(const Bounds& box, const Vec3& from, const Vec3& inverse);

@@ -54,7 +54,7 @@ void bear_far_place(Model& model, std::uint32_t body, std::uint32_t marker, cons
   };
   if (most() <= far) return;
   if (const std::uint32_t solid = model::solid_that_gives(model, body, at); solid != model::none)
-    model::attach(model, solid, at);
+    model::attach(model, solid, at), model::carry_points(model, body);
   if (const double left = most(); left > inexact)
     model.notes.push_back(
         text("body ", body, " is held ", std::round(left),

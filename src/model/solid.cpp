@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace iota::model {
 
@@ -97,16 +96,17 @@ std::uint32_t solid_that_gives(const Structure& model, std::uint32_t body, const
   return solid;
 }
 
-namespace {
-
-/// Points that are not unknowns get the places and velocities that the basis gives them.
-void carry_others(Structure& model, std::uint32_t body) {
+void carry_points(Structure& model, std::uint32_t body, Carried what) {
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (model.is_unknown(model.particles[p])) return;
     Ring& ring = model.rings[model.particles[p].ring];
-    std::tie(ring.position, ring.velocity) = model.carried(p);
+    const auto [position, velocity] = model.carried(p);
+    if (what == Carried::all) ring.position = position;
+    ring.velocity = velocity;
   });
 }
+
+namespace {
 
 /// Gives a body a velocity and a spin although the points that other bodies share keep their velocities, which are not quite rigid:
 /// its own points take what these lack. As far as that is little: through shared points far outside it may grow.
@@ -118,7 +118,7 @@ void match_motion(Structure& model, std::uint32_t body, const Vec3& velocity, co
       Ring& ring = model.rings[model.particles[p].ring];
       if (ring.count == 1) ring.velocity += push + cross(turn, ring.position - center);
     });
-    carry_others(model, body);
+    carry_points(model, body, Carried::velocities);
   };
   Vec3 push, turn;
   double lacks = std::numeric_limits<double>::infinity();
@@ -171,7 +171,7 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
     else
       shares = true;
   });
-  carry_others(model, body);
+  carry_points(model, body, Carried::velocities);
   if (shares) match_motion(model, body, velocity, spin);
   model.mark_body(body);
   return particle;

@@ -33,6 +33,10 @@ bool may_move_points(const Structure&, std::uint32_t solid);
 /// The solid of a body nearest to a place whose points may move, so that it can give mass to an attachment; `none` if there is none.
 std::uint32_t solid_that_gives(const Structure&, std::uint32_t body, const Vec3& position);
 
+/// Sets the points of a body that are not unknowns to what the basis says of them: places to their last bits, and velocities.
+enum class Carried : std::uint8_t { all, velocities };
+void carry_points(Structure&, std::uint32_t body, Carried = Carried::all);
+
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
 /// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.
 std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);

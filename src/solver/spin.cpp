@@ -261,8 +261,7 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
       while (++i < problem.size() && parts.connected.of[i] == index);
     };
     if (!part.is_kept)
-      while (++i < problem.size() && parts.connected.of[i] == index) {
-      }
+      for_each_of_part([](std::uint32_t, double, const Vec3&) {});
     else if (part.holds.count > 0)  // the point that holds it is its center
       for_each_of_part([&](std::uint32_t node, double mass, const Vec3& start) {
         sums.mass += mass, add_loss(sums, mass, node, start);

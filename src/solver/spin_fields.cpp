@@ -43,7 +43,8 @@ struct TurnOfStep {
 // the places in the middle. Supported parts follow the chord of the step, along which the force does no work.
 void Spin::add_losses_of_fields(const Problem& problem, std::span<const Vec3> displacement, double h,
                                 Supported supported, Parts& parts) {
-  std::vector<TurnOfStep> turns;
+  thread_local std::vector<TurnOfStep> turns;  // for its capacity
+  turns.clear();
   const auto for_each_force = [&](auto visit) {
     for (const VelocityForce& f : problem.items_of<VelocityForce>()) {
       if (!f.part.turns) continue;

@@ -318,11 +318,8 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
     Mover& mover = mover_at(model, outlines, slot);
     // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
     const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
-    geometry::Bounds box = box_of(mover);
-    box.low -= Vec3{more, more, more}, box.high += Vec3{more, more, more};
-    geometry::Bounds box_of_jump = box;
-    const double jump = way_of_jump(mover.jump);
-    box_of_jump.low -= Vec3{jump, jump, jump}, box_of_jump.high += Vec3{jump, jump, jump};
+    const geometry::Bounds box = geometry::grown(box_of(mover), more);
+    const geometry::Bounds box_of_jump = geometry::grown(box, way_of_jump(mover.jump));
     tree.overlapping(box_of_jump, [&](std::uint32_t body) {
       Mover* const other = body == slot ? nullptr : look_at(body);
       if (!other) return;
@@ -791,17 +788,6 @@ void ContactFinder::note_impact(const model::Model& model, const Meeting& meetin
   }
 }
 
-namespace {
-
-double distance_of(const geometry::Bounds& a, const geometry::Bounds& b) {
-  const auto apart = [&](double Vec3::* axis) {
-    return std::max({0.0, a.low.*axis - b.high.*axis, b.low.*axis - a.high.*axis});
-  };
-  return norm({apart(&Vec3::x), apart(&Vec3::y), apart(&Vec3::z)});
-}
-
-}  // namespace
-
 // By their velocities at the begin of the step bodies do not meet what an impact throws them at: a ball went through a plate behind it
 // after it had bounced off a wall. What is thrown at a body may throw that one, too. Islands that take parts of the step look
 // again in each part, and so need what they may meet among them, from the begin on.
@@ -816,15 +802,14 @@ void ContactFinder::look_around_thrown(model::Model& model, contact::Outlines& o
     if (thrown.reach <= mover.thrown && (mover.is_hasty || !thrown.is_hasty)) continue;
     mover.thrown = std::max(mover.thrown, thrown.reach), mover.is_hasty = mover.is_hasty || thrown.is_hasty;
     const geometry::Bounds box = contact::bounds(placed(outlines, mover));
-    const Vec3 way = mover.thrown * Vec3{1, 1, 1};
     Thrown all = thrown;
     all.reach = mover.thrown, all.is_hasty = mover.is_hasty;
-    tree.overlapping({box.low - way, box.high + way}, [&](std::uint32_t body) {
+    tree.overlapping(geometry::grown(box, mover.thrown), [&](std::uint32_t body) {
       const bool is_fixed = model.bodies[body].kind == BodyKind::static_;
       if (body == all.body || !(is_fixed ? model.material(body) != nullptr : may_touch(model, outlines, body))) return;
       const Pair pair = is_fixed ? Pair{all.body, body} : Pair{std::min(all.body, body), std::max(all.body, body)};
       if (is_sensor(model, pair) || !touch_each_other(model, outlines, joined_, pair)) return;
-      const double gap = distance_of(box, contact::bounds(outlines.placed(body)));
+      const double gap = geometry::distance(box, contact::bounds(outlines.placed(body)));
       Thrown next = all;
       next.body = body, next.reach -= gap, next.crossed += gap;
       if (!(next.reach > 0)) return;
@@ -874,7 +859,7 @@ void ContactFinder::throw_in_part(const model::Model& model, contact::Outlines& 
   for (bool goes_on = !thrown_.empty(); std::exchange(goes_on, false);)
     for (const auto& [pair, meeting, apart] : listed_) {
       if (!meeting.second || !meeting.is_thrown()) continue;
-      const double gap = distance_of(box_of(*meeting.first), box_of(*meeting.second));
+      const double gap = geometry::distance(box_of(*meeting.first), box_of(*meeting.second));
       for (const auto& [from, to] :
            {std::pair(meeting.first, meeting.second), std::pair(meeting.second, meeting.first)})
         if (const double left = from->thrown - gap; left > to->thrown && model::is_free(model.bodies[to->body].kind))

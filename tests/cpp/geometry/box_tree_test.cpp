@@ -47,6 +47,16 @@ void expect_all_near(const BoxTree& tree, RandomBoxes& scene) {
   }
 }
 
+TEST(Boxes, are_as_far_apart_as_their_nearest_corners_and_not_where_they_overlap) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const Bounds box{{0, 0, 0}, {1, 1, 1}}, ground{{-endless, -endless, -endless}, {endless, 0, endless}};
+  EXPECT_DOUBLE_EQ(distance(box, Bounds{{3, 4, 0}, {5, 6, 1}}), std::sqrt(13));
+  EXPECT_DOUBLE_EQ(distance(Bounds{{-2, 0, 0.5}, {-1, 1, 3}}, box), 1);
+  EXPECT_EQ(distance(box, Bounds{{0.5, 0.5, -1}, {2, 2, 2}}), 0);
+  EXPECT_EQ(distance(grown(box, -0.25), ground), 0.25);
+  EXPECT_EQ(distance(ground, ground), 0);
+}
+
 TEST(BoxTree, finds_each_item_that_is_near_once) {
   for (const std::size_t count : {0u, 1u, 2u, 3u, 500u}) {
     RandomBoxes scene(count);
