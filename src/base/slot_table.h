@@ -69,12 +69,22 @@ class SlotTable {
     return list;
   }
 
+  /// Only live objects are saved: a heap of 1000 bodies that fell had room for seven times its contacts, 17 of 21 MB.
   template <class Archive>
   void archive(Archive& ar) {
-    ar.vector(items_);
+    constexpr bool reads = std::is_same_v<Archive, Reader>;
+    if (reads || free_.empty()) {
+      ar.vector(items_);
+    } else {
+      std::vector<T> alive;
+      alive.reserve(alive_count_);
+      for_each([&](std::uint32_t, const T& item) { alive.push_back(item); });
+      ar.vector(alive);
+    }
     ar.vector(generations_);
     ar.vector(free_);
     ar.value(alive_count_);
+    if (reads) spread();
     if (is_consistent()) return;
     ar.fail();
     *this = {};
@@ -82,6 +92,14 @@ class SlotTable {
 
  private:
   bool is_used(std::uint32_t slot) const { return generations_[slot] & 1u; }
+  /// Live objects alone, in the order of slots, to their slots. Earlier versions have saved all.
+  void spread() {
+    if (items_.size() != alive_count_ || items_.size() >= generations_.size()) return;
+    std::size_t next = items_.size();
+    items_.resize(generations_.size());
+    for (auto slot = static_cast<std::uint32_t>(items_.size()); slot-- > 0;)
+      if (is_used(slot) && next > 0) items_[slot] = items_[--next];
+  }
   /// Whether each slot is alive or in the free list exactly once: bytes from outside may be inconsistent.
   bool is_consistent() const {
     if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) return false;

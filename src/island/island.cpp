@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +21,7 @@ using model::Ring;
 
 namespace {
 
-solver::IntegratorSettings settings_of(const Model& model) {
+solver::IntegratorSettings settings_of_mode(const Model& model) {
   switch (model.mode) {
     case IntegrationMode::plausible: return solver::IntegratorSettings::plausible();
     case IntegrationMode::robust: return solver::IntegratorSettings::robust();
@@ -28,6 +29,14 @@ solver::IntegratorSettings settings_of(const Model& model) {
     case IntegrationMode::accurate: return solver::IntegratorSettings::accurate(model.tolerance);
   }
   return {};
+}
+
+solver::IntegratorSettings settings_of(const Model& model, const Island::Limits& limits = {}) {
+  solver::IntegratorSettings settings = settings_of_mode(model);
+  settings.max_iterations = model.budget_iterations, settings.deadline = limits.deadline;
+  if (model.budget_contacts > 0) settings.contact_budget = model.contacts_share * model.budget_contacts;
+  settings.contact_share = limits.share, settings.part = limits.part;
+  return settings;
 }
 
 }  // namespace
@@ -106,7 +115,8 @@ bool Island::pass_on_assigned(Model& model, MovedRings& moved) {
   }
   if (!differs || idle_) return false;
   load(model, 0);
-  integrator_->project_velocities(problem_, 0, impulses);
+  if (!integrator_->project_heap(problem_, settings_of(model), {.impulses = impulses}))
+    integrator_->project_velocities(problem_, 0, impulses);
   store_projection(model, false, moved);
   return true;
 }
@@ -309,24 +319,23 @@ Island::Tried Island::try_prescribed(const Model& model, double h) {
 Island::Tried Island::try_motion(const Model& model, double h, const Limits& limits) {
   load(model, h);
   use_solver(model.solver);
+  const solver::IntegratorSettings settings = settings_of(model, limits);
   double given = 0;  // by jumps of prescribed velocities, J
   // With the mid-point rule a jump of a prescribed velocity would cause a permanent oscillation of the reactions.
   const double little = 1e-10 * integrator_->reference_length();
   const bool speeds_up = rate_jump() * h > little;
   if (speeds_up || velocity_jump(h) * h > little) {
-    if (speeds_up) problem_.begin_impulses(), problem_.note_late_impulses();  // a winch that starts pulls by that
     given -= problem_.kinetic_energy();
     impose_velocities(h);
-    integrator_->project_velocities(problem_, h);
+    if (!integrator_->project_heap(problem_, settings, {.h = h})) {
+      if (speeds_up) problem_.begin_impulses(), problem_.note_late_impulses();  // a winch that starts pulls by that
+      integrator_->project_velocities(problem_, h);
+    }
     given += problem_.kinetic_energy();
   }
   const model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
   problem_.unsolved_steps = memory.unsolved_steps;
-  solver::IntegratorSettings settings = settings_of(model);
-  settings.max_iterations = model.budget_iterations, settings.deadline = limits.deadline;
-  if (model.budget_contacts > 0) settings.contact_budget = model.contacts_share * model.budget_contacts;
-  settings.contact_share = limits.share, settings.part = limits.part;
   last_ = integrator_->advance(problem_, h, settings);
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
@@ -415,9 +424,12 @@ bool Island::project_all(Model& model, bool positions) {
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
     return true;
   }
-  const bool met = !positions || integrator_->project_positions(problem_);
-  integrator_->project_velocities(problem_);
-  if (has_finite_motion()) return met;
+  std::optional<bool> met = integrator_->project_heap(problem_, settings_of(model), {.positions = positions});
+  if (!met) {
+    met = !positions || integrator_->project_positions(problem_);
+    integrator_->project_velocities(problem_);
+  }
+  if (has_finite_motion()) return *met;
   load(model, 0);  // as in a step: nothing has been stored in the model yet
   std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
   return false;
@@ -428,8 +440,9 @@ bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool po
   articulate(model).try_again();
   (void)pass_on_assigned(model, moved);
   load(model, 0);
-  const std::vector<std::uint32_t> edited = nodes_of(model, bodies);
-  const bool is_local = !idle_ && !edited.empty() && integrator_->project_locally(problem_, positions, edited);
+  std::vector<std::uint32_t> edited;
+  if (!idle_ && !integrator_->is_projected_as_heap(problem_, settings_of(model))) edited = nodes_of(model, bodies);
+  const bool is_local = !edited.empty() && integrator_->project_locally(problem_, positions, edited);
   const bool met = is_local || project_all(model, positions);
   store_projection(model, positions && !idle_, moved,
                    is_local ? integrator_->moved_locally() : std::span<const std::uint32_t>{});

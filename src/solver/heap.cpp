@@ -170,29 +170,32 @@ void Heap::load_bodies(const Problem& problem, double h) {
     Motion& motion = motions_[i];
     body.gain = body.turning = {};
     if (motion.by_mass == 0) continue;
-    const SymmetricEigen eigen = symmetric_eigen(body.inertia);
-    constexpr double thin = 1e-9;
-    double reach = 0;
-    for (std::uint32_t k = 0; k < body.count; ++k)
-      reach = std::max(reach, norm(problem.position[body.nodes[k]] - body.center));
-    // Shared points may give a body all its mass at one place: its inertia is round-off then.
-    const double largest =
-        std::max({eigen.values[0], eigen.values[1], eigen.values[2], thin * reach * reach / motion.by_mass});
-    for (int k = 0; k < 3; ++k)
-      if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
-        motion.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
-    body.by_inertia_at_begin = motion.by_inertia;
+    for (std::uint32_t k = 0; k < body.count; ++k) body.arms[k] = problem.position[body.nodes[k]] - body.center;
+    invert_inertia(body, motion);
     motion.spin = motion.by_inertia * angular[i];
     body.gain = h * problem.gravity;
-    for (std::uint32_t k = 0; k < body.count; ++k) {
-      body.arms[k] = problem.position[body.nodes[k]] - body.center;
-      if (problem.force.empty()) continue;
+    for (std::uint32_t k = 0; k < body.count && !problem.force.empty(); ++k) {
       const Vec3 force = body.shares[k] * problem.force[body.nodes[k]];
       body.gain += (h * motion.by_mass) * force, body.turning += h * cross(body.arms[k], force);
     }
   }
   for (const BodyTorque& t : problem.torques)
     found_.all[found_.with(std::span(t.nodes).first(t.count))].turning += h * t.torque;
+}
+
+void Heap::invert_inertia(Body& body, Motion& motion) {
+  constexpr double thin = 1e-9;
+  const SymmetricEigen eigen = symmetric_eigen(body.inertia);
+  double reach = 0;
+  for (std::uint32_t k = 0; k < body.count; ++k) reach = std::max(reach, norm(body.arms[k]));
+  // Shared points may give a body all its mass at one place: its inertia is round-off then.
+  const double largest =
+      std::max({eigen.values[0], eigen.values[1], eigen.values[2], thin * reach * reach / motion.by_mass});
+  motion.by_inertia = {};
+  for (int k = 0; k < 3; ++k)
+    if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
+      motion.by_inertia += (1 / eigen.values[k]) * Mat3::outer(eigen.axes[k], eigen.axes[k]);
+  body.by_inertia_at_begin = motion.by_inertia;
 }
 
 void Heap::load_grips(const Problem& problem) {
@@ -269,18 +272,32 @@ void Heap::move(double h) {
   }
 }
 
-void Heap::store(Problem& problem, double h, HeapReport& report) {
+// visit(node, body, motion, arm): each point of what moves by itself, once.
+template <class Visit>
+void Heap::for_each_own_point(Visit visit) const {
   for (std::size_t i = 0; i < found_.all.size(); ++i) {
     const Body& body = found_.all[i];
     const Motion& motion = motions_[i];
     if (motion.by_mass == 0) continue;
-    for (std::uint32_t k = 0; k < body.count; ++k) {
-      if (found_.owner[body.nodes[k]] != i) continue;
-      const Vec3 arm = rotate(body.turn, body.arms[k]);
-      problem.position[body.nodes[k]] = body.center + body.moved + arm;
-      problem.velocity[body.nodes[k]] = motion.velocity + cross(motion.spin, arm);
-    }
+    for (std::uint32_t k = 0; k < body.count; ++k)
+      if (found_.owner[body.nodes[k]] == i) visit(body.nodes[k], body, motion, rotate(body.turn, body.arms[k]));
   }
+}
+
+void Heap::store_velocities(Problem& problem) const {
+  for_each_own_point([&](std::uint32_t node, const Body&, const Motion& motion, const Vec3& arm) {
+    problem.velocity[node] = motion.velocity + cross(motion.spin, arm);
+  });
+}
+
+void Heap::store_positions(Problem& problem) const {
+  for_each_own_point([&](std::uint32_t node, const Body& body, const Motion&, const Vec3& arm) {
+    problem.position[node] = body.center + body.moved + arm;
+  });
+}
+
+void Heap::store(Problem& problem, double h, HeapReport& report) {
+  store_positions(problem), store_velocities(problem);
   ties_.store(problem, h);
   const HeapPoints::Report points = points_.store(problem, h);
   report.external_work += points.external_work, report.depth = points.depth;
@@ -330,7 +347,8 @@ HeapReport Heap::advance(Problem& problem, double h, double from, double fractio
     problem.position[c.nodes[0]] = c.target_start + fraction * (c.target - c.target_start);
   const double gap = ties_.worst_gap();
   const bool are_copies_apart = ties_.are_copies_apart();
-  report.are_joints_met = ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1));
+  report.are_joints_met =
+      ties_.project(problem, found_, motions_, part, way_at(sub_steps), way_at(sub_steps + 1), true);
   if ((!report.are_joints_met && are_copies_apart) || has_diverged(problem, h, gap_before, gap))
     return {.are_joints_met = false, .has_diverged = true};
   store(problem, h, report);

@@ -44,6 +44,16 @@ class Heap {
   double cost_of_factor() const;
   /// At least, in no time.
   double least_cost_of_factor() const { return least_cost_; }
+  /// What a projection is about.
+  struct Projection {
+    double h = 0;                         ///< s, in which targets go their way; 0: they rest
+    std::span<const Vec3> impulses = {};  ///< of the points before, N s; or none
+    bool positions = false;               ///< of both, not of velocities alone
+  };
+  /// Moves velocities, and positions on request, by the least changes in the mass norm onto the bodies and the equations between them.
+  /// Contacts and other bounded rows are left to the sweeps of the next step, but for contacts of what targets drive by joints. False if
+  /// no places meet these: it moves velocities alone.
+  bool project(Problem&, const Projection&);
   static constexpr int most_sub_steps = 8;  ///< see heap.cpp
   /// A (sub-)step of h seconds, at whose end targets have gone this fraction of their way.
   HeapReport advance(Problem&, double h, double from, double fraction, int sub_steps = most_sub_steps);
@@ -58,14 +68,24 @@ class Heap {
     Vec3 arm, error;  ///< from the center to the held place; from its target, at the begin
   };
   bool is_free(std::uint32_t body) const { return body != none && motions_[body].by_mass > 0; }
+  template <class Visit>
+  void for_each_own_point(Visit visit) const;
   void load_grips(const Problem&);
   void find_least_cost();
   void load_bodies(const Problem&, double h);
+  static void invert_inertia(Body&, Motion&);
+  struct Length {
+    std::uint32_t body, item;  ///< of the pool of lengths
+  };
+  void restore_shapes(const Problem&);
+  void restore_shape(const Problem&, std::uint32_t body, std::span<const Length>);
   void push(double h, const Problem&, HeapReport&);
   void move(double h);
   void sweep(const Problem&, double h, const HeapSoftness&, int times);
   double power_of(const Vec3& gravity) const;  ///< W
   void store(Problem&, double h, HeapReport&);
+  void store_velocities(Problem&) const;
+  void store_positions(Problem&) const;
   /// Whether a joint has opened by more than the size of a body, from a gap of so many m, or a body has gone much further than it
   /// could by the motions of all and to close it.
   bool has_diverged(const Problem&, double h, double gap_before, double gap) const;

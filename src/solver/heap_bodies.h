@@ -68,6 +68,8 @@ struct HeapBodies {
   /// After a change of structure. False if a driven body shares a point, or a share of mass is not positive.
   bool find(const Problem&);
   bool have(std::uint32_t body, std::uint32_t node) const { return place_of(body, node) < all[body].count; }
+  /// The number of a point in a body; its count if it has no such point.
+  std::uint32_t place_of(std::uint32_t body, std::uint32_t node) const;
   bool is_shared(std::uint32_t node) const { return !copies.empty() && bodies_at_[node].size() > 1; }
   /// The mass of each body, kg; zero where it is driven.
   std::vector<double> masses(const Problem&) const;
@@ -80,7 +82,6 @@ struct HeapBodies {
   void add_body(std::uint32_t a, std::uint32_t b, const std::vector<std::vector<std::uint32_t>>& neighbors);
   bool have_body(std::uint32_t a, std::uint32_t b) const;
   bool share_masses(const Problem&);
-  std::uint32_t place_of(std::uint32_t body, std::uint32_t node) const;
 
   Pieces pieces_;
   std::vector<std::vector<std::uint32_t>> bodies_at_;  // each node of a piece of several bodies

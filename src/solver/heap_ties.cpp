@@ -309,13 +309,12 @@ void HeapTies::find_changes(std::span<const HeapMotion> motions, Rows rows) {
     changes_[b].spin = motions[b].by_inertia * changes_[b].spin;
 }
 
-bool HeapTies::project(const Problem& problem, HeapBodies& bodies, std::span<HeapMotion> motions, double h, double at,
-                       double later) {
-  constexpr int most_iterations = 20, passes = 2;  // the second removes the errors of a factor at the places before
-  if (equations_.empty()) return true;
+// Moves bodies onto the equations.
+bool HeapTies::close(const Problem& problem, HeapBodies& bodies, std::span<HeapMotion> motions, double h, double at,
+                     double later) {
+  constexpr int most_iterations = 20;
   bodies_before_ = bodies.all;
   motions_before_.assign(motions.begin(), motions.end());
-  refresh(problem, bodies, motions, h, at, later);
   for (int i = 0; i == 0 || !are_met(); ++i) {
     if (i == most_iterations) {
       bodies.all = bodies_before_;
@@ -333,6 +332,16 @@ bool HeapTies::project(const Problem& problem, HeapBodies& bodies, std::span<Hea
     }
     refresh(problem, bodies, motions, h, at, later);
   }
+  return true;
+}
+
+bool HeapTies::project(const Problem& problem, HeapBodies& bodies, std::span<HeapMotion> motions, double h, double at,
+                       double later, bool positions) {
+  constexpr int passes = 2;  // the second removes the errors of a factor at the places before
+  if (equations_.empty()) return true;
+  refresh(problem, bodies, motions, h, at, later);
+  if (!positions) factorize(motions);
+  if (positions && !close(problem, bodies, motions, h, at, later)) return false;
   for (int pass = 0; pass < passes; ++pass) {
     find_changes(motions, [&](const Tie& tie, int r) { return rate_of(tie, r, motions); });
     for (std::size_t b = 0; b < motions.size(); ++b)

@@ -60,10 +60,10 @@ class HeapTies {
   double add_up();
   /// Writes the multipliers: mean forces in h seconds.
   void store(Problem&, double h);
-  /// Moves bodies and their velocities by the least changes in the mass norm onto the equations of the ties, at the first of these
+  /// Moves velocities, and bodies on request, by the least changes in the mass norm onto the equations of the ties, at the first of these
   /// fractions of the way of targets in the step. They reach the second one h seconds later. False, without a
   /// change, if there are no such places.
-  bool project(const Problem&, HeapBodies&, std::span<HeapMotion>, double h, double at, double later);
+  bool project(const Problem&, HeapBodies&, std::span<HeapMotion>, double h, double at, double later, bool positions);
 
  private:
   static constexpr std::uint32_t none = HeapBodies::none;
@@ -96,6 +96,7 @@ class HeapTies {
   }
   std::span<Side> sides_of(const Tie& tie) { return std::span(sides_).subspan(tie.first_side, tie.side_count); }
   bool are_met() const;
+  bool close(const Problem&, HeapBodies&, std::span<HeapMotion>, double h, double at, double later);
   void factorize(std::span<const HeapMotion>);
   /// The changes of all bodies by impulses that take this from each row: rows(tie, r). Changes have no masses.
   template <class Rows>

@@ -32,6 +32,8 @@ constexpr bool has_length = requires(const C& c) {
 };
 
 constexpr int unlimited = std::numeric_limits<int>::max();
+// Iterations of problems with contacts: at least, of a step; of closing what is open, and of projections, where many contacts switch.
+constexpr double fewest = 4, of_closing = 60, of_projection = 60;
 constexpr auto never = std::chrono::steady_clock::time_point::max();
 
 int most_iterations(double budget, double cost) {
@@ -278,22 +280,15 @@ void accept_overlaps(Problem& problem) {
 
 }  // namespace
 
-// Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
-// so that this one is not tried. What a factor costs depends on the structure alone, so that a restored problem takes the
-// same way.
-bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
-  constexpr double fewest = 4, of_closing = 60;  // iterations
-  const double budget = settings_.contact_budget;
-  if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) {
-    may_sweep_ = false;
-    return false;
-  }
+// What a factor costs depends on the structure alone, so that a restored problem takes the same way.
+bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSettings& settings, double& cost) {
+  const double budget = settings.contact_budget;
+  if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) return false;
   if (!heap_) heap_ = std::make_unique<Heap>();
   if (!std::exchange(is_heap_known_, true)) {
     is_heap_ = heap_->find_bodies(problem);
     heap_cost_.reset();
   }
-  may_sweep_ = false;
   if (!is_heap_) return false;
   cost = heap_->least_cost_of_factor();
   if (!(fewest * cost > budget)) {
@@ -302,7 +297,31 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   }
   // Joints within a part of the budget are not left to sweeps. These lost a load that beads of a 4000th of its mass held.
   const double of_machine = heap_->has_light_joints() ? 1 : 1.0 / 8;
-  may_sweep_ = !heap_->has_joints() || fewest * cost > of_machine * budget;
+  return !heap_->has_joints() || fewest * cost > of_machine * budget;
+}
+
+/// Whether so many iterations take more than its share of the budget.
+bool Integrator::is_beyond(Problem& problem, const IntegratorSettings& settings, double iterations) {
+  double cost = 0;
+  return may_be_left_to_sweeps(problem, settings, cost) &&
+         iterations * cost > settings.contact_share * settings.contact_budget;
+}
+
+bool Integrator::is_projected_as_heap(Problem& problem, const IntegratorSettings& settings) {
+  return is_beyond(problem, settings, of_projection);
+}
+
+std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorSettings& settings,
+                                             const Heap::Projection& projection) {
+  if (!is_beyond(problem, settings, projection.h > 0 ? fewest : of_projection)) return std::nullopt;
+  return heap_->project(problem, projection);
+}
+
+// Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
+// so that this one is not tried.
+bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
+  const double budget = settings_.contact_budget;
+  may_sweep_ = may_be_left_to_sweeps(problem, settings_, cost);
   if (!may_sweep_) return false;
   std::uint64_t& swept = problem.unsolved_steps;
   if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole

@@ -88,6 +88,12 @@ class Integrator {
     newton_.project_velocities(problem, h, impulses);
   }
 
+  /// Whether a projection of all rows takes more than the budget of contacts, so that it leaves these to steps.
+  bool is_projected_as_heap(Problem&, const IntegratorSettings&);
+  /// Both projections of such a problem, onto its bodies and joints alone: see Heap::project. With targets, of one whose step is left
+  /// to sweeps. None if it is no such problem.
+  std::optional<bool> project_heap(Problem&, const IntegratorSettings&, const Heap::Projection&);
+
  private:
   void forget_steps(Problem&);
   AdvanceReport advance_within_limits(Problem&, double h, const IntegratorSettings&);
@@ -104,6 +110,8 @@ class Integrator {
   void make_room(const Problem&);
   void make_ready(Problem&);
   void analyze(Problem&, const KnownOrder& order = {});
+  bool may_be_left_to_sweeps(Problem&, const IntegratorSettings&, double& cost);
+  bool is_beyond(Problem&, const IntegratorSettings&, double iterations);
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
   void damp(Problem&, double time, AdvanceReport&);

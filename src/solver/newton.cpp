@@ -17,7 +17,7 @@ namespace iota::solver {
 namespace {
 
 using Set = NewtonSettings;
-constexpr double no_limit = std::numeric_limits<double>::infinity();
+constexpr double any_residual = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -103,7 +103,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
   const bool carries = may_carry && assembly_.has_factors_of(stage);
   bool factor_will_do = carries, served_on = carries;
   int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
-  double limit = no_limit;  // of the residual after a change of sides: that before the step
+  double limit = any_residual;  // of the residual after a change of sides: that before the step
   while (true) {
     if (has_laws_ && report.iterations > 0) {
       are_final = !choose_sides(problem, stage, limit);
@@ -122,7 +122,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
                      !(residual_.worst > stage.tolerance))) {
       ActiveSet::soften_cones(problem, 1);
       are_soft = stuck = factor_will_do = false;
-      limit = no_limit;
+      limit = any_residual;
       measure(problem, stage);
       continue;
     }
@@ -163,7 +163,7 @@ NewtonReport Newton::solve_directly(Problem& problem, const Stage& stage) {
       stuck = !is_clamped && (may_carry || !served_on) && before <= nothing();
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step(problem, stage);
-        hessian = Hessian::clamped, limit = no_limit;
+        hessian = Hessian::clamped, limit = any_residual;
       } else if (!stuck) {
         const int halvings = stretch(problem, stage, before, is_clamped);
         stuck = halvings == Set::max_halvings && !(residual_.worst < before);  // lost

@@ -67,6 +67,35 @@ TEST(SlotTable, reuses_the_slot_that_was_given_back_last) {
   EXPECT_EQ(table.create(5), (TestId{3, 1}));
 }
 
+TEST(SlotTable, saves_live_objects_alone_and_reads_tables_with_all) {
+  Table table;
+  for (int i = 0; i < 100; ++i) table.create(i);
+  const std::size_t size = saved(table).size();
+  for (std::uint32_t slot = 0; slot < 90; ++slot) table.destroy((7 * slot) % 100);
+  const std::vector<std::byte> bytes = saved(table);
+  EXPECT_EQ(bytes.size(), size - 90 * sizeof(double) + 90 * sizeof(std::uint32_t));
+  std::vector<double> all(100, -1);  // as earlier versions have saved it
+  std::vector<std::uint32_t> generations(100), none;
+  for (std::uint32_t slot = 0; slot < 100; ++slot) {
+    generations[slot] = table.id(slot).generation;
+    if (table.is_alive(slot))
+      all[slot] = table[slot];
+    else
+      none.push_back(slot);
+  }
+  std::vector<std::byte> whole;
+  Writer writer(whole);
+  writer.vector(all), writer.vector(generations), writer.vector(none), writer.value(table.size());
+  for (const std::vector<std::byte>& source : {bytes, whole}) {
+    Table restored;
+    Reader reader(source);
+    restored.archive(reader);
+    EXPECT_TRUE(reader.ok() && reader.at_end());
+    ASSERT_EQ(restored.ids(), table.ids());
+    table.for_each([&](std::uint32_t slot, double value) { EXPECT_EQ(restored[slot], value) << slot; });
+  }
+}
+
 TEST(SlotTable, that_is_restored_gives_the_same_ids_from_then_on) {
   Table table, restored;
   for (int i = 0; i < 6; ++i) table.create(i);
