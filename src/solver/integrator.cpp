@@ -322,7 +322,11 @@ std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorS
 bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   const double budget = settings_.contact_budget;
   may_sweep_ = may_be_left_to_sweeps(problem, settings_, cost);
-  if (!may_sweep_) return false;
+  if (!may_sweep_) {
+    // A joint that is added to what lies in a heap may prevent that they are closed.
+    if (budget < std::numeric_limits<double>::infinity()) accept_overlaps(problem);
+    return false;
+  }
   std::uint64_t& swept = problem.unsolved_steps;
   if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
