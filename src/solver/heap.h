@@ -44,7 +44,7 @@ class Heap {
   double cost_of_factor() const;
   /// At least, in no time.
   double least_cost_of_factor() const { return least_cost_; }
-  /// What a projection is about.
+  /// A projection is about this.
   struct Projection {
     double h = 0;                         ///< s, in which targets go their way; 0: they rest
     std::span<const Vec3> impulses = {};  ///< of the points before, N s; or none

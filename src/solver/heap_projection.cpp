@@ -99,7 +99,7 @@ bool Heap::project(Problem& problem, const Projection& projection) {
   const bool is_met = project_ties(projection.positions);
   if (!is_met) (void)project_ties(false);
   if (has_targets && !ties_.are_none()) {
-    // What a joint drives rests on others: without these a box that is pulled at its top turned, and that was work.
+    // A body that a joint drives rests on others: without these a box that is pulled at its top turned, and that was work.
     constexpr int rounds = 24;
     points_.load(problem, found_, motions_, 0, 1 / time);
     for (int k = 0; k < rounds; ++k) points_.sweep(motions_, {}, time), (void)project_ties(false);

@@ -280,7 +280,7 @@ void accept_overlaps(Problem& problem) {
 
 }  // namespace
 
-// What a factor costs depends on the structure alone, so that a restored problem takes the same way.
+// The cost of a factor depends on the structure alone, so that a restored problem takes the same way.
 bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSettings& settings, double& cost) {
   const double budget = settings.contact_budget;
   if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) return false;

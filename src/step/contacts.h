@@ -7,6 +7,7 @@
 #include "contact/touches.h"
 #include "ingredient/model.h"
 #include "model/basis_weights.h"
+#include "step/contact_pairs.h"
 #include "step/joined_bodies.h"
 
 #include <array>
@@ -87,7 +88,12 @@ class ContactFinder {
     std::optional<model::BasisWeights> basis;
     std::optional<bool> of_sweeps;  ///< see ingredient::Contacts::is_of_sweeps
   };
-  using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< body slots; the second is the obstacle, or the larger one
+  using Pair = BodyPair;
+  // Shares of the size of the smaller body. With 1 and 0.5 instead of `far` and `near` twice as many shots (docs/contact.md) get
+  // through walls.
+  static constexpr double of_size = 0.02;  ///< what it may turn further
+  static constexpr double far =
+      0.5;  ///< a body that goes or swings further in the rest of a step is followed on its way
 
   const Obstacle& obstacle_at(const model::Model&, contact::Outlines&, std::uint32_t body);
   /// A body at the time of this look, the begin of the step or of a part of it.
