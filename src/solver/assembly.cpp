@@ -141,11 +141,12 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
   const bool gives = stage.compliance != 0;
   double largest_multiplier = largest_multiplier_, redundancy = redundancy_;
   const double* const reciprocal_pivots =
-      factored_ ? factor_.diagonals() : nullptr;  // else they are of another problem
+      factored_ && looks_for_redundant_rows_ ? factor_.diagonals() : nullptr;  // without factors: of another problem
   Largest worst{worst_}, violation{violation_};
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const Kept<C> c = pool.items[k];
-    const double* const lambda = pool.multiplier(k);
+    double lambda[C::rows];  // a copy, too
+    std::copy_n(pool.multiplier(k), C::rows, lambda);
     if constexpr (Laws)
       if (is_out_of_play(pool, k)) {
         for (int r = 0; r < C::rows; ++r) unknowns_[pool.slots[k].unknown + r] = 0;
@@ -154,20 +155,18 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     const Gradients<C> gradients(c, x, end);
     double g[C::rows], compliance = 0, compliances[C::rows] = {};
     pool.value(k, gradients, g);
+    if (!Laws && gives) compliance = mobilities_of(problem, c, gradients)[0] * give;
     [[maybe_unused]] const MeanGradientsOf<S, C> means(c, x0, start, gradients);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
       if constexpr (Laws)
         for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
-      else if (gives)
-        compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
       Vec3 mean_rows[C::rows];
       if constexpr (is_mid_point) means.of_node(i, rows, mean_rows);
       for (int r = 0; r < C::rows; ++r) add_force(c.nodes[i], lambda[r] * (is_mid_point ? mean_rows[r] : rows[r]));
     }
     const double per_length = 1 / c.reference_length();
-    compliance *= give;
     [[maybe_unused]] ConeEquations cone;
     if constexpr (Laws && ConeConstraint<C>) cone = equations_of(pool, k, g, compliances, stage);
     for (int r = 0; r < C::rows; ++r) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/node_vectors.h"
 #include "solver/problem.h"
 #include "solver/sparse/block_factor.h"
 #include "solver/stage.h"
@@ -61,6 +62,8 @@ class Assembly {
   /// Whether rows may hold the same, by the latest factors and residual. So it also seems where rows are eliminated before one of
   /// the bodies that they hold, as in a chain of hinges.
   bool may_have_redundant_rows() const { return redundancy_ > 0.05; }
+  /// Whether residuals find that out. They need not where rows form no loops: it takes a fifteenth of the sum of rows.
+  void look_for_redundant_rows(bool look) { looks_for_redundant_rows_ = look; }
   /// Loads what takes out of the multipliers by how much rows press against each other: see Newton::find_shares. False if
   /// they are strained by more than round-off.
   bool load_redundant_shares(const Problem&, const Stage&, const Vec3* x);
@@ -88,8 +91,9 @@ class Assembly {
     const double* const d = unknowns_.data() + node_unknown_[node];
     return {d[0], d[1], d[2]};
   }
-  Vec3 residual_of(std::uint32_t node) const { return step_of(node); }  ///< N; `residuals()` become the step in place
-  double reference_length() const { return reference_length_; }         ///< mean of the constraints', m
+  /// N; `residuals()` become the step in place.
+  NodeVectors residuals_of_nodes() const { return {unknowns_.data(), node_unknown_.data()}; }
+  double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
   /// Forces are scaled to the displacement of a point in a step, in mean constraint lengths.
   double inverse_scale(const Stage& stage) const { return 1 / (stage.inertia * reference_length_); }  ///< times mass
   /// Whether the latest factors are those of a matrix of this stage, maybe of an earlier step with other places. Not after
@@ -168,6 +172,7 @@ class Assembly {
   double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, during the sum of a residual
   /// The largest compliance of a row in parts of its pivot: near 1 if others hold the same, else near 0.
   double redundancy_ = 0;
+  bool looks_for_redundant_rows_ = true;
 };
 
 }  // namespace iota::solver

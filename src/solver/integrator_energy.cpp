@@ -124,8 +124,7 @@ void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dam
   std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
   const double lost = std::max(0.0, energy_.missing);
   const WorkOfTorques torques(problem, newton_.displacement(), stage.h);
-  newton_.get_unbalanced_forces(newton_.room());
-  has_corrected_ = spin().give_back(problem, newton_.displacement(), newton_.room(), stage.h, holds_,
+  has_corrected_ = spin().give_back(problem, newton_.displacement(), newton_.unbalanced_forces(), stage.h, holds_,
                                     lost + std::max(0.0, damped) + torques.most);
   if (!has_corrected_) return;
   if (!problem.torques.empty()) {

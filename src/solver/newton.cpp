@@ -33,7 +33,7 @@ void Newton::follow(Problem& problem) {
 }
 
 void Newton::make_room(const Problem& problem) {
-  has_loops_.reset();
+  has_loops_.reset(), assembly_.look_for_redundant_rows(true);
   for (auto* list : {&x_, &u_, &u_saved_}) resize_with_slack(*list, problem.size());
   if (problem.has_laws()) resize_with_slack(impulses_, assembly_.unknown_count());
   multipliers_saved_.resize(problem.multiplier_count());
@@ -321,10 +321,6 @@ bool Newton::is_balanced() const {
   return residual_.imbalance <= std::max(residual_.noise, round_off * displacement.value / reference_length());
 }
 
-void Newton::get_unbalanced_forces(std::span<Vec3> forces) const {
-  for (std::uint32_t i = 0; i < forces.size(); ++i) forces[i] = assembly_.residual_of(i);
-}
-
 // The tolerance is a displacement. Divided by a short step it is a considerable velocity and force: a slow body would
 // stop too early, and a spinning body would lose 1e-8 of its momentum. One or two more steps with the existing factor
 // reduce the residual to round-off (measured: 10 % of a step in the energy-keeping mode; the robust mode, which
@@ -365,9 +361,10 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
 // step: wheels of points in a plane, whose spin is given back by what is left of their forces, lost 5 % of it.
 void Newton::find_shares(Problem& problem, const Stage& stage) {
   constexpr double unbalanced = 1e-9;  // of the largest force
-  if (!assembly_.may_have_redundant_rows()) return;
-  if (!has_loops_) has_loops_ = has_loops(problem);
-  if (!*has_loops_) return;
+  // Without laws all rows act, and loops depend on the structure alone.
+  if (!has_loops_ && (!has_laws_ || assembly_.may_have_redundant_rows()))
+    assembly_.look_for_redundant_rows(*(has_loops_ = has_loops(problem)));
+  if (!assembly_.may_have_redundant_rows() || !*has_loops_) return;
   if (assembly_.load_redundant_shares(problem, stage, x_.data())) {
     assembly_.solve();
     Largest left, largest;
@@ -395,7 +392,7 @@ void Newton::find_shares(Problem& problem, const Stage& stage) {
 }
 
 void Newton::share_among_redundant(Problem& problem) {
-  if (shares_.size() == problem.multiplier_count()) {
+  if (!shares_.empty() && shares_.size() == problem.multiplier_count()) {
     auto share = shares_.begin();
     problem.for_each_constraint_pool([&](auto& pool) {
       for (double& multiplier : pool.multipliers) multiplier -= *share++;

@@ -43,7 +43,7 @@ class Newton {
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
   /// The forces that the latest solution leaves in the equation of each node, N.
-  void get_unbalanced_forces(std::span<Vec3> forces) const;
+  NodeVectors unbalanced_forces() const { return assembly_.residuals_of_nodes(); }
   /// After a step: takes out of the multipliers how much rows that hold the same press against each other.
   void share_among_redundant(Problem&);
   /// See Assembly.

@@ -236,7 +236,7 @@ void Spin::find_free_clusters(const Problem& problem, const Holds& all, Parts& c
 
 // The end-point rule gives sum m x1 x (v1 - v0) = h moment, that is L1 - L0 = h moment + h sum m v1 x v0. The moment of what its
 // solution leaves unbalanced is small, and the same in each step: by it a free body at 20 rad/s gained 1e-11 of its speed a step.
-bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
+bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacement, const NodeVectors& unbalanced,
                        double h, Supported supported, Parts& parts) {
   constexpr double round_off = 1e-13;
   const auto start_velocity = [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; };
@@ -349,7 +349,7 @@ Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
   return inertia > 0 ? (dot(angular, gravity) / inertia) * gravity : Vec3{};
 }
 
-bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced, double h,
+bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, const NodeVectors& unbalanced, double h,
                      const Holds& all, double most_gain) {
   begin(problem);
   find_parts(problem, Connection::joints, all, pieces_);

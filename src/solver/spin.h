@@ -4,6 +4,7 @@
 #include "base/function_ref.h"
 #include "math/mat3.h"
 #include "solver/holds.h"
+#include "solver/node_vectors.h"
 #include "solver/pieces.h"
 #include "solver/problem.h"
 #include "solver/rigid_motion.h"
@@ -38,7 +39,7 @@ class Spin {
   /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
   /// from the rest of its motion, and others do without. `unbalanced`: forces that the solution leaves over at the points, N:
   /// its moment is lost, too. Returns whether velocities have changed.
-  bool give_back(Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced, double h,
+  bool give_back(Problem&, std::span<const Vec3> displacement, const NodeVectors& unbalanced, double h,
                  const Holds& all, double most_gain);
 
   /// The end-point rule turns a body by atan(h w) where its velocity, with what `give_back` has returned, says h w: turns
@@ -113,8 +114,8 @@ class Spin {
   void find_free_clusters(const Problem&, const Holds& all, Parts&);
   static void drop_turned(const Problem&, Parts&);
   enum class Supported : std::uint8_t { no, yes };  // by rows of joints, as members
-  static bool find_losses(const Problem&, std::span<const Vec3> displacement, std::span<const Vec3> unbalanced,
-                          double h, Supported, Parts&);
+  static bool find_losses(const Problem&, std::span<const Vec3> displacement, const NodeVectors& unbalanced, double h,
+                          Supported, Parts&);
   static void add_losses_of_fields(const Problem&, std::span<const Vec3> displacement, double h, Supported, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);

@@ -177,16 +177,17 @@ void BlockFactor::for_each_forward(Visit visit) const {
 
 template <int Pivot, int N>
 [[gnu::always_inline]] inline Leaves<Pivot, N> BlockFactor::leaves(std::size_t first, double* unknowns) {
-  Leaves<Pivot, N> leaves{};
-  for (int lane = 0; lane < N; ++lane) {
-    const BlockPattern::Vertex& v = pattern_->vertices()[first + static_cast<std::size_t>(lane)];
+  Leaves<Pivot, N> leaves;
+  for (std::size_t lane = 0; lane < N; ++lane) {
+    const BlockPattern::Vertex& v = pattern_->vertices()[first + lane];
     const BlockPattern::Entry& e = pattern_->entries()[v.first_entry];
     leaves.diagonal[lane] = diagonals_.data() + v.diagonal;
     leaves.lower[lane] = lower_.data() + e.offset;
     if (!symmetric_) leaves.upper[lane] = upper_.data() + e.offset;
     leaves.target[lane] = diagonals_.data() + pattern_->pair_targets()[v.first_pair];
     leaves.target_stride[lane] = pattern_->vertices()[e.vertex].pivot;
-    if (unknowns) leaves.own[lane] = unknowns + v.unknown, leaves.later[lane] = unknowns + e.unknown;
+    leaves.own[lane] = unknowns ? unknowns + v.unknown : nullptr;
+    leaves.later[lane] = unknowns ? unknowns + e.unknown : nullptr;
   }
   return leaves;
 }
@@ -194,16 +195,17 @@ template <int Pivot, int N>
 int BlockFactor::factorize(std::span<double> unknowns) {
   int wrong = 0;
   double* const b = unknowns.data();
+  const auto vertices = pattern_->vertices();
   const auto panel_of = pattern_->panel_of();
-  for (std::size_t i = 0; i < pattern_->vertices().size();) {
-    const BlockPattern::Vertex& v = pattern_->vertices()[i];
+  for (std::size_t i = 0; i < vertices.size();) {
+    const BlockPattern::Vertex& v = vertices[i];
     if (!panel_of.empty() && panel_of[i] != BlockPattern::no_panel) {
       const BlockPattern::Panel& panel = pattern_->panels()[panel_of[i]];
       const auto members = pattern_->panel_vertices().subspan(panel.first, panel.count);
       if (members.back() == i) {
         wrong += symmetric_ ? eliminate<true>(panel) : eliminate<false>(panel);
         for (const std::uint32_t member : members) {
-          const BlockPattern::Vertex& w = pattern_->vertices()[member];
+          const BlockPattern::Vertex& w = vertices[member];
           if (b) with_pivot(w.pivot, [&]<int Pivot> { forward<Pivot>(w, b); });
         }
       }
