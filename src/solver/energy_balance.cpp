@@ -202,9 +202,9 @@ double Solved::work_of_imbalance() const {
 
 void EnergyBalance::measure(const Problem& problem, double fraction) {
   kinetic = problem.kinetic_energy();
-  terms = problem.potential_size(problem.position.data());
-  total = kinetic + problem.potential_energy(problem.position.data()) +
-          problem.row_energy(problem.position.data(), fraction);
+  const Problem::Potential potential = problem.potential(problem.position.data());
+  terms = potential.size;
+  total = kinetic + potential.energy + problem.row_energy(problem.position.data(), fraction);
 }
 
 void EnergyBalance::measure_change(const Problem& problem, double fraction, double work) {

@@ -52,7 +52,7 @@ struct Outside {
 /// The energy of a problem from one (sub-)step to the next, and what no law or force explains of its changes.
 struct EnergyBalance {
   double kinetic = 0, total = 0;  ///< of the present state, J
-  double terms = 0;               ///< size of the terms of the potential energy, see Problem::potential_size
+  double terms = 0;               ///< size of the terms of the potential energy, see Problem::Potential
   double missing = 0;             ///< unexplained: lost, or made if negative, J
   double slack = 0;               ///< of what is made: within the tolerance of the solves, J
 

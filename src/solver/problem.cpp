@@ -227,6 +227,22 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
   double energy = 0;
   for (std::size_t i = 0; i < size(); ++i) energy -= mass[i] * dot(gravity, x[i]);
   for (const auto& c : mass_couplings) energy -= c.mass * dot(gravity, x[c.a] + x[c.b]);
+  add_energies_of_forces(x, with_external, energy);
+  return energy;
+}
+
+Problem::Potential Problem::potential(const Vec3* x) const {
+  double energy = 0, moment = 0;
+  for (std::size_t i = 0; i < size(); ++i) energy -= mass[i] * dot(gravity, x[i]), moment += mass[i] * norm(x[i]);
+  for (const auto& c : mass_couplings) {
+    const Vec3 sum = x[c.a] + x[c.b];
+    energy -= c.mass * dot(gravity, sum), moment += std::abs(c.mass) * norm(sum);
+  }
+  add_energies_of_forces(x, false, energy);
+  return {energy, norm(gravity) * moment};
+}
+
+void Problem::add_energies_of_forces(const Vec3* x, bool with_external, double& energy) const {
   for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
     if (F::is_external && !with_external) return;
     for (const auto& f : pool.items) {
@@ -235,14 +251,6 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
       if (with_external || std::isfinite(stored)) energy += stored;
     }
   });
-  return energy;
-}
-
-double Problem::potential_size(const Vec3* x) const {
-  double moment = 0;
-  for (std::size_t i = 0; i < size(); ++i) moment += mass[i] * norm(x[i]);
-  for (const auto& c : mass_couplings) moment += std::abs(c.mass) * norm(x[c.a] + x[c.b]);
-  return norm(gravity) * moment;
 }
 
 double Problem::row_energy(const Vec3* x, double fraction) const {

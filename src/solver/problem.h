@@ -446,9 +446,13 @@ struct Problem {
   }
   /// Gravity and implicit forces; external ones (grips) are not in the world's energy, only in Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
-  /// Sum of the weights times the distances to the origin, J: the round-off of the potential energy is a share of it, also where
-  /// the terms cancel. A wheel on its axle has no potential energy.
-  double potential_size(const Vec3* x) const;
+  struct Potential {
+    double energy = 0;
+    /// Sum of the weights times the distances to the origin, J: the round-off of the energy is a share of it, also where the terms
+    /// cancel. A wheel on its axle has no potential energy.
+    double size = 0;
+  };
+  Potential potential(const Vec3* x) const;
   /// Stored in spring rows, with targets as at `fraction` of the step, and in the compliance of cones.
   double row_energy(const Vec3* x, double fraction) const;
   enum class Rows { all, but_contacts };
@@ -456,6 +460,7 @@ struct Problem {
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false, Rows = Rows::all) const;
 
  private:
+  void add_energies_of_forces(const Vec3* x, bool with_external, double& energy) const;
   /// takes_part(pool, i): whether a constraint counts.
   template <class TakesPart>
   bool is_isolated(TakesPart takes_part) const {
