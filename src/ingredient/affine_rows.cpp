@@ -80,7 +80,7 @@ void AffineRows::store(Model& model, const IslandNodes&, double, const Problem& 
   });
 }
 
-bool AffineRows::meets_pinned(const Model& model) const {
+bool AffineRows::are_pinned_met(const Model& model) const {
   constexpr double met = 1e-6;  // of the body's extent
   return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t p) {
     const double gap = norm(model.carried(p).first - model.position(p));

@@ -17,10 +17,11 @@ class AffineRows : public NoAnswers {
   void clear() { pinned_.clear(); }
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  bool meets_pinned(const Model&) const;
+  bool meets_pinned(const Model& model) const { return pinned_.empty() || are_pinned_met(model); }
   std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
+  bool are_pinned_met(const Model&) const;
   std::vector<std::uint32_t> pinned_;  // particles with pinned points only: left out of the problem
 };
 

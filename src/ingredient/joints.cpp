@@ -226,7 +226,7 @@ void Joints::refresh(Model& model, const IslandNodes&, bool) const {
   for (const std::uint32_t slot : joints_) refresh_coordinates(model, slot);
 }
 
-bool Joints::meets_pinned(const Model& model) const {
+bool Joints::are_pinned_met(const Model& model) const {
   constexpr double met = 1e-6;
   return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t slot) {
     return !is_in_force(model, model.constraints[slot]) || calc_violation(model, slot).relative <= met;

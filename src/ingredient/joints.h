@@ -78,7 +78,7 @@ class Joints : public NoAnswers {
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   void refresh(Model&, const IslandNodes&, bool moved) const;
-  bool meets_pinned(const Model&) const;
+  bool meets_pinned(const Model& model) const { return pinned_.empty() || are_pinned_met(model); }
   bool keeps_awake(const Model&, const Problem&) const;
   /// A length that a script changes moves rows, as a nail that it moves: see Constraint::way.
   bool prescribes_motion(const Model&, const IslandNodes&) const;
@@ -86,6 +86,7 @@ class Joints : public NoAnswers {
   std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
+  bool are_pinned_met(const Model&) const;
   void add(const IslandMap&, std::uint32_t joint, Problem&);
   template <class Row>
   void add_row(const IslandMap&, std::uint32_t joint, const Row&, RowUse, Problem&);

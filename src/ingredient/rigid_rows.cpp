@@ -58,7 +58,7 @@ void RigidRows::store(Model& model, const IslandNodes&, double, const Problem& p
   });
 }
 
-bool RigidRows::meets_pinned(const Model& model) const {
+bool RigidRows::are_pinned_met(const Model& model) const {
   constexpr double met = 1e-6;  // of the length
   return std::all_of(pinned_.begin(), pinned_.end(), [&](const Row& r) {
     const model::Body& body = model.bodies[r.body];

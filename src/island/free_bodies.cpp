@@ -125,6 +125,10 @@ DampedFlight damp_flight(const Vec3& start, const DampedFlight& flight, double l
 
 solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel& parallel) {
   refresh(model);
+  resting_ = still();
+  for (const Loose& loose : loose_) resting_ += loose.rests, is_old_ = is_old_ || loose.rests;
+  solver::AdvanceReport report;
+  if (awake_.empty()) return report;
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
   const std::size_t chunks = (awake_.size() + chunk - 1) / chunk;
   shares_.assign(chunks, {});
@@ -187,9 +191,6 @@ solver::AdvanceReport FreeBodies::advance(Model& model, double h, const Parallel
     }
     shares_[c] = share;
   });
-  solver::AdvanceReport report;
-  resting_ = still();
-  for (const Loose& loose : loose_) resting_ += loose.rests, is_old_ = is_old_ || loose.rests;
   for (const Share& share : shares_) {
     resting_ += share.resting, is_old_ = is_old_ || share.resting > 0;
     report.dissipated += share.dissipated, report.lost += share.lost, report.external_work += share.work;

@@ -533,6 +533,7 @@ void Islands::validate(const Model& model, model::Audit& audit) const {
 }
 
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
+  if (articulates.empty()) return;  // as in most steps
   for (std::uint32_t& a : articulates)
     a = entries_[a].home ? entries_[a].home->leader : (free_bodies_.contains(a) ? a : none);
   sort_unique(articulates);

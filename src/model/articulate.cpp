@@ -13,6 +13,7 @@ void Structure::wake_all() {
 
 void Structure::take_flagged(std::vector<std::uint32_t>& taken) {
   taken.clear();
+  if (flagged_.empty()) return;
   taken.swap(flagged_);
   sort_unique(taken);
   std::erase_if(taken, [&](std::uint32_t slot) { return !articulates.is_alive(slot); });
@@ -70,6 +71,10 @@ void Structure::mark_ring(std::uint32_t ring, std::uint32_t split_from) {
 }
 
 void Structure::take_marked(Marked& taken) {
+  const auto is_empty = [](const LocalChange& c) {
+    return c.bodies.empty() && c.rings.empty() && c.pulled.empty() && c.reborn.empty();
+  };
+  if (marked_.empty() && taken.articulates.empty() && is_empty(local_change_) && is_empty(taken.local)) return;
   // The room of the lists is used again, unless it is that of a scene that was built at once.
   const auto clear = [](auto& list) {
     constexpr std::size_t most_kept = 4096;
@@ -80,7 +85,8 @@ void Structure::take_marked(Marked& taken) {
   clear(taken.local.bodies), clear(taken.local.rings), clear(taken.local.pulled);
   clear(taken.local.reborn);
   taken.articulates.swap(marked_);
-  std::swap(taken.local, local_change_);
+  taken.local.bodies.swap(local_change_.bodies), taken.local.rings.swap(local_change_.rings);
+  taken.local.pulled.swap(local_change_.pulled), taken.local.reborn.swap(local_change_.reborn);
   for (const std::uint32_t slot : taken.articulates) {
     taken.only_locally.push_back(mark_of_[slot] == locally);
     mark_of_[slot] = unmarked;

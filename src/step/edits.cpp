@@ -85,12 +85,9 @@ void combine(edit::Editor& editor, Id<"closing"> closing, StepReport& report) {
   }
 }
 
-}  // namespace
-
-void make_edits(edit::Editor& editor, const ingredient::Outcome& told, StepReport& report) {
+void edit_all(edit::Editor& editor, const ingredient::Outcome& told, StepReport& report) {
   model::Model& model = editor.model;
-  report.warnings.insert(report.warnings.end(), told.warnings.begin(), told.warnings.end());
-  if (told.has_edits()) ingredient::begin_edits(model);
+  ingredient::begin_edits(model);
   for (const ConstraintId constraint : told.failed) switch_off(editor, constraint, report);
   for (const ParticleId particle : told.ended) end_particle(editor, particle, report);
   for (const EmitterId emitter : told.due) ingredient::Emitters::bear(model, emitter.slot, report.dt, report.born);
@@ -101,8 +98,15 @@ void make_edits(edit::Editor& editor, const ingredient::Outcome& told, StepRepor
   break_all(&Broken::constraint), break_all(&Broken::bond);
   break_all(&Broken::particle);  // a hinge is separated without the joints and bonds that break in the same step
   for (const Id<"closing"> closing : told.met) combine(editor, closing, report);
+}
+
+}  // namespace
+
+void make_edits(edit::Editor& editor, const ingredient::Outcome& told, StepReport& report) {
+  report.warnings.insert(report.warnings.end(), told.warnings.begin(), told.warnings.end());
+  if (told.has_edits()) edit_all(editor, told, report);
   for (const StopEvent& event : told.stops)
-    if (model.constraints.contains(event.constraint)) report.stops.push_back(event);
+    if (editor.model.constraints.contains(event.constraint)) report.stops.push_back(event);
 }
 
 }  // namespace iota::step
