@@ -300,7 +300,7 @@ bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSetting
   return !heap_->has_joints() || fewest * cost > of_machine * budget;
 }
 
-/// Whether so many iterations take more than its share of the budget.
+// Whether so many iterations take more than its share of the budget.
 bool Integrator::is_beyond(Problem& problem, const IntegratorSettings& settings, double iterations) {
   double cost = 0;
   return may_be_left_to_sweeps(problem, settings, cost) &&
@@ -314,7 +314,16 @@ bool Integrator::is_projected_as_heap(Problem& problem, const IntegratorSettings
 std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorSettings& settings,
                                              const Heap::Projection& projection) {
   if (!is_beyond(problem, settings, projection.h > 0 ? fewest : of_projection)) return std::nullopt;
-  return heap_->project(problem, projection);
+  const bool is_alone = problem.has_no_world();
+  RigidMotion motion = is_alone ? rigid_motion_of(problem) : RigidMotion{};
+  for (std::size_t i = 0; is_alone && i < projection.impulses.size(); ++i) {
+    motion.velocity += (1 / motion.mass) * projection.impulses[i];
+    motion.angular_momentum += cross(problem.position[i] - motion.center, projection.impulses[i]);
+  }
+  const bool is_met = heap_->project(problem, projection);
+  // The masses of points that bodies share are shared out, which may leave a body without inertia.
+  if (is_alone) keep_momenta(problem, {motion}, 0);
+  return is_met;
 }
 
 // Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
