@@ -378,8 +378,11 @@ void apply(Editor& e, const SetPose& c) {
   const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - center); };
   const std::uint32_t articulate = model.bodies[body].articulate;
   if (model.bodies[body].kind == BodyKind::scripted) {
-    model.for_each_particle_of(body,
-                               [&](std::uint32_t p) { carry(e, model.particles.id(p), moved(model.position(p))); });
+    // All before the first one moves, as attachments follow it: they came to twice as far.
+    std::vector<std::pair<ParticleId, Vec3>> targets;
+    model.for_each_particle_of(
+        body, [&](std::uint32_t p) { targets.push_back({model.particles.id(p), moved(model.position(p))}); });
+    for (const auto& [particle, target] : targets) carry(e, particle, target);
     return;
   }
   std::vector<std::uint32_t> rings;

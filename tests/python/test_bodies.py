@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import iota
+from iota.frames import turned
 
 SCALES = (1e-3, 1.0, 1e3)  # m
 
@@ -229,6 +230,19 @@ def test_a_body_of_one_particle_or_of_points_in_one_place_has_no_angular_velocit
         for _ in range(20):
             system.step()
             assert body.angular_velocity == (0, 0, 0)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.3, -0.1, 0.2)])
+def test_an_attachment_of_a_scripted_body_goes_as_far_as_the_body(place: tuple[float, float, float]) -> None:
+    """In the first move it went twice as far, and stayed so far away."""
+    system = iota.System()
+    lift = system.body("scripted", shape=iota.Box((2, 0.2, 2)), mass=9, attachments=[place])
+    mark = lift.attachments[0]
+    for step in range(4):
+        lift.set_pose((0.1 * step, 0, 0), ("y", 10 * step))
+        system.step()
+        wanted = lift.position + turned(lift.orientation, iota.Vec3(*place))
+        assert abs(mark.position - wanted) < 1e-9 and abs(lift.position.x - 0.1 * step) < 1e-9
 
 
 def test_scripted_and_static_bodies_take_no_velocity_as_their_places_are_set() -> None:
