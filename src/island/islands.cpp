@@ -637,7 +637,18 @@ void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
   }
 }
 
+// A scripted body or a nail has no stride of its own: what its motion disturbs is all that is solved with it. Otherwise it stood
+// still while something frozen lay on it, and went all its way in the first step after that, at 29 m/s.
+void Islands::end_strides_with(Model& model, std::uint32_t body) {
+  if (!ingredient::Strides::any(model)) return;
+  const Island* const island = of_articulate(model.bodies[body].articulate);
+  if (!island) return ingredient::Strides::disturb(model, body);
+  for (const std::uint32_t each : island->bodies())
+    if (model.articulates[model.bodies[each].articulate].first == each) ingredient::Strides::disturb(model, each);
+}
+
 void Islands::wake_stirred(Model& model, double h) {
+  const Island* moved = nullptr;  // of the latest nail
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
     I::visit_stirred(model, h, [&](std::uint32_t ring) {
       model.for_each_in_ring(ring, [&](std::uint32_t p) {
@@ -646,7 +657,8 @@ void Islands::wake_stirred(Model& model, double h) {
         if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
         // Other than forces, which a stride takes as they are at its begin, this is a motion of its own.
         if constexpr (std::is_same_v<I, ingredient::Nails>)
-          ingredient::Strides::disturb(model, model.particles[p].body);
+          if (const Island* const island = of_articulate(articulate); !island || std::exchange(moved, island) != island)
+            end_strides_with(model, model.particles[p].body);
       });
     });
   });

@@ -134,6 +134,9 @@ class Islands {
  private:
   static constexpr std::uint32_t none = model::none;
 
+  /// Something that no force explains moves a body: all that is solved with it takes every step.
+  void end_strides_with(model::Model&, std::uint32_t body);
+
   /// An island, and what the others have to know of it.
   struct Home {
     Island island;

@@ -833,3 +833,35 @@ def test_random_scenes_budgets_and_viewers_keep_the_promises(seed: int) -> None:
         assert abs(system.energy.balance) < 1e-6 * max(1.0, system.energy.kinetic)
         assert edits or system.energy.total <= start + 1e-4 * max(1.0, system.energy.kinetic)
     assert system.validate() == []
+
+
+@pytest.mark.parametrize("stride", [8, 0])
+@pytest.mark.parametrize("tie", ["contact", "rope", "spring"])
+def test_a_scripted_body_moves_on_with_what_takes_strides_or_is_frozen(tie: str, stride: int) -> None:
+    """It stood still while something frozen lay on it, and then threw that up with 29 m/s."""
+
+    def run(stride: int) -> tuple[iota.Body, iota.Body]:
+        system = iota.System()
+        system.usual_material = iota.Material()
+        lift = system.body("scripted", shape=iota.Box((2, 0.2, 2)), mass=9, attachments=[(0, 0, 0)])
+        box = system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=5, position=(0, 0.3, 0), attachments=[(0, 0.2, 0)])
+        if tie != "contact":
+            box.position = (0, -2, 0)
+        if tie == "rope":
+            system.rope(lift.attachments[0], box.attachments[0])
+        elif tie == "spring":
+            system.bond(lift.attachments[0], box.attachments[0], "spring", stiffness=500, damping=9)
+        system.step(count=60)
+        box.stride = stride
+        for step in range(60):
+            lift.position = (0, 0.5 * (step + 1) / 60, 0)
+            system.step()
+            assert abs(lift.position.y - 0.5 * (step + 1) / 60) < 1e-9, "it is where the script has put it"
+        assert abs(box.velocity) < 2.5
+        box.stride = 1
+        system.step(count=30)
+        assert system.validate() == []
+        return lift, box
+
+    (_, full), (_, box) = run(1), run(stride)
+    assert abs(box.center_of_mass - full.center_of_mass) < (0.02 if tie == "spring" else 1e-3)
