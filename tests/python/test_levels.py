@@ -14,10 +14,12 @@ import pytest
 from page_client import PageClient
 
 import iota
+from iota import looks
 from iota.studies import crowd
 from iota.world import levels
 from iota.world.clients import Client, Hold
 from iota.world.levels import OWN_REST, Level, Managed
+from iota.world.visuals import Visuals
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
 FAR = 200.0  # m
@@ -409,11 +411,11 @@ def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:
     thing = Managed("chain", root, levels.STANDARD, 1.5, root.particles[0])
     energy, momentum, spin = system.energy.kinetic, system.momentum, system.angular_momentum
     places = [list(p.position) for body in thing.bodies for p in body.particles]
-    thing._set_stiff(True)
+    thing._set_stiff(True, Visuals())
     assert len(thing.bodies) == 1
     assert energy >= system.energy.kinetic > 0.1 * energy
     stiff = system.energy.kinetic
-    thing._set_stiff(False)
+    thing._set_stiff(False, Visuals())
     assert len(thing.bodies) == 5 and len(thing.root.articulate.bodies) == 5
     assert system.energy.kinetic == pytest.approx(stiff, rel=1e-9)
     assert abs(system.momentum - momentum) < 1e-12 and abs(system.angular_momentum - spin) < 1e-12
@@ -622,9 +624,9 @@ def test_what_was_stiff_twice_has_the_shape_that_it_had() -> None:
     thing = world.levels.manage(root.articulate)
     energy = system.energy.total
     for _ in range(2):
-        thing._set_stiff(True)
+        thing._set_stiff(True, Visuals())
         run(world, 1)
-        thing._set_stiff(False)
+        thing._set_stiff(False, Visuals())
         for _ in range(12):
             report = world.step()
             assert report is not None and report.worst_gap < 1e-4
@@ -865,3 +867,82 @@ def test_a_scripted_body_moves_on_with_what_takes_strides_or_is_frozen(tie: str,
 
     (_, full), (_, box) = run(1), run(stride)
     assert abs(box.center_of_mass - full.center_of_mass) < (0.02 if tie == "spring" else 1e-3)
+
+
+@pytest.mark.parametrize("level", ["stiff", "frozen", "own"])
+def test_what_is_pushed_by_something_in_a_hand_is_full(level: str) -> None:
+    """It stayed stiff all the while, and was frozen in one of eight steps."""
+    system = iota.System()
+    system.usual_material = iota.Material()
+    world = iota.World(system, ground=0.0)
+    world.levels.viewers = lambda: [(0, 1.7, 20.0)]
+    left = system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=2, position=(0, 0.2, 0), attachments=[(0.2, 0, 0)])
+    right = system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=2, position=(0.5, 0.2, 0), attachments=[(-0.3, 0, 0)])
+    left.attachments[0].combine(right.attachments[0])
+    ball = system.body(shape=iota.Sphere(0.3), mass=9, position=(-0.6, 0.3, 0))
+    own = Level("own", share=0.1, quality=0.5, enter=lambda thing: None)
+    thing = world.levels.manage(left.articulate, levels=["full", own if level == "own" else level])
+    world.levels.budget_ms = LITTLE
+    run_until(world, lambda: thing.level.name == level)
+    client = world._state.clients.by_id[1] = Client(1)
+    client.holds[1] = hold = Hold(1, 1, ball, ball)
+    world._state.clients.grip(hold, ball, iota.Vec3(0, 0, 0), ball.position)
+    reduced, touches = 0, 0
+    for _ in range(60):
+        hold.move(ball.position + (0.3, 0, 0))
+        world.step()
+        touches += any(contact.other in thing.bodies for contact in ball.contacts)
+        reduced += touches > 0 and thing.level.name != "full"
+    assert touches > 10 and reduced <= 1, "it is full in the step after the first touch"
+    assert thing.position.x > 0.3
+
+
+def test_bodies_that_were_one_get_back_what_was_their_own() -> None:
+    """All had the name, color, look and material of the first one, and passed through what one of them did."""
+    system = iota.System()
+    system.usual_material = iota.Material()
+    world = iota.World(system, ground=0.0)
+    links = [
+        system.body(
+            shape=iota.Box((0.3, 0.1, 0.1)),
+            mass=1,
+            position=(0.4 * k, 0.05, 0),
+            attachments=[(x, 0, 0) for x in (-0.2, 0.2)],
+        )
+        for k in range(4)
+    ]
+    for one, other in pairwise(links):
+        one.attachments[1].combine(other.attachments[0])
+    wall = system.obstacle(iota.Box((1, 1, 1)), (9, 0, 0))
+    system.ignore_contacts(links[3], wall)
+    system.ignore_contacts(links[0], links[2])
+    group = system.group("marked")
+    group.add(links[1])
+    for k, link in enumerate(links):
+        link.name, link.color, link.damping = f"link {k}", f"#{k}{k}{k}{k}{k}{k}", 0.1 * k
+        link.material = iota.Material(friction=0.1 * k)
+        world.draw(link, looks.solid("brass" if k % 2 else "wood"))
+
+    def told() -> list[Any]:
+        materials = [link.material for link in thing.bodies]
+        drawn = [world.scene.look_of(link) for link in thing.bodies]
+        pairs = {frozenset(getattr(side, "name", side) for side in pair) for pair in system.ignored_contacts}
+        marked = [set(link.particles) <= set(group.particles) for link in thing.bodies]
+        return [(b.name, b.color, b.damping) for b in thing.bodies] + [materials, drawn, pairs, marked]
+
+    thing = world.levels.manage(links[0].articulate, levels=["full", "stiff"])
+    world.levels.viewers = lambda: [(0, 0, FAR)]
+    before = told()
+    for _ in range(2):
+        world.levels.budget_ms = LITTLE
+        run_until(world, lambda: thing.level.name == "stiff")
+        assert len(thing.bodies) == 1
+        world.levels.budget_ms = PLENTY
+        run_until(world, lambda: thing.level.name == "full")
+        assert told() == before and system.validate() == []
+    world.levels.budget_ms = LITTLE
+    run_until(world, lambda: thing.level.name == "stiff")
+    thing.bodies[0].color = "#abcdef"
+    world.levels.off()
+    assert [link.color for link in thing.bodies] == ["#abcdef"] * 4, "what the script has painted stays so"
+    assert [link.name for link in thing.bodies] == [f"link {k}" for k in range(4)]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import iota
 from iota.builder import Structure
+from iota.frames import turned
 from iota.world.levels import Level, Managed
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -277,3 +279,118 @@ def plank_of(mass: float) -> Structure:
     made = Structure()
     made.body(shape=iota.Box((2, 0.2, 0.2)), mass=mass, position=(0, 0, 0))
     return made
+
+
+def lying(floor: bool) -> tuple[iota.World, list[iota.Body], Managed]:
+    """Three boards in a row, for which a small ball stands in."""
+    system = iota.System()
+    system.usual_material = iota.Material()
+    world = iota.World(system, ground=0.0 if floor else None)
+    boards = [
+        system.body(
+            shape=iota.Box((0.6, 0.1, 0.2)),
+            mass=2,
+            position=(0.7 * k, 1, 0),
+            attachments=[(x, 0, 0) for x in (-0.35, 0.35)],
+        )
+        for k in range(3)
+    ]
+    for one, other in pairwise(boards):
+        one.attachments[1].combine(other.attachments[0])
+    world.levels.viewers = lambda: [(0, 1.7, 20.0)]
+    small = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(0.15, thing.mass))
+    return world, boards, world.levels.manage(boards[0].articulate, levels=["full", small])
+
+
+def ball_of(radius: float, mass: float) -> Structure:
+    made = Structure()
+    made.body(shape=iota.Sphere(radius), mass=mass)
+    return made
+
+
+def until(world: iota.World, thing: Managed, level: str) -> None:
+    world.levels.budget_ms = LITTLE if level == "far" else PLENTY
+    for _ in range(150):
+        if thing.level.name == level:
+            return
+        world.step()
+    raise AssertionError(f"it is at {thing.level.name}")
+
+
+def lowest(bodies: list[iota.Body]) -> float:
+    corners = [np.array([x, y, z]) for x in (-0.3, 0.3) for y in (-0.05, 0.05) for z in (-0.1, 0.1)]
+    places = [body.position + turned(body.orientation, iota.Vec3(*corner)) for body in bodies for corner in corners]
+    return min(place.y for place in places)
+
+
+def test_bodies_come_back_out_of_the_ground_where_a_ball_has_stood_in() -> None:
+    """They were 0.2 to 0.7 m inside of it, and stayed there."""
+    for speed in (-2.0, 3.0):
+        world, boards, thing = lying(floor=True)
+        for board in boards:
+            board.velocity = (speed, 0, 0.3 * speed)
+        until(world, thing, "far")
+        for _ in range(60):
+            world.step()
+        before, work = world.system.energy.total, 0.05 * thing.mass * 9.81
+        until(world, thing, "full")
+        assert lowest(boards) > -2e-3 and world.system.validate() == []
+        assert world.system.energy.total < before + work, "they lie"
+        for _ in range(30):
+            world.step()
+        assert lowest(boards) > -2e-3 and max(abs(board.velocity) for board in boards) < 4
+
+
+def test_a_large_structure_begins_above_the_ground() -> None:
+    world, boards, _ = lying(floor=True)
+    big = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(0.8, thing.mass))
+    for board in boards:
+        board.position -= (0, 0.9 / 3, 0)
+    world.levels._things.clear()
+    thing = world.levels.manage(boards[0].articulate, levels=["full", big])
+    for _ in range(90):
+        world.step()
+    until(world, thing, "far")
+    assert thing.bodies[0].position.y > 0.79 and world.system.energy.kinetic < 1e-6
+
+
+def test_what_a_joint_holds_at_the_world_comes_back_there() -> None:
+    """It came back 5 m below, where the structure had fallen to, and its hinge was closed from there."""
+    system = iota.System()
+    world = iota.World(system, ground=None)
+    door = system.body(shape=iota.Box((1, 1.5, 0.05)), mass=9, position=(0, 2, 0))
+    system.revolute(door, at=(-0.5, 2, 0), axis=(0, 1, 0))
+    door.angular_velocity = (0, 0.5, 0)
+    world.levels.viewers = lambda: [(0, 0, 200.0)]
+    small = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(0.15, thing.mass))
+    thing = world.levels.manage(door, levels=["full", small])
+    until(world, thing, "far")
+    place, energy = door.position, system.energy.total
+    for _ in range(60):
+        world.step()
+    until(world, thing, "full")
+    assert abs(door.position - place) < 0.02 and system.worst_gap < 1e-9
+    assert system.energy.total < energy + 1e-6 and system.validate() == []
+
+
+@pytest.mark.parametrize("tie", ["rope", "spring"])
+def test_no_structure_stands_in_for_what_is_tied_to_something_else_that_moves(
+    tie: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    system = iota.System()
+    world = iota.World(system, ground=None)
+    crane, load = (
+        system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=5, position=(0, y, 0), attachments=[(0, 0, 0)])
+        for y in (3, 1)
+    )
+    ends = crane.attachments[0], load.attachments[0]
+    system.rope(*ends) if tie == "rope" else system.bond(*ends, "spring", stiffness=90)
+    world.levels.viewers = lambda: [(0, 0, 200.0)]
+    small = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(0.15, thing.mass))
+    thing = world.levels.manage(load, levels=["full", small])
+    world.levels.budget_ms = LITTLE
+    for _ in range(40):
+        world.step()
+    told = capsys.readouterr().err
+    assert "ties it to something else that moves: manage both as one thing" in told and thing.level.name == "full"
+    assert abs(load.position - crane.position) > 1.9 and load.active

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from iota._core import Body, Box, Particle, Places, System, Vec3
 from iota.errors import ForceError
 from iota.world.acting import Force, can_copy_force, copy_forces, forces_on, pushed_places
+from iota.world.fitting import passing_pairs
 from iota.world.stand_ins import put
 from iota.world.ties import Tie, can_be_copied, copy_ties, needed_particles
 
@@ -151,7 +152,7 @@ class _Copy:
         self.energy = 0.0
         self.is_held = False
         self._obstacles: dict[Body, Body] = {}  # their copies
-        self._passing = _passing(system, self.bodies)
+        self._passing = passing_pairs(system, self.bodies)
 
     def copy_bodies(self, needed: set[Particle]) -> Iterator[None]:
         """Copies the bodies and their hinges. needed: particles of which others need copies."""
@@ -299,17 +300,6 @@ def move_as(system: System, points: Sequence[tuple[Particle, Particle]], bodies:
             moved.append(p)
             velocities.append(list(q.velocity))
     system.array(moved).velocities = np.array(velocities)
-
-
-def _passing(system: System, bodies: Sequence[Body]) -> set[frozenset[Body]]:
-    """Pairs that pass through each other, of one of the bodies at least."""
-    own, found = set(bodies), set[frozenset[Body]]()
-    for pair in system.ignored_contacts:
-        a, b = (
-            {side} if isinstance(side, Body) else {p.body for p in side.particles} for side in pair if side is not None
-        )
-        found |= {frozenset((p, q)) for p in a & own for q in b} | {frozenset((p, q)) for p in b & own for q in a}
-    return found
 
 
 def _raised(damping: float, factor: float) -> float:

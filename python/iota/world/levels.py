@@ -26,7 +26,9 @@ from iota.world.costs import Costs
 from iota.world.parts import Part
 from iota.world.scene import Scene
 from iota.world.stand_ins import StandIn, Structure
+from iota.world.stiffness import Stiffness
 from iota.world.ties import Tie, Ties
+from iota.world.visuals import Visuals
 
 Floats = NDArray[np.float64]
 Place = Sequence[float] | Vec3
@@ -35,7 +37,7 @@ SLICES = (8, 64)  # steps in which each thing is looked at once: with few and wi
 PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
-REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long
+REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long; after a hand it is full
 FULL, AIM, LOW = 0.75, 0.05, 0.15  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
 LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
 SPREADS = (1.15, 1.9)  # of a rare step, in usual ones: less is luck, more comes from other programs
@@ -163,7 +165,7 @@ class Managed:
     _stand_in: StandIn | None = field(default=None, repr=False)
     _former: deque[StandIn] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # that an undo may bring back
     _lines: list[tuple[Particle, Particle]] = field(default_factory=list, repr=False)  # that it lacks as one body
-    _welded: deque[frozenset[Body]] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
+    _welded: deque[Stiffness] = field(default_factory=lambda: deque(maxlen=4), repr=False)  # to become stiff
     _members: list[Body] = field(default_factory=list, repr=False)  # its bodies when its level was decided last
     _version: int = field(default=-1, repr=False)  # of the structure then
     _middles: dict[Body, tuple[Particle, float]] = field(default_factory=dict, repr=False)  # by the roots of several
@@ -211,8 +213,8 @@ class Managed:
             return self._stand_in.roots
         return [body for body in (self.root, *self.others) if body.alive]
 
-    def _swap(self, scene: Scene, level: Level) -> None:
-        """To the structure of a level, or back to the thing's own bodies."""
+    def _swap(self, scene: Scene, level: Level, is_held: bool = False) -> None:
+        """To the structure of a level, or back to the thing's own bodies. is_held: joints hold it at the world."""
         if self._stand_in is not None:
             whole = self._stand_in.is_whole
             self._former.append(self._stand_in)
@@ -223,7 +225,7 @@ class Managed:
                 self._keep_stand_in()
         if level.structure is not None:
             structure = level.structure(self)
-            self._stand_in = StandIn(self.root.system, scene, self.bodies, structure, level.name)
+            self._stand_in = StandIn(self.root.system, scene, self.bodies, structure, level.name, is_held)
 
     def _keep_stand_in(self) -> None:
         """Somebody has taken the stand-in apart: what is left of it is the thing from now on, at the level full."""
@@ -280,22 +282,33 @@ class Managed:
         """The parts of its first body that stiffness has made of other bodies. A script may have welded more."""
         if not self._welded:
             return []
-        known = frozenset().union(*self._welded)
+        known = frozenset().union(*(each.others for each in self._welded))
         return [part for part in self.root.parts if part.origin in known]
 
-    def _set_stiff(self, stiff: bool) -> None:
+    def _set_stiff(self, stiff: bool, visuals: Visuals) -> None:
         if not stiff:
-            for part in self._welds:
-                part.separate()
+            self._come_apart(visuals)
             return
         for p, q in self._lines:
             if p.alive and q.alive and p.body == q.body:
                 self.root.system.cosmetic_bond(p, q)
         self._lines = []
         others = [body for body in self.bodies if body != self.root and len(body.parts) == 1]
-        for body in others:
-            self.root.combine(body)
-        self._welded.append(frozenset(others))
+        self._welded.append(Stiffness(self.root, others))
+
+    def _come_apart(self, visuals: Visuals) -> None:
+        welds = self._welds
+        of_these = {part.origin for part in welds}
+        known = next((each for each in reversed(self._welded) if of_these <= each.others), None)
+        changed = known.changed(self.root) if known is not None else None
+        members = {self.root: self.root}
+        for part in reversed(welds):  # so that they are in their former order
+            origin = part.origin
+            created = part.separate().created_bodies
+            if created:
+                members[origin] = created[0]
+        if known is not None and changed is not None:
+            known.give_back(members, visuals, changed)
 
 
 class Levels(Part):
@@ -307,7 +320,7 @@ class Levels(Part):
         world.levels.viewers = lambda: [walker.position]
         world.levels.pin(cradle)
 
-    What is held, pinned or within `reach` of a viewer is full, always. Each change of a level is an edit of the system, so
+    What is held, touches what is held, is pinned or within `reach` of a viewer is full, always. Each change of a level is an edit of the system, so
     that recordings, replays and snapshots have it; the clock decides about changes between steps, never inside one.
     """
 
@@ -327,6 +340,7 @@ class Levels(Part):
         self._catch_up_ms = 0.0  # left in this step
         self._change_until = 0.0  # s, of processor time
         self._coming: deque[_Coming] = deque()
+        self._handled: dict[Managed, int] = {}  # by hands: full until this step
         self._places: Places | None = None  # made when it is asked
         self._ties: Ties | None = None  # None: to be found when they are needed
         self._version = -1  # of the structure after the latest changes of levels, which make and end no ties
@@ -513,6 +527,7 @@ class Levels(Part):
             self._release(thing)
         self._end_strides()
         self._coming.clear()
+        self._handled.clear()
         self._things = [thing for thing in self._things if thing.is_chosen or thing.is_pinned]
         self._by_root = {}
         self._names = {thing.name for thing in self._things}
@@ -855,7 +870,7 @@ class Levels(Part):
             if before.leave is not None:
                 before.leave(thing)
             if before.structure is not None or after.structure is not None:
-                thing._swap(self._scene, after)
+                thing._swap(self._scene, after, after.structure is not None and self._is_held(thing, after))
                 self._by_root = {}
             if not thing.root.alive or after not in thing.levels:
                 return  # the script has destroyed it meanwhile, or taken what stood in for it apart
@@ -890,7 +905,7 @@ class Levels(Part):
         )
 
     def _set_stiff(self, thing: Managed, is_stiff: bool) -> None:
-        thing._set_stiff(is_stiff)
+        thing._set_stiff(is_stiff, self._scene._visuals)
         thing._members = thing.bodies
         if not is_stiff and not thing.middle.alive:
             thing._measure()
@@ -1003,6 +1018,16 @@ class Levels(Part):
             thing.levels = tuple(each for each in thing.levels if not each.is_stiff or each is level)
             thing.index = thing.levels.index(level)
         return thing.is_jointed
+
+    def _is_held(self, thing: Managed, level: Level) -> bool:
+        """Whether joints hold it at the world. Raises ValueError if something holds it to what goes on without it."""
+        is_held, tie = self._all_ties().beyond(thing.bodies)
+        if tie is not None:
+            raise ValueError(
+                f"a structure cannot stand in for {thing.name!r} at level {level.name!r}, as {tie!r} ties it to something else that"
+                " moves: manage both as one thing, with `manage([...])`, or give it the level 'frozen' instead"
+            )
+        return is_held
 
     def _give_up(self, thing: Managed) -> None:
         """A function of one of its levels has failed: it is full from now on, with its own bodies."""
@@ -1166,14 +1191,22 @@ class Levels(Part):
         return finite
 
     def _free_held(self) -> None:
+        """What hands hold, and what touches that, is full, and stays so for a while: it flies, or rocks between two touches."""
         for hold in self._clients.holds():
             body = hold.body
-            thing = self._find(body) if body is not None else None
-            if thing is None:
+            if body is None:
                 continue
+            touched = {contact.other for each in body.articulate.bodies for contact in each.contacts}
+            things = dict.fromkeys(self._find(each) for each in touched if each.kind in ("dynamic", "resting"))
+            for thing, reason in ((self._find(body), "held"), *((each, "touched by what is held") for each in things)):
+                if thing is None:
+                    continue
+                self._handled[thing] = self._steps + REFUSED
+                if thing.index:
+                    self._change(thing, 0, 1.0, 0.0, reason)
+        self._handled = {thing: until for thing, until in self._handled.items() if until >= self._steps}
+        for thing in self._handled:
             self._arrays.keep_full(thing)
-            if thing.index:
-                self._change(thing, 0, 1.0, 0.0, "held")
 
     def _follow_engine(self) -> None:
         """A thing that an edit, a force or something full has touched takes every step."""
@@ -1200,6 +1233,7 @@ class Levels(Part):
     def _resync(self) -> None:
         """The system was restored or undone: its bodies tell the levels of their things."""
         self._coming.clear()
+        self._handled.clear()
         for thing in self._things:
             self._reread(thing)
         for thing in self._revived():

@@ -10,9 +10,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from iota._core import Body, Particle, System
+from iota._core import Body, Particle, System, Vec3
 from iota.arguments import SHORT
 from iota.frames import one_after_another
+from iota.world.fitting import up_of, way_out, work_of_gravity
 
 Floats = NDArray[np.float64]
 SAME = 1e-6  # of the mass
@@ -65,6 +66,16 @@ class Motion:
         """The kinetic energy of the center of mass, J."""
         return 0.5 * float(momentum @ momentum) / self.mass
 
+    def limited(self, momentum: Floats, most: float) -> Floats:
+        """A momentum of which the center of mass has no more energy than `most`, J."""
+        energy = self.energy_of(momentum)
+        return momentum * math.sqrt(most / energy) if energy > most else momentum
+
+    @property
+    def extent(self) -> float:
+        """The distance of the farthest point from the center of mass, m."""
+        return float(np.sqrt((self.arms**2).sum(axis=1).max()))
+
 
 class StandIn:
     """In the place of `bodies`, which are inactive meanwhile.
@@ -72,10 +83,19 @@ class StandIn:
     Its points have the velocities of a rigid motion with the momentum and the angular momentum that the bodies had; nails take
     what they take. A structure that is more compact would have more energy with that angular momentum: it turns as fast as the
     energy allows, and the rest of the angular momentum is given back when it leaves. `leave` brings the bodies back in the same way, moved as
-    the stand-in has moved, with their own inner motion as far as energy is left for it.
+    the stand-in has moved, with their own inner motion as far as energy is left for it. Either comes out of what it would overlap. What is held,
+    by nails or, as is_held says, by joints, comes back where it was.
     """
 
-    def __init__(self, system: System, scene: Any, bodies: Sequence[Body], structure: Structure, level: str) -> None:
+    def __init__(
+        self,
+        system: System,
+        scene: Any,
+        bodies: Sequence[Body],
+        structure: Structure,
+        level: str,
+        is_held: bool = False,
+    ) -> None:
         """Raises TypeError and ValueError, before anything has changed, for what is not a structure or has another mass."""
         if not callable(getattr(structure, "realize", None)):
             raise TypeError(
@@ -83,6 +103,7 @@ class StandIn:
             )
         self._system, self._originals = system, list(bodies)
         before = self._before = Motion(system, bodies)
+        self._poses = {body: (np.array(list(body.center_of_mass)), body.orientation) for body in bodies if body.solids}
         made = structure.realize(System())
         if not made.bodies:
             raise ValueError(f"the level {level!r} has made a structure without bodies")
@@ -93,16 +114,20 @@ class StandIn:
                 f"the structure of level {level!r} has {mass:.6g} kg, but what it stands in for has {before.mass:.6g} kg:"
                 " give its points or bodies the same mass in all"
             )
+        self._is_held, lifted = is_held or before.is_nailed, 0.0
         if not trial.is_nailed:
-            structure = structure + (before.center - trial.center)
+            offset = Vec3(*(before.center - trial.center))
+            way = way_out(system, made.bodies, self._originals, before.extent + trial.extent, offset)
+            structure, lifted = structure + (offset + way), work_of_gravity(system, before.mass, way)
         self.bodies = structure.realize(system, scene).bodies
         for body in self._originals:
             body.active = False
         now = Motion(system, self.bodies)
         self._parts = len({body.articulate.number for body in self.bodies})
-        energy = before.kinetic
-        turn = now.turning(before.spin, energy - before.energy_of(before.momentum))
-        now.points.velocities = now.rigid(before.momentum, turn)
+        energy = max(before.kinetic - lifted, 0.0)
+        momentum = before.limited(before.momentum, energy)
+        turn = now.turning(before.spin, energy - before.energy_of(momentum))
+        now.points.velocities = now.rigid(momentum, turn)
         begun = self._begun = Motion(system, self.bodies)
         self._owed = np.zeros(3) if begun.is_nailed else before.spin - begun.spin
         self._inner = max(energy - begun.kinetic, 0.0)
@@ -135,23 +160,21 @@ class StandIn:
             return
         now, before = Motion(self._system, self.bodies), self._before
         turn = np.eye(3)
-        if not before.is_nailed:
-            turn = turn_between(self._begun.arms, now.arms, now.masses)
+        lifted = 0.0
+        if not self._is_held:
+            turn, lifted = self._come(now)
         for body in self.bodies:
             body.destroy()
-        if not before.is_nailed:
-            self._move(turn, now.center)
         for body in self._originals:
             body.active = True
         there = Motion(self._system, self._originals)
-        if (
-            before.is_nailed
-        ):  # back where they were, they move as they did: else they would have fallen, and not be lower
+        if self._is_held:  # back where they were, they move as they did: else they would have fallen, and not be lower
             there.points.velocities = before.velocities
             return
-        allowed = now.kinetic + self._inner
-        rest = allowed - there.energy_of(now.momentum)
-        velocities = there.rigid(now.momentum, there.turning(now.spin + self._owed, rest))
+        allowed = max(now.kinetic + self._inner - lifted, 0.0)
+        momentum = there.limited(now.momentum, allowed)
+        rest = allowed - there.energy_of(momentum)
+        velocities = there.rigid(momentum, there.turning(now.spin + self._owed, rest))
         inner = (before.velocities - before.rigid(before.momentum, before.turning(before.spin))) @ turn.T
         left = allowed - 0.5 * float(there.masses @ (velocities**2).sum(axis=1))
         energy = 0.5 * float(there.masses @ (inner**2).sum(axis=1))
@@ -159,17 +182,29 @@ class StandIn:
             math.sqrt(min(1.0, max(left, 0.0) / energy)) if energy > 0 else 0.0
         )
 
+    def _come(self, now: Motion) -> tuple[Floats, float]:
+        """Puts the bodies, which are inactive, where the stand-in has gone, and out of what they overlap there. What a ball stood for may have
+        rolled, and would stand in the ground: then it lies, if it is lifted less so. Returns how they were turned, and the work of lifting, J."""
+        system, arms, masses = self._system, self._before.arms, self._before.masses
+        turn = turn_between(self._begun.arms, now.arms, now.masses)
+        present, extent = {*self._originals, *self.bodies}, self._before.extent + now.extent
+        found: list[tuple[float, Floats, Vec3]] = []
+        for each in (turn, lying(arms @ turn.T, masses, up_of(system)) @ turn):
+            self._move(each, now.center)
+            way = way_out(system, self._originals, present, extent)
+            found.append((work_of_gravity(system, self._before.mass, way), each, way))
+            if way == Vec3():
+                break
+        lifted, turn, way = min(found, key=lambda each: each[0])
+        if len(found) > 1:
+            self._move(turn, now.center + np.array(list(way)))
+        return turn, lifted
+
     def _move(self, turn: Floats, center: Floats) -> None:
-        """Puts the bodies, which are inactive, where the stand-in has gone."""
-        before = self._before
-        quaternion = quaternion_of(turn)
+        quaternion, before = quaternion_of(turn), self._before
         poses = {
-            body: (
-                center + turn @ (np.array(list(body.center_of_mass)) - before.center),
-                one_after_another(quaternion, body.orientation),
-            )
-            for body in self._originals
-            if body.solids
+            body: (center + turn @ (place - before.center), one_after_another(quaternion, orientation))
+            for body, (place, orientation) in self._poses.items()
         }
         places = dict(zip(before.points, center + before.arms @ turn.T, strict=True))
         put(self._system, poses, places)
@@ -203,6 +238,19 @@ def quaternion_of(turn: Floats) -> tuple[float, float, float, float]:
     )
     qx, qy, qz, qw = (found / np.linalg.norm(found)).tolist()
     return (qx, qy, qz, qw)
+
+
+def lying(arms: Floats, masses: Floats, up: Vec3) -> Floats:
+    """The smallest rotation after which masses, at arms from their center, are spread least upwards."""
+    axis = np.linalg.svd((masses[:, None] * arms).T @ arms)[0][:, 2]
+    axis = axis if axis @ list(up) >= 0 else -axis
+    return half_turn(axis + np.array(list(up))) @ half_turn(axis)
+
+
+def half_turn(axis: Floats) -> Floats:
+    """The rotation by 180 degrees about an axis of any length."""
+    turn: Floats = 2 * np.outer(axis, axis) / (axis @ axis) - np.eye(3)
+    return turn
 
 
 def turn_between(before: Floats, after: Floats, masses: Floats) -> Floats:

@@ -38,6 +38,18 @@ class Ties:
         """Whether one of them is an end of a tie."""
         return any(tie.alive for body in bodies for tie in self._of.get(body, []))
 
+    def beyond(self, bodies: Iterable[Body]) -> tuple[bool, Tie | None]:
+        """Whether ties hold bodies at the world, or at what never moves, and a tie to something else that is none of them."""
+        own, is_held = set(bodies), False
+        for tie in dict.fromkeys(tie for body in own for tie in self._of.get(body, []) if tie.alive):
+            others = [body for body in bodies_of(tie) if body not in own]
+            if any(not _is_fixed(body) for body in others):
+                return is_held, tie
+            is_held = (
+                is_held or bool(others) or (isinstance(tie, Constraint) and tie.kind not in COUPLINGS and tie.b is None)
+            )
+        return is_held, None
+
     def around(self, bodies: Iterable[Body]) -> tuple[list[Body], list[Tie]]:
         """Bodies, with all that moves and is connected to them by ties and hinges, and these ties."""
         found, ties = dict.fromkeys(bodies), dict[Tie, None]()
@@ -60,6 +72,10 @@ def bodies_of(tie: Tie) -> list[Body]:
     if isinstance(tie, Constraint):
         return list(dict.fromkeys(p.body for p in tie.particles))
     return [end.body for end in tie.ends]
+
+
+def _is_fixed(body: Body) -> bool:
+    return body.kind == "static" or (body.kind != "scripted" and all(p.is_nailed for p in body.particles))
 
 
 def can_be_copied(tie: Tie) -> bool:

@@ -96,6 +96,12 @@ class Visuals:
             self._dress(body, name, 1 - odd)
             self.version += 1
 
+    def hand_over(self, former: Body, body: Body) -> None:
+        """Gives a body the look of the one that it was."""
+        if former in self._visual_of:
+            self._dress(body, *self._visual_of[former])
+            self.version += 1
+
     def textures(self) -> Iterator[Texture]:
         """The images on them."""
         for looks in self.looks.values():
