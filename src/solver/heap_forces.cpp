@@ -6,22 +6,34 @@
 
 namespace iota::solver {
 
+namespace {
+
+/// visit(pool, number): each pool whose forces are swept. Hands pull before that, and come and go without a change of structure: were
+/// theirs counted, the others would have other numbers.
+template <class P, class Visit>
+void visit_swept(P& problem, Visit visit) {
+  std::uint8_t number = 0;
+  problem.for_each_force_pool([&](auto& pool) {
+    using Force = typename std::decay_t<decltype(pool.items)>::value_type;
+    if constexpr (!std::is_same_v<Force, GripForce>) visit(pool, number++);
+  });
+}
+
+}  // namespace
+
 template <class P, class Items, class Visit>
 void HeapForces::visit_forces(P& problem, Items& items, Visit visit) {
   std::size_t next = 0;
-  std::uint8_t number = 0;
-  problem.for_each_force_pool([&](auto& pool) {
+  visit_swept(problem, [&](auto& pool, std::uint8_t number) {
     for (; next < items.size() && items[next].pool == number; ++next)
       visit(items[next], pool.items[items[next].number]);
-    ++number;
   });
 }
 
 void HeapForces::find(const Problem& problem, const HeapBodies& bodies) {
   items_.clear(), between_ = 0;
-  std::uint8_t number = 0;
-  problem.for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
-    for (std::size_t i = 0; i < pool.items.size() && !std::is_same_v<F, GripForce>; ++i) {
+  visit_swept(problem, [&](const auto& pool, std::uint8_t number) {
+    for (std::size_t i = 0; i < pool.items.size(); ++i) {
       Item item{.number = static_cast<std::uint32_t>(i), .pool = number};
       const ForceArm& arm = pool.items[i].arm;
       for (std::uint32_t k = 0; k < arm.count; ++k) {
@@ -36,7 +48,6 @@ void HeapForces::find(const Problem& problem, const HeapBodies& bodies) {
       between_ += item.count > 1;
       items_.push_back(item);
     }
-    ++number;
   });
 }
 

@@ -204,3 +204,22 @@ def test_a_share_is_above_0_to_1(value: float) -> None:
     with pytest.raises(ValueError, match="contacts_share must be above 0 to 1"):
         system.contacts_share = value
     assert system.contacts_share == 1 and system.validate() == []
+
+
+def test_a_hand_pulls_at_a_heap_with_springs_that_is_solved_by_sweeps() -> None:
+    """The forces that sweeps knew by their places were others when a hand came, and the program crashed."""
+    system = iota.System()
+    boxes = wall(system, rows=4, columns=3)
+    system.obstacle(iota.HalfSpace())
+    system.budget_contacts = 1
+    ends = [box.attachment(box.position) for box in boxes]
+    for p, q in zip(ends[::3], ends[1::3], strict=True):
+        system.bond(p, q, "energy = 0.5*k*(r - r0)^2", k=50, r0=0.1)
+    assert system.step(DT, 30).approximate > 0
+    place = boxes[4].position
+    grip = system.grip(boxes[4], (0, 0, 0), place + (0, 0, 0.3))
+    assert system.step(DT, 30).approximate > 0
+    assert boxes[4].position.z > 0.1
+    grip.destroy()
+    system.step(DT, 30)
+    assert abs(ends[0].position - ends[1].position) > 0.38 and system.validate() == []
