@@ -344,7 +344,7 @@ def test_where_the_engine_ends_strides_they_are_not_tried_at_once_again(
     """A torn flag was full and at half rate in turns, for ever, and never frozen."""
     world, roots = made
     world.levels.budget_ms = LITTLE
-    run(world, 120)
+    run_until(world, lambda: roots[-1].stride == 0)
     thing = next(each for each in world.levels.things if each.root == roots[-1])
     thing._set_stride(1)  # as if something had touched it
     run(world, 120)
@@ -946,3 +946,27 @@ def test_bodies_that_were_one_get_back_what_was_their_own() -> None:
     world.levels.off()
     assert [link.color for link in thing.bodies] == ["#abcdef"] * 4, "what the script has painted stays so"
     assert [link.name for link in thing.bodies] == [f"link {k}" for k in range(4)]
+
+
+def test_what_touches_is_frozen_together_or_not_at_all() -> None:
+    """Half of a wall was said to be frozen, none of it was, and levels changed in each step."""
+    system = iota.System()
+    system.usual_material = iota.Material()
+    world = iota.World(system, ground=0.0)
+    boxes = [
+        system.body(shape=iota.Box((0.4, 0.2, 0.4)), mass=9, position=(0.5 * (k // 4) + x, 0.1 + 0.2 * (k % 4), 0))
+        for x in (0, 30)
+        for k in range(12)
+    ]
+    world.levels.viewers = lambda: [(15, 0, FAR)]
+    world.levels.pin(boxes[-1])
+    world.levels.budget_ms = LITTLE
+    run_until(world, lambda: all(box.stride == 0 for box in boxes[:12]))
+    run(world, 60)
+    before = len(world.levels.changes)
+    run(world, 120)
+    assert [box.stride for box in boxes] == [0] * 20 + [1] * 4, "what the pinned one stands on would be woken by it"
+    assert len(world.levels.changes) - before < 12
+    world.levels.budget_ms = PLENTY
+    run_until(world, lambda: world.levels.counts() == {"full": 24})
+    assert all(box.stride == 1 for box in boxes)

@@ -37,6 +37,7 @@ SLICES = (8, 64)  # steps in which each thing is looked at once: with few and wi
 PER_SLICE, PER_DECISION = 200, 600  # things: with more, it is looked less often, and decided less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD, HOLD_URGENT = 30, 8  # steps between two changes of a thing
+NEVER = 1 << 60  # steps
 REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long; after a hand it is full
 FULL, AIM, LOW = 0.75, 0.05, 0.15  # of the budget: begin to reduce, at first; so much lower: aimed at, begin to restore
 LEARNT, RARE, LEARN_EVERY = 2000, 0.998, 64  # steps; their quantile that the budget has to hold; steps
@@ -128,6 +129,16 @@ class _Coming:
     things: list[Managed] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
     found: CatchUp | None = None
+
+
+@dataclass(eq=False)
+class _Together:
+    """A thing, and those that ties and contacts join with it, so that they are solved together: of many the first ones. is_all: nothing else that
+    moves is. touching: those with contacts, so that strides save nothing."""
+
+    things: list[Managed]
+    touching: set[Managed] = field(default_factory=set)
+    is_all: bool = True
 
 
 @dataclass(frozen=True)
@@ -810,20 +821,62 @@ class Levels(Part):
         worth = (target != arrays.level[rows]) & (saved > 1e-6 * need)
         rows, target, saved, lost = rows[worth], target[worth], saved[worth], lost[worth]
         order = np.argsort((lost + 1e-12) / saved, kind="stable")[:most]
-        sums = np.cumsum(saved[order])
-        for i, done in zip(order, sums - saved[order], strict=True):
+        done = 0.0
+        looked_at = set[Managed]()  # with others that are to be frozen with them
+        for i in order:
             if done >= need or time.process_time() > self._change_until:
                 break
             thing, significance = self._things[rows[i]], float(arrays.significance[rows[i]])
+            if thing in looked_at:
+                continue
+            if thing.levels[target[i]].stride == 0:
+                done += self._freeze(thing, significance, looked_at)
+                continue
             tied = self._tied_to(thing)
             if any(not arrays.is_free(each) for each in tied):
                 continue
             self._change(thing, int(target[i]), significance, float(saved[i]), "over budget")
-            self._ms -= float(saved[i])
+            done += float(saved[i])
             for each in tied:  # of what is solved together the shortest stride counts
                 index = next((k for k, level in enumerate(each.levels) if level.is_like(thing.level)), None)
                 if index is not None and index > each.index:
                     self._change(each, index, significance, 0.0, "over budget")
+        self._ms -= done
+
+    def _freeze(self, thing: Managed, significance: float, looked_at: set[Managed]) -> float:
+        """Freezes it with all that is solved with it, as one that is not frozen would wake the others; or nothing. Returns the ms that are
+        saved."""
+        together = self._solved_with(thing)
+        looked_at.update(together.things)
+        indices = {each: _frozen_level(each) for each in together.things}
+        is_free = all(index is not None and self._arrays.may_have(each, index) for each, index in indices.items())
+        if not (together.is_all and is_free):
+            return 0.0
+        for each in together.touching:
+            self._arrays.refuse_strides(each, NEVER)
+        sum_saved = 0.0
+        for each, index in indices.items():
+            if index is not None and index > each.index:
+                saved = self._ms_of_work * self._arrays.saved_at(each, index)
+                self._change(each, index, significance, saved, "over budget")
+                sum_saved += saved
+        return sum_saved
+
+    def _solved_with(self, thing: Managed) -> _Together:
+        found = _Together([thing])
+        for each in found.things:  # which grow
+            others = {contact.other for body in each.bodies for contact in body.contacts}
+            touched = [
+                self._find(other) for other in others if other.kind in ("dynamic", "resting") and not each._has(other)
+            ]
+            mates = dict.fromkeys([*self._tied_to(each), *(mate for mate in touched if mate is not None)])
+            if touched:
+                found.touching.add(each)
+            if None in touched or len(found.things) > MOST_URGENT:
+                found.is_all = False
+                break
+            found.things += [mate for mate in mates if mate not in found.things]
+        return found
 
     def _restore(self, rows: NDArray[np.intp], room: float) -> None:
         """The most significance for each millisecond first: many things at strides rather than few in full."""
@@ -845,12 +898,38 @@ class Levels(Part):
             ):  # first what it would have done, in pieces
                 self._await(self._things[row])
                 continue
-            ms = float(unit[i] * max(arrays.shares[row, index] - here[i], 0.0))
-            room -= ms
-            self._change(self._things[row], index, float(arrays.significance[row]), -ms, "time is left")
-            self._ms += ms
+            thing = self._things[row]
+            if thing.index != arrays.level[row]:
+                continue  # with another one
+            if thing.level.stride == 0 and thing.levels[index].stride != 0:
+                room -= self._unfreeze(thing, index, float(arrays.significance[row]), room)
+            else:
+                ms = float(unit[i] * max(arrays.shares[row, index] - here[i], 0.0))
+                room -= ms
+                self._change(thing, index, float(arrays.significance[row]), -ms, "time is left")
+                self._ms += ms
             if time.process_time() > self._change_until:
                 break
+
+    def _unfreeze(self, thing: Managed, index: int, significance: float, room: float) -> float:
+        """Brings a thing to a level with all that is solved with it, as that wakes, too: if there is room for them. Returns the ms that it costs."""
+        together = self._solved_with(thing)
+        level, unit = thing.levels[index], self._ms_of_work
+        targets = {thing: index}
+        for each in together.things:
+            if each.level.stride == 0:
+                alike = (k for k, other in enumerate(each.levels) if other.is_like(level))
+                targets.setdefault(each, next(alike, 0))
+        costs = {each: -unit * self._arrays.saved_at(each, target) for each, target in targets.items()}
+        cost = sum(costs.values())
+        if len(targets) > 1 and cost > room:
+            return 0.0
+        for each, target in targets.items():
+            self._change(each, target, significance, -costs[each], "time is left")
+            if each in together.touching:
+                self._arrays.refuse_strides(each, self._steps + REFUSED)
+        self._ms += cost
+        return cost
 
     def _change(self, thing: Managed, index: int, significance: float, ms: float, reason: str) -> None:
         """One or several levels up or down; what fails stays at its level and is not managed any more."""
@@ -1307,6 +1386,11 @@ def _measured(bodies: list[Body]) -> tuple[float, Particle, float]:
     return max(size, 1e-6), points[middle], extent
 
 
+def _frozen_level(thing: Managed) -> int | None:
+    """Index of the level at which it is frozen, and no more than that; None if there is none."""
+    return next((i for i, level in enumerate(thing.levels) if level.is_like(FROZEN)), None)
+
+
 def _last_that_moves(levels: Sequence[Level]) -> int:
     """Index of the last one at which all of a thing moves, as far as those before it do."""
     stopped = (i for i, level in enumerate(levels) if level.is_stiff or level.stride == 0)
@@ -1455,6 +1539,18 @@ class _Arrays:
         """Whether it may be reduced."""
         row = self._row.get(thing)
         return row is not None and not self.near[row] and not self.pinned[row]
+
+    def may_have(self, thing: Managed, index: int) -> bool:
+        """Whether it may be reduced to a level."""
+        return self.is_free(thing) and index <= self.lowest[self._row[thing]]
+
+    def saved_at(self, thing: Managed, index: int) -> float:
+        """The work that another level of a thing is expected to save; negative: to cost."""
+        row = self._row.get(thing)
+        if row is None or index >= self.shares.shape[1]:
+            return 0.0
+        rows = np.array([row])
+        return float(self.full_load[row] * (self.share_now(rows)[0] - self._shares_of(rows)[0, index]))
 
     def is_seen(self, thing: Managed) -> bool:
         """Whether it has been in sight for some time."""
