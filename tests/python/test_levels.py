@@ -15,10 +15,11 @@ from page_client import PageClient
 
 import iota
 from iota import looks
+from iota.builder import Structure
 from iota.studies import crowd
 from iota.world import levels
 from iota.world.clients import Client, Hold
-from iota.world.levels import OWN_REST, Level, Managed
+from iota.world.levels import OWN_REST, STIFF, Level, Managed
 from iota.world.visuals import Visuals
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -970,3 +971,36 @@ def test_what_touches_is_frozen_together_or_not_at_all() -> None:
     world.levels.budget_ms = PLENTY
     run_until(world, lambda: world.levels.counts() == {"full": 24})
     assert all(box.stride == 1 for box in boxes)
+
+
+@pytest.mark.parametrize("way", ["off", "restore and off", "off and restore", "off and undo"])
+def test_off_makes_one_body_several_again_whatever_was_restored_before_or_after(way: str) -> None:
+    """They stayed one body, or a structure stayed in their place, for ever."""
+    for level in (STIFF, Level("far", share=0.1, quality=0.5, structure=lambda thing: ball(thing.mass))):
+        world = iota.World(iota.System(gravity=(0, 0, 0)), ground=None)
+        system = world.system
+        links = chain(system, (0, 0, 0)).articulate.bodies
+        links[0].particles[0].release()
+        thing = world.levels.manage(links[0].articulate, levels=["full", level])
+        world.levels.viewers = lambda: [(0, 0, FAR)]
+        world.levels.budget_ms = LITTLE
+        run_until(world, lambda thing=thing: len(thing.bodies) == 1)
+        snapshot = system.snapshot()
+        with system.edit():
+            system.body(shape=iota.Box((1, 1, 1)), position=(0, 9, 0)).destroy()
+        world.levels.budget_ms = PLENTY
+        run_until(world, lambda thing=thing: len(thing.bodies) == 5)
+        for act in way.split(" and "):
+            if act == "off":
+                world.levels.off()
+            else:
+                run(world, 1)
+                system.restore(snapshot) if act == "restore" else system.undo()
+        run(world, 2)
+        assert sum(body.active for body in system.bodies) == len(system.bodies) == 5 and system.validate() == []
+
+
+def ball(mass: float) -> Structure:
+    made = Structure()
+    made.body(shape=iota.Sphere(0.1), mass=mass)
+    return made

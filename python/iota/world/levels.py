@@ -359,8 +359,11 @@ class Levels(Part):
         self._unchecked: list[Managed] = []  # for joints: all at once, as each look goes through all joints
         self._things: list[Managed] = []
         self._names: set[str] = set()  # theirs, and of some that were
-        self._was_on = False  # there was a budget, so an undo may bring strides back
+        self._was_on = False  # there was a budget, so an undo may bring its levels back
         self._gone: deque[Managed] = deque(maxlen=GONE)  # destroyed or joined: an undo may bring them back
+        self._restructured: list[
+            Managed
+        ] = []  # of a former budget: stiff, or with a structure in their place, at some time
         self._is_restored = False  # a function of the script has made an undo or a reset within a change
         self._arrays = _Arrays(system)
         self._is_old = False
@@ -534,9 +537,13 @@ class Levels(Part):
         self._budget, self._is_own = None, False
         if self._paced_ms is None:
             self._contacts.be_exact()
+        if self._expected_step not in (None, self._system.step_count):
+            self._resync()
         for thing in self._things:
             self._release(thing)
         self._end_strides()
+        known = dict.fromkeys([*self._restructured, *self._gone, *self._things])
+        self._restructured = [thing for thing in known if thing._welded or thing._former][-GONE:]
         self._coming.clear()
         self._handled.clear()
         self._things = [thing for thing in self._things if thing.is_chosen or thing.is_pinned]
@@ -683,8 +690,12 @@ class Levels(Part):
                 self._look_at_contacts(1e3 * (ended - began), self._budget)
 
     def _step_in_full(self, dt: float) -> StepReport:
-        """A step of the system without a budget. An undo or a reset to a time with one brings strides and a share back."""
+        """A step of the system without a budget. An undo or a reset to a time with one brings strides, bodies that were one, structures and
+        a share back."""
         if self._was_on and self._system.step_count != self._expected_step:
+            for thing in self._restructured:
+                self._reread(thing)
+                self._release(thing)
             self._end_strides()
         self._expected_step = self._system.step_count + 1
         if self._paced_ms is None:
