@@ -166,12 +166,21 @@ int Bodies::stride(BodyId id) const {
   return stride == ingredient::Strides::frozen ? 0 : static_cast<int>(stride);
 }
 
+namespace {
+
+std::uint32_t require_stride(int steps) {
+  if (steps < 0) throw std::invalid_argument(text("stride must be 1 (every step) or more, or 0 (frozen), got ", steps));
+  return static_cast<std::uint32_t>(steps);
+}
+
+}  // namespace
+
 void Bodies::set_stride(BodyId body, int steps) {
-  core_.execute(ingredient::SetStride{body, static_cast<std::uint32_t>(steps), false});
+  core_.execute(ingredient::SetStride{body, require_stride(steps), false});
 }
 
 void Bodies::set_articulate_stride(BodyId body, int steps) {
-  core_.execute(ingredient::SetStride{body, static_cast<std::uint32_t>(steps), true});
+  core_.execute(ingredient::SetStride{body, require_stride(steps), true});
 }
 
 void Bodies::set_damping(BodyId body, double per_second) { core_.execute(edit::SetBodyDamping{body, per_second}); }

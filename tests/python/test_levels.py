@@ -1004,3 +1004,11 @@ def ball(mass: float) -> Structure:
     made = Structure()
     made.body(shape=iota.Sphere(0.1), mass=mass)
     return made
+
+
+def test_a_negative_stride_is_told_as_it_was_given() -> None:
+    """It was told as 4294967295."""
+    body = chain(iota.System(), (0, 0, 0))
+    for owner in (body, body.articulate):
+        with pytest.raises(ValueError, match=r"stride must be .* got -1$"):
+            owner.stride = -1

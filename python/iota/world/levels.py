@@ -489,7 +489,9 @@ class Levels(Part):
             raise TypeError(f"the name of a thing must be a text, not {SHORT.repr(name)}")
         before = list(dict.fromkeys(managed for root in roots if (managed := self._find(root)) is not None))
         if chosen_before := next((each for each in before if each.is_chosen), None):
-            raise ValueError(f"{chosen_before.root!r} is managed already, as {chosen_before.name!r}")
+            raise ValueError(
+                f"{chosen_before.root!r} is managed already, as {chosen_before.name!r}: call manage once for all that belongs together"
+            )
         if not any(body.particles for body in members):
             raise ValueError(f"{bodies[0]!r} has no particles, so it never moves, and costs nothing")
         chosen = None if levels is None else self._levels(levels)
