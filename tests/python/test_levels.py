@@ -973,6 +973,29 @@ def test_what_touches_is_frozen_together_or_not_at_all() -> None:
     assert all(box.stride == 1 for box in boxes)
 
 
+def test_what_touched_may_take_strides_again_when_it_has_parted() -> None:
+    system = iota.System()
+    system.usual_material = iota.Material()
+    world = iota.World(system, ground=0.0)
+    boxes = [system.body(shape=iota.Box((0.4, 0.2, 0.4)), mass=9, position=(0, 0.1 + 0.2 * k, 0)) for k in range(2)]
+    eye = [0.0, 0.0, FAR]
+    world.levels.viewers = lambda: [tuple(eye)]
+    world.levels.budget_ms = LITTLE
+    run_until(world, lambda: all(box.stride == 0 for box in boxes))
+    eye[2] = 1.0
+    run(world, 3)
+    assert world.levels.counts() == {"full": 2}
+    world.levels.budget_ms = PLENTY
+    system.gravity = (0, 0, 0)
+    for k, box in enumerate(boxes):
+        box.position = (0, 30, 40 * k)
+    run(world, levels.REFUSED + 10)
+    eye[2], before = FAR, len(world.levels.changes)
+    world.levels.budget_ms = LITTLE
+    run_until(world, lambda: all(box.stride == 0 for box in boxes))
+    assert "1/2" in [change.after for change in world.levels.changes[before:]]
+
+
 @pytest.mark.parametrize("way", ["off", "restore and off", "off and restore", "off and undo"])
 def test_off_makes_one_body_several_again_whatever_was_restored_before_or_after(way: str) -> None:
     """They stayed one body, or a structure stayed in their place, for ever."""

@@ -1530,6 +1530,8 @@ class _Arrays:
         if row is not None:
             self.level[row], self.changed[row] = thing.index, step
             self.stride[row] = thing.level.stride
+            if self.stride[row] != 0:  # what was frozen together may part
+                self._refused[row] = min(self._refused[row], step + REFUSED)
             self.load[row] = self.full_load[row] * self.shares[row, thing.index]
             self.touches[row] = self.runs[row] = False
 
