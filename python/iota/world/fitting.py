@@ -120,5 +120,5 @@ def _may_touch(system: System, body: Body, other: Body) -> bool:
 
 
 def work_of_gravity(system: System, mass: float, way: Vec3) -> float:
-    """What it takes to lift a mass by a way, at least 0, J."""
+    """Work to lift a mass by a way, at least 0, J."""
     return max(0.0, -mass * system.gravity.dot(way))

@@ -1283,7 +1283,7 @@ class Levels(Part):
         return finite
 
     def _free_held(self) -> None:
-        """What hands hold, and what touches that, is full, and stays so for a while: it flies, or rocks between two touches."""
+        """Makes full whatever hands hold and whatever touches that, for a while: it flies, or rocks between two touches."""
         for hold in self._clients.holds():
             body = hold.body
             if body is None:

@@ -36,7 +36,7 @@ class Stiffness:
         self._whole, self._whole_passing = _own_of(root), _passing(system, [root])
 
     def changed(self, root: Body) -> tuple[set[str], bool]:
-        """What the script has changed since: properties, and whether it lets the one body pass through others."""
+        """Names whatever the script has changed since: properties, and whether it lets the one body pass through others."""
         now = _own_of(root)
         return {key for key in OWN if now[key] != self._whole[key]}, _passing(
             root.system, [root]
@@ -75,7 +75,7 @@ def _own_of(body: Body) -> dict[str, Any]:
 
 
 def _groups_of(system: System, body: Body) -> list[Group]:
-    """Those with all of its particles."""
+    """Groups with all of its particles."""
     own = set(body.particles)
     return [group for group in system.groups if own <= set(group.particles)]
 
