@@ -10,12 +10,14 @@ namespace {
 struct EditScope {
   nb::object system_object;
   SystemObject* system = nullptr;
+  bool undoable = true;
   std::optional<RestructureReport> report;
 };
 
 constexpr const char* scope_doc =
-    "A batch of edits: `with system.edit() as edit: ...`. They have one report and are undone together. If the block\n"
-    "raises, the system is restored. A batch within a batch is part of it.";
+    "A batch of edits: `with system.edit() as edit: ...`. They have one report and are undone together, or, if they are not\n"
+    "undoable, not by themselves: an undo goes to before the last batch that is. If the block raises, the system is restored.\n"
+    "A batch within a batch is part of it.";
 
 }  // namespace
 
@@ -24,7 +26,8 @@ void bind_edits(nb::module_& module) {
       .def(
           "__enter__",
           [](nb::handle_t<EditScope> self) {
-            nb::inst_ptr<EditScope>(self)->system->use_between_steps("edit").edits().begin();
+            const EditScope& scope = *nb::inst_ptr<EditScope>(self);
+            scope.system->use_between_steps("edit").edits().begin(scope.undoable);
             return nb::borrow(self);
           },
           nb::sig("def __enter__(self) -> Edit"))
@@ -52,10 +55,10 @@ void bind_edits(nb::module_& module) {
   system
       .def(
           "edit",
-          [](nb::handle_t<SystemObject> self) {
-            return EditScope{nb::borrow(self), nb::inst_ptr<SystemObject>(self), std::nullopt};
+          [](nb::handle_t<SystemObject> self, bool undoable) {
+            return EditScope{nb::borrow(self), nb::inst_ptr<SystemObject>(self), undoable, std::nullopt};
           },
-          nb::sig("def edit(self) -> Edit"), scope_doc)
+          nb::kw_only(), "undoable"_a = true, nb::sig("def edit(self, *, undoable: bool = True) -> Edit"), scope_doc)
       .def(
           "undo", [](SystemObject& self) { return self.use_between_steps("undo").edits().undo(); },
           "Restores the state before the last batch of edits, time included; handles from then are valid again. A\n"

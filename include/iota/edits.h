@@ -34,7 +34,8 @@ class Edits : public View {
 
   /// @name Batches: all edits have one report and are undone together
   ///@{
-  void begin();  ///< batches within a batch are part of it
+  /// Batches within a batch are part of it. One that is not undoable is no step of `undo`: that goes past it.
+  void begin(bool is_undoable = true);
   /// Reports what was created, destroyed and absorbed, and the energy; empty for a batch within a batch.
   RestructureReport end();
   void cancel();  ///< restores the state at `begin`

@@ -7,13 +7,14 @@
 
 namespace iota::edit {
 
-void apply(Editor& e, const BeginEdit&) {
+void apply(Editor& e, const BeginEdit& c) {
   if (e.batch) {
     ++e.batch->depth;
     return;
   }
   e.held.book_edits();
   e.batch.emplace(e.model, e.snapshot(Editor::Origin::own));
+  e.batch->is_undoable = c.is_undoable;
 }
 
 RestructureReport apply(Editor& e, const EndEdit&) {
@@ -23,7 +24,7 @@ RestructureReport apply(Editor& e, const EndEdit&) {
   e.batch->count_coordinates(e.model);
   RestructureReport report = e.batch->finish(e.model);
   settle_batch(e, report);
-  if (!e.batch->is_empty) {
+  if (!e.batch->is_empty && e.batch->is_undoable) {
     e.undo.push(std::move(e.batch->before));
     e.redo.clear();
   }

@@ -6,7 +6,9 @@
 /// Commands for batches of edits, undo and redo.
 namespace iota::edit {
 
-struct BeginEdit {};
+struct BeginEdit {
+  bool is_undoable = true;  ///< else an undo goes past it
+};
 struct EndEdit {};
 struct CancelEdit {};
 struct Undo {};

@@ -35,7 +35,7 @@ class Batch {
   void count_coordinates(model::Model&) const;
 
   int depth = 1;  ///< of nested batches
-  bool is_empty = true;
+  bool is_empty = true, is_undoable = true;
   Snapshot before;
 
  private:

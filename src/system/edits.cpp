@@ -3,7 +3,7 @@
 
 namespace iota {
 
-void Edits::begin() { core_.execute(edit::BeginEdit{}); }
+void Edits::begin(bool is_undoable) { core_.execute(edit::BeginEdit{is_undoable}); }
 
 RestructureReport Edits::end() { return core_.execute(edit::EndEdit{}); }
 

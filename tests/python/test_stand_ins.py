@@ -227,6 +227,22 @@ def test_an_undo_and_a_reset_find_what_stands_there() -> None:
     assert made.system.validate() == []
 
 
+def test_an_undo_takes_back_what_people_did_and_no_swap() -> None:
+    made = Thing(ball)
+    with made.system.edit():
+        box = made.system.body(shape=iota.Box((1, 1, 1)), position=(0, 50, 0))
+    count = made.system.undo_count
+    made.reach("far")
+    made.reach("full")
+    assert made.system.undo_count == count and box.alive
+    made.world.undo()
+    assert not box.alive and made.system.redo_count == 1
+    made.reach("far")
+    assert made.system.redo_count == 1, "a swap is not what would be lost"
+    made.world.redo()
+    assert box.alive and made.system.validate() == []
+
+
 def test_what_is_replayed_has_the_same_bits() -> None:
     made = Thing(dumbbell)
     made.system.start_recording()

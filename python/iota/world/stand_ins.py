@@ -119,7 +119,8 @@ class StandIn:
             offset = Vec3(*(before.center - trial.center))
             way = way_out(system, made.bodies, self._originals, before.extent + trial.extent, offset)
             structure, lifted = structure + (offset + way), work_of_gravity(system, before.mass, way)
-        self.bodies = structure.realize(system, scene).bodies
+        with system.edit(undoable=False):  # an undo of a user takes back what people did
+            self.bodies = structure.realize(system, scene).bodies
         for body in self._originals:
             body.active = False
         now = Motion(system, self.bodies)

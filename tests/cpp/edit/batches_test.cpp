@@ -121,6 +121,34 @@ TEST(EditBatch, a_canceled_one_never_was) {
   EXPECT_EQ(system.edits().undo_count(), 0u);
 }
 
+TEST(EditBatch, that_is_not_undoable_is_no_step_of_an_undo) {
+  System system;
+  const std::uint64_t before = system.state_hash();
+  system.edits().begin();
+  const BodyId first = system.bodies().create();
+  (void)system.edits().end();
+  system.edits().begin(false);
+  const BodyId second = system.bodies().create();
+  system.edits().begin();  // within it
+  (void)system.bodies().create();
+  (void)system.edits().end();
+  (void)system.edits().end();
+  EXPECT_EQ(system.edits().undo_count(), 1u);
+  EXPECT_TRUE(system.edits().undo());
+  EXPECT_EQ(system.state_hash(), before);
+  EXPECT_FALSE(system.bodies().contains(first) || system.bodies().contains(second));
+  system.edits().begin(false);
+  (void)system.bodies().create();
+  (void)system.edits().end();
+  EXPECT_EQ(system.edits().redo_count(), 1u);
+  EXPECT_TRUE(system.edits().redo());
+  EXPECT_TRUE(system.bodies().contains(first) && system.bodies().contains(second));
+  system.edits().begin(false);
+  system.bodies().destroy(first);
+  system.edits().cancel();
+  EXPECT_TRUE(system.bodies().contains(first));
+}
+
 TEST(EditBatch, keeps_so_many_and_forgets_the_oldest) {
   System system;
   for (int i = 0; i < 100; ++i) {
