@@ -46,10 +46,12 @@ struct Mat3 {
   }
 };
 
-/// Moment of inertia about the origin of a point mass at r: m (|r|^2 I - r r').
-inline Mat3 point_inertia(double mass, const Vec3& r) {
-  return mass * (Mat3::diagonal(dot(r, r)) + -1.0 * Mat3::outer(r, r));
+/// Moment of inertia about the origin of a mass that couples the velocities of points at p and q: m (p . q I - q p').
+inline Mat3 coupled_inertia(double mass, const Vec3& p, const Vec3& q) {
+  return mass * (Mat3::diagonal(dot(p, q)) + -1.0 * Mat3::outer(q, p));
 }
+/// The same of a point mass at r: m (|r|^2 I - r r').
+inline Mat3 point_inertia(double mass, const Vec3& r) { return coupled_inertia(mass, r, r); }
 
 /// The solution of A x = b by cofactors; not finite if A is singular.
 inline Vec3 solve(const Mat3& a, const Vec3& b) {

@@ -154,7 +154,7 @@ void Heap::load_bodies(const Problem& problem, double h) {
   const auto add = [&](std::size_t b, double m, std::uint32_t p, std::uint32_t q) {
     const Vec3 rp = problem.position[p] - found_.all[b].center, rq = problem.position[q] - found_.all[b].center;
     angular[b] += m * cross(rp, problem.velocity[q] - motions_[b].velocity);
-    found_.all[b].inertia += m * (Mat3::diagonal(dot(rp, rq)) + -1.0 * Mat3::outer(rq, rp));
+    found_.all[b].inertia += coupled_inertia(m, rp, rq);
   };
   for (std::size_t b = 0; b < found_.all.size(); ++b)
     for (std::uint32_t k = 0; k < found_.all[b].count; ++k) {

@@ -19,17 +19,11 @@ void Heap::restore_shape(const Problem& problem, std::uint32_t i, std::span<cons
   part.add_nodes(body.count);
   for (std::uint32_t k = 0; k < body.count; ++k)
     part.position[k] = body.arms[k], part.mass[k] = body.shares[k] * problem.mass[body.nodes[k]];
-  struct Coupled {
-    std::uint32_t a, b;
-    double mass;
-  };
-  std::vector<Coupled> coupled;
   for (const HeapBodies::Coupling& coupling : found_.couplings) {
     const auto& c = problem.mass_couplings[coupling.item];
     if (coupling.body == i)
-      coupled.push_back({found_.place_of(i, c.a), found_.place_of(i, c.b), coupling.share * c.mass});
+      part.couple_masses(found_.place_of(i, c.a), found_.place_of(i, c.b), coupling.share * c.mass);
   }
-  for (const Coupled& c : coupled) part.couple_masses(c.a, c.b, c.mass);
   for (const Length& length : lengths) {
     DistanceConstraint c = problem.items_of<DistanceConstraint>()[length.item];
     for (std::uint32_t& node : c.nodes) node = found_.place_of(i, node);
@@ -44,12 +38,10 @@ void Heap::restore_shape(const Problem& problem, std::uint32_t i, std::span<cons
   std::copy_n(newton.solution().begin(), body.count, body.arms.begin());
   const Vec3 angular_momentum = body.inertia * motions_[i].spin;
   body.inertia = {};
-  const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
-    const Vec3 &p = body.arms[a], &q = body.arms[b];
-    body.inertia += mass * (Mat3::diagonal(dot(p, q)) + -1.0 * Mat3::outer(q, p));
-  };
-  for (std::uint32_t k = 0; k < body.count; ++k) add(part.mass[k], k, k);
-  for (const Coupled& c : coupled) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
+  for (std::uint32_t k = 0; k < body.count; ++k) body.inertia += point_inertia(part.mass[k], body.arms[k]);
+  for (const auto& c : part.mass_couplings)
+    body.inertia += coupled_inertia(c.mass, body.arms[c.a], body.arms[c.b]),
+        body.inertia += coupled_inertia(c.mass, body.arms[c.b], body.arms[c.a]);
   invert_inertia(body, motions_[i]);
   motions_[i].spin = motions_[i].by_inertia * angular_momentum;
 }
@@ -102,7 +94,7 @@ bool Heap::project(Problem& problem, const Projection& projection) {
     // A body that a joint drives rests on others: without these a box that is pulled at its top turned, and that was work.
     constexpr int rounds = 24;
     points_.load(problem, found_, motions_, 0, 1 / time);
-    for (int k = 0; k < rounds; ++k) points_.sweep(motions_, {}, time), (void)project_ties(false);
+    for (int k = 0; k < rounds; ++k) points_.sweep(motions_, {}, time), ties_.close_rates(motions_);
   }
   if (projection.positions && is_met) store_positions(problem);
   store_velocities(problem);

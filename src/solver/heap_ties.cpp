@@ -337,17 +337,22 @@ bool HeapTies::close(const Problem& problem, HeapBodies& bodies, std::span<HeapM
 
 bool HeapTies::project(const Problem& problem, HeapBodies& bodies, std::span<HeapMotion> motions, double h, double at,
                        double later, bool positions) {
-  constexpr int passes = 2;  // the second removes the errors of a factor at the places before
   if (equations_.empty()) return true;
   refresh(problem, bodies, motions, h, at, later);
   if (!positions) factorize(motions);
   if (positions && !close(problem, bodies, motions, h, at, later)) return false;
+  close_rates(motions);
+  return true;
+}
+
+void HeapTies::close_rates(std::span<HeapMotion> motions) {
+  constexpr int passes = 2;  // the second removes the errors of a factor at the places before
+  if (equations_.empty()) return;
   for (int pass = 0; pass < passes; ++pass) {
     find_changes(motions, [&](const Tie& tie, int r) { return rate_of(tie, r, motions); });
     for (std::size_t b = 0; b < motions.size(); ++b)
       motions[b].velocity += changes_[b].velocity, motions[b].spin += changes_[b].spin;
   }
-  return true;
 }
 
 }  // namespace iota::solver

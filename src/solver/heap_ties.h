@@ -64,6 +64,8 @@ class HeapTies {
   /// fractions of the way of targets in the step. They reach the second one h seconds later. False, without a
   /// change, if there are no such places.
   bool project(const Problem&, HeapBodies&, std::span<HeapMotion>, double h, double at, double later, bool positions);
+  /// After `project`: the same for velocities that have changed since.
+  void close_rates(std::span<HeapMotion>);
 
  private:
   static constexpr std::uint32_t none = HeapBodies::none;

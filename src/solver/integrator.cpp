@@ -303,8 +303,7 @@ bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSetting
 // Whether so many iterations take more than its share of the budget.
 bool Integrator::is_beyond(Problem& problem, const IntegratorSettings& settings, double iterations) {
   double cost = 0;
-  return may_be_left_to_sweeps(problem, settings, cost) &&
-         iterations * cost > settings.contact_share * settings.contact_budget;
+  return may_be_left_to_sweeps(problem, settings, cost) && settings.is_beyond_share(iterations * cost);
 }
 
 bool Integrator::is_projected_as_heap(Problem& problem, const IntegratorSettings& settings) {
@@ -329,17 +328,16 @@ std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorS
 // Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
 // so that this one is not tried.
 bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
-  const double budget = settings_.contact_budget;
   may_sweep_ = may_be_left_to_sweeps(problem, settings_, cost);
   if (!may_sweep_) {
     // A joint that is added to what lies in a heap may prevent that they are closed.
-    if (budget < std::numeric_limits<double>::infinity()) accept_overlaps(problem);
+    if (settings_.contact_budget < std::numeric_limits<double>::infinity()) accept_overlaps(problem);
     return false;
   }
   std::uint64_t& swept = problem.unsolved_steps;
   if (swept > 0 && settings_.part < 1) return ++swept > 0;  // a step is tried as a whole
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
-  const bool is_large = fewest * cost > settings_.contact_share * budget;
+  const bool is_large = settings_.is_beyond_share(fewest * cost);
   const bool waits = swept > 0 && !is_due(swept);
   if (!is_large && !waits) accept_overlaps(problem);  // sweeps push them apart
   const bool is_beyond =

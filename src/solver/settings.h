@@ -62,7 +62,8 @@ struct IntegratorSettings {
   /// approximately: see Heap.
   double contact_budget = std::numeric_limits<double>::infinity();
   double contact_share = 1;  ///< of this problem
-  double part = 1;           ///< of a whole step: sweeps take so many of their sub-steps
+  bool is_beyond_share(double multiplications) const { return multiplications > contact_share * contact_budget; }
+  double part = 1;  ///< of a whole step: sweeps take so many of their sub-steps
   /// Multiplications for a single step, as blows need more than what follows: four budgets, or eight for what sweeps would let
   /// go. Few problems need them at the same time, so that each gets more than its share.
   double contact_burst(bool is_tree) const {

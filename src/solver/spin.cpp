@@ -328,7 +328,7 @@ void Spin::find_motions(const Problem& problem, Parts& parts) {
     const Vec3 va = problem.velocity[a] - v, vb = problem.velocity[b] - v;
     part.kinetic += 0.5 * mass * dot(va, vb);
     part.angular += mass * cross(ra, vb);
-    part.inertia += mass * (Mat3::diagonal(dot(ra, rb)) + -1.0 * Mat3::outer(rb, ra));
+    part.inertia += coupled_inertia(mass, ra, rb);
   });
 }
 

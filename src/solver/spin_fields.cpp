@@ -68,12 +68,9 @@ void Spin::add_losses_of_fields(const Problem& problem, std::span<const Vec3> di
       const Part& part = parts.parts[k];
       const auto place = [&](std::uint32_t i) { return problem.position[i] - part.center; };
       const auto place_before = [&](std::uint32_t i) { return place(i) - h * (problem.velocity[i] - part.velocity()); };
-      const auto inertia = [&](const Vec3& ra, const Vec3& rb) {
-        return mass * (Mat3::diagonal(dot(ra, rb)) + -1.0 * Mat3::outer(rb, ra));
-      };
       const Vec3 before = problem.velocity[b] - (1 / h) * displacement[b] - velocity_before(part);
-      turn.inertia += inertia(place(a), place(b));
-      turn.inertia_before += inertia(place_before(a), place_before(b));
+      turn.inertia += coupled_inertia(mass, place(a), place(b));
+      turn.inertia_before += coupled_inertia(mass, place_before(a), place_before(b));
       turn.angular += mass * cross(place(a), problem.velocity[b] - part.velocity());
       turn.angular_before += mass * cross(place_before(a), before);
     });

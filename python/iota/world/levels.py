@@ -361,9 +361,7 @@ class Levels(Part):
         self._names: set[str] = set()  # theirs, and of some that were
         self._was_on = False  # there was a budget, so an undo may bring its levels back
         self._gone: deque[Managed] = deque(maxlen=GONE)  # destroyed or joined: an undo may bring them back
-        self._restructured: list[
-            Managed
-        ] = []  # of a former budget: stiff, or with a structure in their place, at some time
+        self._restructured: list[Managed] = []  # of a former budget: once stiff, or with a structure in their place
         self._is_restored = False  # a function of the script has made an undo or a reset within a change
         self._arrays = _Arrays(system)
         self._is_old = False

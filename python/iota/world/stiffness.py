@@ -10,13 +10,8 @@ from typing import Any
 from iota._core import Body, Group, System
 from iota.world.visuals import Visuals
 
-OWN = (
-    "name",
-    "color",
-    "material",
-    "damping",
-    "radius",
-)  # properties of a body; the first one of bodies that become one counts for all
+# Properties of a body: those of the first one count for all that become one.
+OWN = ("name", "color", "material", "damping", "radius")
 
 
 class Stiffness:
@@ -37,10 +32,8 @@ class Stiffness:
 
     def changed(self, root: Body) -> tuple[set[str], bool]:
         """Names whatever the script has changed since: properties, and whether it lets the one body pass through others."""
-        now = _own_of(root)
-        return {key for key in OWN if now[key] != self._whole[key]}, _passing(
-            root.system, [root]
-        ) != self._whole_passing
+        now, passing = _own_of(root), _passing(root.system, [root])
+        return {key for key in OWN if now[key] != self._whole[key]}, passing != self._whole_passing
 
     def give_back(self, members: Mapping[Body, Body], visuals: Visuals, changed: tuple[set[str], bool]) -> None:
         """members: the bodies that are there again, by those that they were."""
