@@ -30,7 +30,7 @@ IOTA_FIELDS(model::Obstacle, position, orientation)
 IOTA_FIELDS(model::Stand, reach, places)
 IOTA_FIELDS(model::Twin, particle, next, part, mass)
 IOTA_FIELDS(model::Articulate, first, last, count, version, velocity_dirty, to_wake, slow_time, standing_steps,
-            standing_gap, unsolved_steps)
+            standing_gap, unsolved_steps, owed_work)
 IOTA_FIELDS(model::Group, name)
 IOTA_FIELDS(model::Attributes, particle, emitter, age, lifetime, radius, color, oriented, orientation, spin, torque,
             moment, damping, preferred, stiffness, alignment_damping)

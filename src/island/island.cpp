@@ -336,6 +336,9 @@ Island::Tried Island::try_motion(const Model& model, double h, const Limits& lim
   const model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
   problem_.unsolved_steps = memory.unsolved_steps;
+  const double owed = owed_work(model);
+  paid_work_ = std::min(owed, settings.contact_allowance());
+  problem_.owed_work = owed - paid_work_;
   last_ = integrator_->advance(problem_, h, settings);
   if (const double jump = velocity_jump(h); jump > 0) {
     // Unless there was no solution, it is round-off: of nails at rest it has no energy to tell.
@@ -372,10 +375,44 @@ const solver::AdvanceReport& Island::commit(Model& model, double h) {
   return last_;
 }
 
+template <class Visit>
+void Island::for_each_articulate(const Model& model, Visit visit) const {
+  for (const std::uint32_t body : nodes_.bodies)
+    if (const std::uint32_t slot = model.bodies[body].articulate; model.articulates[slot].first == body) visit(slot);
+}
+
+bool Island::may_owe_work(const Model& model) const {
+  return problem_.has_used<solver::ContactConstraint>() || articulate(model).owed_work > 0;
+}
+
+double Island::owed_work(const Model& model) const {
+  double work = 0;
+  if (!may_owe_work(model)) return work;
+  for_each_articulate(model, [&](std::uint32_t slot) { work += model.articulates[slot].owed_work; });
+  return work;
+}
+
+// By their bodies, as islands of contacts come together and apart all the time.
+void Island::set_owed_work(Model& model, double work) const {
+  if (!may_owe_work(model)) return;
+  double bodies = 0;
+  for_each_articulate(model, [&](std::uint32_t slot) { bodies += model.articulates[slot].count; });
+  for_each_articulate(model, [&](std::uint32_t slot) {
+    model::Articulate& a = model.articulates[slot];
+    a.owed_work = work * a.count / bodies;
+  });
+}
+
+void Island::try_again(Model& model) {
+  set_owed_work(model, problem_.owed_work + paid_work_);
+  drop_try();
+}
+
 void Island::commit_motion(Model& model, double h) {
   model::Articulate& memory = articulate(model);
   memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
   memory.unsolved_steps = problem_.unsolved_steps;
+  set_owed_work(model, problem_.owed_work);
   const double virtual_before = virtual_energy(model);
   double dissipated = 0;
   for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });

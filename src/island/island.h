@@ -121,6 +121,8 @@ class Island {
     try_step(model, h, limits), tried_ahead_ = h;
   }
   void drop_try() { tried_ahead_ = 0; }
+  /// Drops a try to make another one of the same step, which has as much less work left.
+  void try_again(model::Model&);
   /// visit(ring, way): how far each goes in the latest try, m.
   template <class Visit>
   void for_each_way(const model::Model&, Visit visit) const;
@@ -205,6 +207,12 @@ class Island {
   Tried try_prescribed(const model::Model&, double h);
   Tried try_motion(const model::Model&, double h, const Limits&);
   void commit_motion(model::Model&, double h);
+  /// visit(slot): each articulate of its bodies.
+  template <class Visit>
+  void for_each_articulate(const model::Model&, Visit visit) const;
+  bool may_owe_work(const model::Model&) const;
+  double owed_work(const model::Model&) const;
+  void set_owed_work(model::Model&, double) const;
   double velocity_jump(double h) const;  ///< see ingredient::NoAnswers
   double rate_jump() const;
   void impose_velocities(double h);
@@ -256,6 +264,7 @@ class Island {
   std::uint32_t stride_ = 0;  // steps; 0: not known
   bool is_frozen_ = false;    // and outside of a stride: still
   std::uint32_t solved_steps_ = 1;
+  double paid_work_ = 0;  ///< of what was owed, by the latest try
   double work_ = 0;
   Tried tried_ = Tried::nothing;  // since the last commit
   double tried_ahead_ = 0;        // length of a step that was tried ahead, s

@@ -30,7 +30,8 @@ void Structure::mark(std::uint32_t articulate, Mark what, bool wakes) {
   if (wakes) wake(articulate);
   Articulate& a = articulates[articulate];
   ++a.version;
-  a.try_again();
+  // Among moving bodies contacts begin and end in each step: what has just had no solution would be tried each time.
+  wakes ? a.try_again() : void(a.standing_gap = 0);
   if (mark_of_.size() <= articulate) mark_of_.resize(articulates.slot_count(), unmarked);
   Mark& marked = mark_of_[articulate];
   if (marked == unmarked) marked_.push_back(articulate);
@@ -107,7 +108,7 @@ void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   bodies[from.first].previous_in_articulate = into.last;
   bodies[into.last].next_in_articulate = from.first;
   into.last = from.last;
-  into.count += from.count;
+  into.count += from.count, into.owed_work += from.owed_work;
   if (from.velocity_dirty) mark_velocities(a);
   articulates.destroy(b);
 }

@@ -162,6 +162,8 @@ struct Articulate {
   std::uint64_t standing_steps = 0;  ///< since the last attempt to close a conflict
   double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
   std::uint64_t unsolved_steps = 0;  ///< in a row, of which no part was solved
+  /// Its part of the multiplications by which steps have gone beyond StepBudget::contacts: the next ones have so many fewer.
+  double owed_work = 0;
 
   /// Ends the back-off: after a change, a conflict or a step without a solution is tried in full again.
   void try_again() { standing_gap = 0, unsolved_steps = 0; }

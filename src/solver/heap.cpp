@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/heap.h"
 
+#include "base/disjoint_sets.h"
 #include "base/sort_unique.h"
 #include "math/mat3.h"
 
@@ -48,13 +49,37 @@ bool Heap::find_bodies(const Problem& problem) {
   is_tree_ = static_cast<double>(pairs_.size()) + static_cast<double>(grounded) <=
              few_loops * static_cast<double>(free_bodies);
   find_least_cost();
-  constexpr double light = 1.0 / 500;
-  const std::vector<double> masses = found_.masses(problem);
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  ties_.for_each_body(
-      [&](std::uint32_t body) { least = std::min(least, masses[body]), most = std::max(most, masses[body]); });
-  has_light_joints_ = least < light * most;
+  has_light_joints_ = find_light_joints(problem);
   return true;
+}
+
+bool Heap::find_light_joints(const Problem& problem) const {
+  constexpr double light = 1.0 / 500;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> partners;
+  DisjointSets connected(found_.all.size());
+  ties_.for_each_pair([&](std::uint32_t a, std::uint32_t b) {
+    partners.push_back({a, b}), partners.push_back({b, a});
+    connected.join(a, b);
+  });
+  ties_.for_each_held([&](std::uint32_t body) { partners.push_back({body, none}); });
+  sort_unique(partners);
+  const std::vector<double> masses = found_.masses(problem);
+  struct Machine {
+    double heaviest = 0;
+    std::size_t bodies = 0;
+  };
+  std::vector<Machine> machines(masses.size());
+  for (std::uint32_t body = 0; body < masses.size(); ++body) {
+    Machine& machine = machines[connected.root(body)];
+    machine.heaviest = std::max(machine.heaviest, masses[body]), ++machine.bodies;
+  }
+  for (std::size_t k = 1; k < partners.size(); ++k) {
+    const std::uint32_t body = partners[k].first;
+    const Machine& machine = machines[connected.root(body)];
+    if (partners[k - 1].first == body && 2 * machine.bodies > masses.size() && masses[body] < light * machine.heaviest)
+      return true;
+  }
+  return false;
 }
 
 namespace {

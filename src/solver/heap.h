@@ -34,7 +34,8 @@ class Heap {
   /// sweeps nets and soft bodies would stretch.
   bool find_bodies(const Problem&);
   bool has_joints() const { return !ties_.are_none(); }
-  /// Whether a joint connects bodies of very different masses: sweeps do not hold what hangs on light links.
+  /// Whether joints connect most of its bodies, and one that they connect with two others, or with one and the world, is far lighter than
+  /// another one of them: sweeps do not hold what hangs on light links.
   bool has_light_joints() const { return has_light_joints_; }
   /// Whether hardly more pairs touch than there are bodies, as in chains and columns: where each link hangs on the one before,
   /// sweeps would need as many as the square of their number, and let it go.
@@ -72,6 +73,7 @@ class Heap {
   void for_each_own_point(Visit visit) const;
   void load_grips(const Problem&);
   void find_least_cost();
+  bool find_light_joints(const Problem&) const;
   void load_bodies(const Problem&, double h);
   static void invert_inertia(Body&, Motion&);
   struct Length {

@@ -32,10 +32,11 @@ class HeapTies {
           if (one.body < other.body) visit(one.body, other.body);
   }
 
-  /// visit(body): each that a tie moves, as often as there are ties.
+  /// visit(body): each that a tie connects with the world or what is driven.
   template <class Visit>
-  void for_each_body(Visit visit) const {
-    for (const Side& side : sides_) visit(side.body);
+  void for_each_held(Visit visit) const {
+    for (const Tie& tie : ties_)
+      if (tie.side_count == 1) visit(sides_of(tie).front().body);
   }
 
   /// At the begin of a step in sub-steps of h seconds, with the impulses of the step before. All their places are those of the problem.

@@ -142,17 +142,18 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
   make_ready(problem);
   newton_.add_times_to(times_of_thread());
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
-  constexpr double of_joints = 4;  // a blow of a machine may take longer than one of what lies about
-  if (may_sweep_) {
-    const double burst = (heap_->has_joints() ? of_joints : 1) * settings.contact_burst(heap_->is_tree());
-    iterations_left_ = std::min(iterations_left_, most_iterations(burst, cost));
-    if (!heap_->is_tree() && settings.max_error == 0)
-      settings_.max_depth = std::min(settings_.max_depth, IntegratorSettings::heap_depth(settings.scheme));
+  if (may_sweep_ || is_machine_) {
+    const double burst = settings.contact_burst(heap_->is_tree(), is_machine_);
+    const double left =
+        std::clamp(IntegratorSettings::most_owed * burst - problem.owed_work, 0.0, settings.part * burst);
+    iterations_left_ = std::min(iterations_left_, most_iterations(left, cost));
   }
+  if (may_sweep_ && !heap_->is_tree() && settings.max_error == 0)
+    settings_.max_depth = std::min(settings_.max_depth, IntegratorSettings::heap_depth(settings.scheme));
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
   resort_left_ = IntegratorSettings::last_resort_iterations;
-  is_cut_short_ = solves_part_ = is_instant_ = has_corrected_ = false;
+  is_cut_short_ = is_over_ = solves_part_ = is_instant_ = has_corrected_ = false;
   look_at(problem);
   std::exchange(is_taken_back_, false) ? begin_like_the_latest() : note_beginning();
   has_advanced_ = true;
@@ -180,6 +181,7 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
     report.cut_short = true;
     report.gap = problem.worst_gap(problem.position.data());
   }
+  if (settings.max_error == 0 && (may_sweep_ || is_machine_)) problem.owed_work += report.iterations * cost;
   newton_.add_times_to(nullptr);
   return report;
 }
@@ -245,7 +247,7 @@ void Integrator::find_holds(Problem& problem, const Vec3* x) {
 }
 
 void Integrator::advance_part(Problem& problem, const Part& part, std::size_t first, AdvanceReport& report) {
-  if (report.is_approximate) return;
+  if (is_over_) return;
   for (std::size_t i = first; i < attempts.size(); ++i) {
     const Attempt& attempt = attempts[i];
     if (may_sweep_ && attempt.compliance > exact_rows) break;  // sweeps do better
@@ -259,9 +261,12 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
     }
     if (attempt.scheme == Scheme::mid_point) ++report.fallbacks;
   }
-  if (may_sweep_) return sweep(problem, {.from = part.from, .h = (1 - part.from) * step_length_}, report);
+  const double rest = (1 - part.from) * step_length_;
+  is_over_ = may_sweep_ || (is_machine_ && is_cut_short_);
+  // Sweeps would close the gaps of a conflict at once.
+  if (may_sweep_ || (is_over_ && !keeps_offsets_)) return sweep(problem, {.from = part.from, .h = rest}, report);
   report.converged = false;
-  coast(problem, part.h, report);
+  coast(problem, is_over_ ? rest : part.h, report);
 }
 
 namespace {
@@ -281,15 +286,16 @@ void accept_overlaps(Problem& problem) {
 }  // namespace
 
 // The cost of a factor depends on the structure alone, so that a restored problem takes the same way.
-bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSettings& settings, double& cost) {
+Integrator::Contacts Integrator::kind_of_contacts(Problem& problem, const IntegratorSettings& settings, double& cost) {
   const double budget = settings.contact_budget;
-  if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity()) return false;
+  if (problem.items_of<ContactConstraint>().empty() || budget == std::numeric_limits<double>::infinity())
+    return Contacts::exact;
   if (!heap_) heap_ = std::make_unique<Heap>();
   if (!std::exchange(is_heap_known_, true)) {
     is_heap_ = heap_->find_bodies(problem);
     heap_cost_.reset();
   }
-  if (!is_heap_) return false;
+  if (!is_heap_) return Contacts::exact;
   cost = heap_->least_cost_of_factor();
   if (!(fewest * cost > budget)) {
     if (!heap_cost_) heap_cost_ = heap_->cost_of_factor();
@@ -297,13 +303,14 @@ bool Integrator::may_be_left_to_sweeps(Problem& problem, const IntegratorSetting
   }
   // Joints within a part of the budget are not left to sweeps. These lost a load that beads of a 4000th of its mass held.
   const double of_machine = heap_->has_light_joints() ? 1 : 1.0 / 8;
-  return !heap_->has_joints() || fewest * cost > of_machine * budget;
+  if (!heap_->has_joints() || fewest * cost > of_machine * budget) return Contacts::heap;
+  return heap_->has_light_joints() ? Contacts::exact : Contacts::machine;
 }
 
 // Whether so many iterations take more than its share of the budget.
 bool Integrator::is_beyond(Problem& problem, const IntegratorSettings& settings, double iterations) {
   double cost = 0;
-  return may_be_left_to_sweeps(problem, settings, cost) && settings.is_beyond_share(iterations * cost);
+  return kind_of_contacts(problem, settings, cost) == Contacts::heap && settings.is_beyond_share(iterations * cost);
 }
 
 bool Integrator::is_projected_as_heap(Problem& problem, const IntegratorSettings& settings) {
@@ -328,7 +335,8 @@ std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorS
 // Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
 // so that this one is not tried.
 bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
-  may_sweep_ = may_be_left_to_sweeps(problem, settings_, cost);
+  const Contacts kind = kind_of_contacts(problem, settings_, cost);
+  may_sweep_ = kind == Contacts::heap, is_machine_ = kind == Contacts::machine && settings_.max_error == 0;
   if (!may_sweep_) {
     // A joint that is added to what lies in a heap may prevent that they are closed.
     if (settings_.contact_budget < std::numeric_limits<double>::infinity()) accept_overlaps(problem);
@@ -339,12 +347,17 @@ bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
   const auto is_open = [&] { return problem.worst_gap(problem.position.data(), 0, true) > strained_gap; };
   const bool is_large = settings_.is_beyond_share(fewest * cost);
   const bool waits = swept > 0 && !is_due(swept);
-  if (!is_large && !waits) accept_overlaps(problem);  // sweeps push them apart
-  const bool is_beyond =
-      is_large || waits || ((swept > 0 || of_closing * cost > settings_.contact_burst(true)) && is_open());
   if (is_large) is_due_ = true;
-  if (is_beyond) ++swept;
-  return is_beyond;
+  if (is_large || waits) return ++swept > 0;
+  std::span<ContactConstraint> contacts = problem.items_of<ContactConstraint>();
+  std::vector<ContactConstraint> before;
+  if (swept > 0 || of_closing * cost > settings_.contact_burst(true)) before.assign(contacts.begin(), contacts.end());
+  accept_overlaps(problem);
+  if (before.empty() || !is_open()) return false;
+  // It is tried as soon as nothing is open. Until then sweeps push also those overlaps apart.
+  std::copy(before.begin(), before.end(), contacts.begin());
+  swept = std::max<std::uint64_t>(swept, 1);
+  return true;
 }
 
 void Integrator::fit_contacts(Problem& problem, double share) {

@@ -110,7 +110,13 @@ class Integrator {
   void make_room(const Problem&);
   void make_ready(Problem&);
   void analyze(Problem&, const KnownOrder& order = {});
-  bool may_be_left_to_sweeps(Problem&, const IntegratorSettings&, double& cost);
+  /// Who solves the contacts of a problem.
+  enum class Contacts : std::uint8_t {
+    exact,    ///< its equations
+    machine,  ///< these, but for steps in which they take more than a blow may; then sweeps
+    heap,     ///< these within the budget; else sweeps
+  };
+  Contacts kind_of_contacts(Problem&, const IntegratorSettings&, double& cost);
   bool is_beyond(Problem&, const IntegratorSettings&, double iterations);
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
@@ -223,6 +229,7 @@ class Integrator {
   Tetrahedra tetrahedra_;                    // see mirrors_a_solid
   bool knows_tetrahedra_ = false;            // since the latest change of structure
   bool may_sweep_ = false;                   // in this step, what its equations do not solve within the budget
+  bool is_machine_ = false;                  // in this step: see Contacts
   std::optional<double> heap_cost_;          // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed
   std::vector<std::uint32_t> center_;        // of the latest
@@ -247,6 +254,7 @@ class Integrator {
   int iterations_left_ = std::numeric_limits<int>::max();
   int resort_left_ = 0;  ///< iterations of the last resort beyond a budget
   bool is_cut_short_ = false;
+  bool is_over_ = false;        ///< the rest of the step is taken, too
   bool makes_energy_ = false;   ///< the latest solution, and was refused for that
   bool solves_part_ = false;    ///< of the step
   bool is_instant_ = false;     ///< see is_instant

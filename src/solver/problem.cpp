@@ -39,7 +39,7 @@ void Problem::clear() {
   gravity = origin = {};
   places_.clear();
   has_new_rows = false;
-  standing_gap = 0, standing_steps = unsolved_steps = 0;
+  standing_gap = 0, standing_steps = unsolved_steps = 0, owed_work = 0;
   used_ = 0;
 }
 

@@ -206,6 +206,7 @@ struct Problem {
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
   std::uint64_t standing_steps = 0;  ///< since then
   std::uint64_t unsolved_steps = 0;  ///< the latest ones in a row of which no part was solved
+  double owed_work = 0;              ///< multiplications beyond the shares of the last steps: see IntegratorSettings
 
   std::size_t size() const { return position.size(); }
 

@@ -64,11 +64,14 @@ struct IntegratorSettings {
   double contact_share = 1;  ///< of this problem
   bool is_beyond_share(double multiplications) const { return multiplications > contact_share * contact_budget; }
   double part = 1;  ///< of a whole step: sweeps take so many of their sub-steps
-  /// Multiplications for a single step, as blows need more than what follows: four budgets, or eight for what sweeps would let
-  /// go. Few problems need them at the same time, so that each gets more than its share.
-  double contact_burst(bool is_tree) const {
-    return (is_tree ? 8 : 4) * part * std::sqrt(contact_share) * contact_budget;
+  /// Multiplications for a single step, as blows need more than what follows: four budgets, or eight for what sweeps would let go,
+  /// twice as many for machines. Few problems need them at the same time, so that each gets more than its share.
+  double contact_burst(bool is_tree, bool is_machine = false) const {
+    return (is_machine ? 2 : 1) * (is_tree ? 8 : 4) * std::sqrt(contact_share) * contact_budget;
   }
+  /// Steps may owe so many bursts beyond their shares. Each pays back the share that it has by itself.
+  static constexpr double most_owed = 4;
+  double contact_allowance() const { return part * contact_share * contact_budget; }
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
   /// When all solves of a step have to end, but the last resort's.

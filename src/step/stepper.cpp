@@ -196,7 +196,7 @@ bool Stepper::meets_on_its_way(island::Island& island, double h, bool is_part) {
   exchange();
   const bool meets = contacts_.find_on_ways(model, outlines_, island.bodies(), is_part);
   exchange();
-  if (meets) island.drop_try();
+  if (meets) island.try_again(model);
   return meets;
 }
 

@@ -19,11 +19,24 @@ TEST(Articulates, that_join_keep_the_slot_of_the_larger_one) {
   const auto small = m.chain(2), large = m.chain(5, {0, 5, 0});
   const std::uint32_t kept = m.model.bodies[large[0]].articulate;
   m.model.articulates[m.model.bodies[small[0]].articulate].velocity_dirty = 1;
+  m.model.articulates[m.model.bodies[small[0]].articulate].owed_work = 2, m.model.articulates[kept].owed_work = 3;
   m.hinge(m.particle(small[1], 1), m.particle(large[0], 0));
   for (const std::uint32_t body : small) EXPECT_EQ(m.model.bodies[body].articulate, kept);
   EXPECT_EQ(m.model.articulates[kept].count, 7u);
   EXPECT_TRUE(m.model.articulates[kept].velocity_dirty) << "what was to be projected still is";
+  EXPECT_EQ(m.model.articulates[kept].owed_work, 5) << "both have taken it";
   EXPECT_EQ(ingredient::validate(m.model), sound);
+}
+
+TEST(Articulates, are_tried_again_after_an_edit_and_not_where_motion_has_changed_a_contact) {
+  SmallModel m;
+  const std::uint32_t body = m.chain(1)[0];
+  Articulate& articulate = m.model.articulates[m.model.bodies[body].articulate];
+  articulate.unsolved_steps = 3;
+  m.model.mark_rows(body, false);
+  EXPECT_EQ(articulate.unsolved_steps, 3u);
+  m.model.mark_rows(body, true);
+  EXPECT_EQ(articulate.unsolved_steps, 0u);
 }
 
 TEST(Articulates, that_are_cut_give_the_smaller_piece_a_new_one) {

@@ -240,5 +240,30 @@ TEST(Integrator, steps_alike_after_structures_that_were_never_solved) {
   EXPECT_EQ(end_of({true, false}), fresh);
 }
 
+/// A step that took four budgets was followed by the next one, and frames of a whole second took that long.
+TEST(Integrator, of_contacts_owes_what_it_has_taken_and_sweeps_where_nothing_is_left) {
+  Problem problem;
+  for (int i = 0; i < 3; ++i) {
+    ContactConstraint floor;
+    floor.nodes[0] = add_point(problem, {1.0 * i, 0, 0}, 1, {0, -1, 0});
+    floor.count = 1, floor.weights[0][0] = floor.weights[1][0] = 1;
+    floor.set_constant(0, {1.0 * i, 0, 0}), floor.set_constant(1, {1.0 * i, 0, 0});
+    floor.set_directions({Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}});
+    floor.friction = 0.5, floor.normal_compliance = 1e-8, floor.compliance = 1e-6;
+    add(problem, floor);
+  }
+  Integrator integrator;
+  integrator.compile(problem);
+  IntegratorSettings settings = IntegratorSettings::robust();
+  settings.contact_budget = 1e7;
+  const AdvanceReport solved = integrator.advance(problem, h, settings);
+  EXPECT_FALSE(solved.is_approximate);
+  EXPECT_GT(problem.owed_work, 0);
+  problem.owed_work = 1e9;
+  const AdvanceReport swept = integrator.advance(problem, h, settings);
+  EXPECT_TRUE(swept.is_approximate);
+  EXPECT_EQ(swept.iterations, 0);
+}
+
 }  // namespace
 }  // namespace iota::solver
