@@ -7,8 +7,10 @@
 #include "solver/row_masses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace iota::solver {
 
@@ -171,11 +173,151 @@ bool Integrator::change_kinetic_energy(Problem& problem, double excess, const st
   return true;
 }
 
-// The rigid motion of a problem that nothing outside holds, or a single point at rest; otherwise nothing.
+namespace {
+
+/// A rigid motion, or what a row notices of one.
+struct RigidMode {
+  Vec3 velocity, turning;  ///< of the center; the second in units of a length
+
+  double along(const RigidMode& other) const { return dot(velocity, other.velocity) + dot(turning, other.turning); }
+  void add(double factor, const RigidMode& other) {
+    velocity += factor * other.velocity, turning += factor * other.turning;
+  }
+};
+
+/// Some rigid motions, orthonormal.
+struct RigidModes {
+  static constexpr double independent = 1e-12;  // of the square of a size
+  std::array<RigidMode, 6> modes;
+  std::size_t count = 0;
+
+  /// The part of a mode that they do not have.
+  RigidMode beside(RigidMode mode) const {
+    for (int pass = 0; pass < 2; ++pass)
+      for (std::size_t k = 0; k < count; ++k) mode.add(-mode.along(modes[k]), modes[k]);
+    return mode;
+  }
+  /// `size`: of the mode, squared, with what cancels in it.
+  void add(const RigidMode& mode, double size) {
+    if (count == modes.size()) return;
+    RigidMode own = beside(mode);
+    const double square = own.along(own);
+    if (!(square > independent * size)) return;
+    const double scale = 1 / std::sqrt(square);
+    modes[count++] = {scale * own.velocity, scale * own.turning};
+  }
+};
+
+/// What the rows of the world, and those on points that are nailed, notice of the rigid motion of the other points.
+RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> piece_of, const Vec3& center,
+                         double length) {
+  RigidModes noticed;
+  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
+    if (noticed.count == noticed.modes.size()) return;
+    const C& c = pool.items[i];
+    const auto nodes = pool.nodes_of(c);
+    const auto moves = [&](std::uint32_t node) { return piece_of[node] == 0; };
+    if (std::none_of(nodes.begin(), nodes.end(), moves)) return;
+    if (c.is_internal() && !holds_direction(c) && std::all_of(nodes.begin(), nodes.end(), moves)) return;
+    const Gradients<C> gradients(c, problem.position.data(), 1);
+    RigidMode modes[C::rows];
+    double sizes[C::rows] = {};
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (!moves(nodes[k])) continue;
+      Vec3 rows[C::rows];
+      gradients.of_node(static_cast<int>(k), rows);
+      const Vec3 arm = (1 / length) * (problem.position[nodes[k]] - center);
+      for (std::size_t r = 0; r < C::rows; ++r) {
+        modes[r].velocity += rows[r], modes[r].turning += cross(arm, rows[r]);
+        sizes[r] += dot(rows[r], rows[r]) * (1 + dot(arm, arm));
+      }
+    }
+    for (std::size_t r = 0; r < C::rows; ++r) noticed.add(modes[r], sizes[r]);
+  });
+  return noticed;
+}
+
+/// By more than a point at rest.
+bool is_held_otherwise(const Holds& holds) { return !holds.are_none() && !holds.pivot(); }
+
+/// Of each node, whether a nail holds it. Valid until the next call.
+std::span<const std::uint32_t> nailed_nodes(const Problem& problem) {
+  thread_local std::vector<std::uint32_t> are_nailed;
+  are_nailed.assign(problem.size(), 0);
+  for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
+    if (c.is_nail()) are_nailed[c.nodes[0]] = 1;
+  return are_nailed;
+}
+
+/// The rigid motion of the nodes that no nail holds, as if they were free.
+RigidMotion motion_of_others(const Problem& problem, std::span<const std::uint32_t> are_nailed) {
+  RigidMotion motion;
+  Vec3 momentum;
+  const auto for_each = [&](auto visit) {
+    for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
+      if (are_nailed[a] == 0 && are_nailed[b] == 0) visit(mass, a, b);
+    });
+  };
+  for_each([&](double mass, std::uint32_t a, std::uint32_t b) {
+    motion.mass += mass, motion.center += mass * problem.position[a], momentum += mass * problem.velocity[b];
+  });
+  if (!(motion.mass > 0)) return {};
+  motion.center *= 1 / motion.mass, motion.velocity = (1 / motion.mass) * momentum;
+  for_each([&](double mass, std::uint32_t a, std::uint32_t b) {
+    const Vec3 ra = problem.position[a] - motion.center, rb = problem.position[b] - motion.center;
+    motion.angular_momentum += mass * cross(ra, problem.velocity[b]);
+    motion.inertia += coupled_inertia(mass, ra, rb);
+  });
+  return motion;
+}
+
+/// The part of the motion that neither rows within a problem nor those by which the world holds it notice, as the turning of what is
+/// on an axle: nothing within changes its momentum. Nothing if there is none.
+std::optional<RigidMotion> free_rigid_motion(const Problem& problem) {
+  if (std::ranges::any_of(problem.items_of<AffineConstraint>(),
+                          [](const AffineConstraint& c) { return c.is_nail() && c.is_moving(); }))
+    return {};
+  const std::span<const std::uint32_t> piece_of = nailed_nodes(problem);
+  const RigidMotion all = motion_of_others(problem, piece_of);
+  if (!(all.mass > 0)) return {};
+  const double extent = std::sqrt(0.5 * all.inertia.trace() / all.mass), length = extent > 0 ? extent : 1;
+  RigidModes noticed = noticed_modes(problem, piece_of, all.center, length);
+  if (noticed.count == noticed.modes.size()) return {};
+  RigidMotion motion = all;
+  motion.velocity = motion.turning = {};
+  RigidModes free;  // orthonormal in the norm of the masses
+  const RigidMode units[]{{{1, 0, 0}, {}}, {{0, 1, 0}, {}}, {{0, 0, 1}, {}},
+                          {{}, {1, 0, 0}}, {{}, {0, 1, 0}}, {{}, {0, 0, 1}}};
+  while (noticed.count < noticed.modes.size()) {
+    RigidMode best;
+    for (const RigidMode& unit : units)
+      if (const RigidMode own = noticed.beside(unit); own.along(own) > best.along(best)) best = own;
+    if (!(best.along(best) > 0)) return {};  // no numbers
+    noticed.add(best, 0);
+    RigidMode mode{best.velocity, (1 / length) * best.turning};
+    const auto product = [&](const RigidMode& a, const RigidMode& b) {
+      return all.mass * dot(a.velocity, b.velocity) + dot(a.turning, all.inertia * b.turning);
+    };
+    const double whole = product(mode, mode);
+    for (std::size_t k = 0; k < free.count; ++k) mode.add(-product(mode, free.modes[k]), free.modes[k]);
+    const double square = product(mode, mode);
+    if (!(square > RigidModes::independent * whole)) continue;
+    mode.velocity *= 1 / std::sqrt(square), mode.turning *= 1 / std::sqrt(square);
+    const double speed = all.mass * dot(mode.velocity, all.velocity) + dot(mode.turning, all.angular_momentum);
+    motion.velocity += speed * mode.velocity, motion.turning += speed * mode.turning;
+    free.modes[free.count++] = mode;
+  }
+  motion.angular_momentum = motion.inertia * motion.turning;
+  return motion;
+}
+
+}  // namespace
+
+// The rigid motion whose momenta nothing within the problem changes; nothing if the world holds it altogether.
 std::optional<RigidMotion> Integrator::rigid_motion(const Problem& problem) const {
   if (holds_.are_none()) return rigid_motion_of(problem);
   if (const auto pivot = holds_.pivot()) return rigid_motion_about(problem, *pivot);
-  return {};
+  return free_rigid_motion(problem);
 }
 
 namespace {
@@ -192,14 +334,20 @@ void scale_beside(const RigidMotion& rigid, double factor, Problem& problem, std
 bool Integrator::scale_motion(Problem& problem, double excess, const std::optional<RigidMotion>& found) {
   RigidMotion rigid;
   double rest = energy_.kinetic;
+  constexpr double most_given = 1;  // of the kinetic energy of the motion
   if (found) {
     rigid = *found;
     rest -= rigid.kinetic_energy();
+    // What swings on an axle has hardly another motion that the energy could come from or go to.
+    if (is_held_otherwise(holds_) && !(std::abs(excess) <= most_given * rest)) rigid = {}, rest = energy_.kinetic;
   }
-  constexpr double most_given = 1;  // of the kinetic energy of the motion
   if (!(rest > 0 && -excess <= most_given * rest)) return false;
   const double factor = std::sqrt(std::max(0.0, 1 - excess / rest));
-  for (std::size_t i = 0; i < problem.size(); ++i) scale_beside(rigid, factor, problem, i);
+  const bool has_nails = found && is_held_otherwise(holds_);
+  const std::span<const std::uint32_t> are_nailed =
+      has_nails ? nailed_nodes(problem) : std::span<const std::uint32_t>{};
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    if (!has_nails || are_nailed[i] == 0) scale_beside(rigid, factor, problem, i);
   return excess < rest;
 }
 
@@ -226,7 +374,8 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
     return true;
   }
   const std::optional<RigidMotion> rigid = rigid_motion(problem);
-  if (rigid && may_turn(problem) && !(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
+  if (rigid && !is_held_otherwise(holds_) && may_turn(problem) &&
+      !(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
     turn_body(problem, stage, missing, *rigid, FreeMotion::all, report);
     return true;
   }

@@ -38,18 +38,16 @@ struct AngleConstraint : ArmConstraint<AngleConstraint, 1, 3> {
     const First f(e);
     for (int a = 0; a < 3; ++a) out[0][a] = (1 / f.size2()) * (f.c * f.ds[a] - f.s * f.dc[a]);
   }
-  /// The mean of the gradients at both ends of a step, times a factor that gives the exact change of the angle: for a
-  /// fixed axis the mean gives its sine. If an angle changes by less than `least` while its axis turns fast, part of
-  /// the factor is left out, as it is a ratio of small differences.
+  /// For the mid-point rule: the gradient at the mean arms, of which the torques on both bodies are equal and opposite, times a
+  /// factor that gives the exact change of the angle. If an angle changes by less than `least` while its axis turns fast,
+  /// part of the factor is left out, as it is a ratio of small differences.
   void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
     constexpr double least = 1e-3;  // rad
-    Vec3 at_start[max_nodes];
-    gradients(x0, start, at_start), gradients(x1, end, out);
+    Vec3 d[1][3];
+    calc_gradient(mean_of(arms(x0, start), arms(x1, end)).data(), d);
+    to_nodes(d, out);
     double given = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      out[i] = 0.5 * (at_start[i] + out[i]);
-      given += dot(out[i], x1[nodes[i]] - x0[nodes[i]]);
-    }
+    for (std::uint32_t i = 0; i < count; ++i) given += dot(out[i], x1[nodes[i]] - x0[nodes[i]]);
     const double change = angle(x1, end) - angle(x0, start);
     const double squared = given * given, floor = least * least * least * least;
     const double factor = (change * given * squared + floor) / (squared * squared + floor);

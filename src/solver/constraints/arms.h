@@ -91,12 +91,7 @@ struct ArmConstraint : Arms<Count> {
   void gradients(const Vec3* x, double fraction, Vec3* out) const {
     Vec3 d[Rows][Count];
     derived().calc_gradient(this->arms(x, fraction).data(), d);
-    for (std::uint32_t i = 0; i < this->count; ++i)
-      for (int r = 0; r < Rows; ++r) {
-        Vec3 sum;
-        for (int a = 0; a < Count; ++a) sum += this->weights[a][i] * d[r][a];
-        out[i * Rows + r] = sum;
-      }
+    to_nodes(d, out);
   }
   /// Blocks of sum_r lambda_r Hess(g_r) for the pairs of nodes (i, j), i <= j, row by row.
   void curvature(const Vec3* x, double fraction, const double* lambda, bool clamp, Mat3* blocks) const {
@@ -110,6 +105,23 @@ struct ArmConstraint : Arms<Count> {
             const double w = this->weights[a][i] * this->weights[b][j];
             if (w != 0) *blocks += w * (a <= b ? h[a][b] : h[b][a].transposed());
           }
+      }
+  }
+
+ protected:
+  using AllArms = std::array<Vec3, Count>;
+  static AllArms mean_of(const AllArms& start, const AllArms& end) {
+    AllArms mean;
+    for (std::size_t a = 0; a < Count; ++a) mean[a] = 0.5 * (start[a] + end[a]);
+    return mean;
+  }
+  /// From gradients by the arms.
+  void to_nodes(const Vec3 (*d)[Count], Vec3* out) const {
+    for (std::uint32_t i = 0; i < this->count; ++i)
+      for (int r = 0; r < Rows; ++r) {
+        Vec3 sum;
+        for (int a = 0; a < Count; ++a) sum += this->weights[a][i] * d[r][a];
+        out[i * Rows + r] = sum;
       }
   }
 

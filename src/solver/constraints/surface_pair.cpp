@@ -147,23 +147,67 @@ void SurfacePairConstraint::calc_value(const Vec3* e, double /*fraction*/, doubl
 }
 
 // With t_j = a_j.d and R_jk = a_j.b_k the gap's derivatives are n_j and grad B_k (q - t)_j / |R grad B|.
-void SurfacePairConstraint::calc_gradient(const Vec3* e, Vec3 (*d)[7]) const {
+SurfacePairConstraint::ByRelative SurfacePairConstraint::by_relative(const Vec3* e, double* gap) const {
   const Nearest c = find(e, nearest);
-  std::fill(d[0], d[0] + 7, Vec3{});
-  if (is_nowhere()) return;
+  if (gap) *gap = c.gap;
   const Relative relative(e);
   const Vec3 u = c.q - relative.t;
   const double size = norm(relative.turn * c.gradient);
   const double n[3] = {c.normal.x, c.normal.y, c.normal.z}, us[3] = {u.x, u.y, u.z};
   const double gradient[3] = {c.gradient.x / size, c.gradient.y / size, c.gradient.z / size};
+  ByRelative by{};
   for (int j = 0; j < 3; ++j) {
-    d[0][0] += n[j] * e[1 + j];
-    d[0][1 + j] += n[j] * e[0];
+    by.by_place[j] = n[j];
+    for (int k = 0; k < 3; ++k) by.by_turn[j][k] = gradient[k] * us[j];
+  }
+  return by;
+}
+
+void SurfacePairConstraint::by_arms(const Vec3* e, const ByRelative& by, Vec3* d) {
+  std::fill(d, d + 7, Vec3{});
+  for (int j = 0; j < 3; ++j) {
+    d[0] += by.by_place[j] * e[1 + j];
+    d[1 + j] += by.by_place[j] * e[0];
     for (int k = 0; k < 3; ++k) {
-      d[0][1 + j] += gradient[k] * us[j] * e[4 + k];
-      d[0][4 + k] += gradient[k] * us[j] * e[1 + j];
+      d[1 + j] += by.by_turn[j][k] * e[4 + k];
+      d[4 + k] += by.by_turn[j][k] * e[1 + j];
     }
   }
+}
+
+void SurfacePairConstraint::calc_gradient(const Vec3* e, Vec3 (*d)[7]) const {
+  by_arms(e, by_relative(e, nullptr), d[0]);
+  if (is_nowhere()) std::fill(d[0], d[0] + 7, Vec3{});
+}
+
+void SurfacePairConstraint::mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
+  constexpr double least = 1e-6;  // of the size, and as a turn
+  const auto e0 = arms(x0, start), e1 = arms(x1, end);
+  double g0 = 0, g1 = 0;
+  const ByRelative by0 = by_relative(e0.data(), &g0), by1 = by_relative(e1.data(), &g1);
+  const Relative from(e0.data()), to(e1.data());
+  const Vec3 moved = to.t - from.t;
+  const double way[3] = {moved.x, moved.y, moved.z}, weight = 1 / (reference * reference);  // of places against turns
+  ByRelative mean{};
+  double given = 0, squared = least * least;
+  for (int j = 0; j < 3; ++j) {
+    mean.by_place[j] = 0.5 * (by0.by_place[j] + by1.by_place[j]);
+    given += mean.by_place[j] * way[j], squared += weight * way[j] * way[j];
+    for (int k = 0; k < 3; ++k) {
+      const double turned = to.turn.m[j][k] - from.turn.m[j][k];
+      mean.by_turn[j][k] = 0.5 * (by0.by_turn[j][k] + by1.by_turn[j][k]);
+      given += mean.by_turn[j][k] * turned, squared += turned * turned;
+    }
+  }
+  const double missing = (g1 - g0 - given) / squared;
+  for (int j = 0; j < 3; ++j) {
+    mean.by_place[j] += missing * weight * way[j];
+    for (int k = 0; k < 3; ++k) mean.by_turn[j][k] += missing * (to.turn.m[j][k] - from.turn.m[j][k]);
+  }
+  Vec3 d[1][7];
+  by_arms(mean_of(e0, e1).data(), mean, d[0]);
+  if (is_nowhere()) std::fill(d[0], d[0] + 7, Vec3{});
+  to_nodes(d, out);
 }
 
 // By a central difference of the gradient: its error is a millionth, as is that of round-off.

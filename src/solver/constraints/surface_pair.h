@@ -30,6 +30,8 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
 
   void calc_value(const Vec3* e, double fraction, double* g) const;
   void calc_gradient(const Vec3* e, Vec3 (*d)[7]) const;
+  /// As that of PlaceConstraint, by the place and the turn of B in A's frame.
+  void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const;
   /// The second derivative of g along the velocities v of the nodes at x, m/s^2: accelerations need it.
   double bend(const Vec3* x, const Vec3* v) const;
 
@@ -39,7 +41,13 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
     double gap;            // between the surfaces, without skins
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
+  /// Of the gap, by the place t and the turn R of B in A's frame; its pieces are sums over them.
+  struct ByRelative {
+    double by_place[3], by_turn[3][3];
+  };
   Nearest find(const Vec3* e, const Vec3& near) const;
+  ByRelative by_relative(const Vec3* e, double* gap) const;
+  static void by_arms(const Vec3* e, const ByRelative& by, Vec3* d);
   bool is_nowhere() const { return !surface_a->failure().empty() || !surface_b->failure().empty(); }
 };
 

@@ -4,6 +4,7 @@
 #include "solver/constraints/constraint_list.h"
 
 #include "shape/shape.h"
+#include "solver/holds.h"
 
 #include <gtest/gtest.h>
 
@@ -369,6 +370,69 @@ double change_by_mean_gradient(const C& c, const std::vector<Vec3>& x0, const st
     change += dot(mean, x1[c.nodes[i]] - x0[c.nodes[i]]);
   }
   return change;
+}
+
+/// Contacts have a friction that follows what slides, and a Coupling sums up others.
+template <class C>
+constexpr bool keeps_angular_momentum = !is_of_contact<C> && !std::is_same_v<C, CouplingConstraint>;
+
+TEST(Constraints, between_bodies_keep_angular_momentum_over_a_step) {
+  Random random;
+  for (int round = 0; round < 100; ++round)
+    std::apply(
+        [&]<class... C>(Type<C>...) {
+          const auto one = [&]<class T>(T type) {
+            if constexpr (keeps_angular_momentum<T>) {
+              const auto [c, x0] = example(random, type);
+              if (!c.is_internal() || holds_direction(c)) return;
+              auto x1 = x0;
+              for (Vec3& p : x1) p += random.vec(0.05);
+              const Gradients<T> at_end(c, x1.data(), 0);
+              const MeanGradients<T> means(c, x0.data(), 0, at_end);
+              Vec3 sums[T::rows];
+              double size = 0;
+              for (int i = 0; i < c.node_count(); ++i) {
+                Vec3 end[T::rows], mean[T::rows];
+                at_end.of_node(i, end), means.of_node(i, end, mean);
+                const Vec3 place = 0.5 * (x0[c.nodes[i]] + x1[c.nodes[i]]);
+                for (int r = 0; r < T::rows; ++r) sums[r] += cross(place, mean[r]), size += norm(mean[r]);
+              }
+              for (const Vec3& sum : sums) ASSERT_LT(norm(sum), 1e-12 * (1 + size)) << typeid(T).name();
+            }
+          };
+          (one(C{}), ...);
+        },
+        ConstraintPools<Type>{});
+}
+
+/// Example{c, x} after its two bodies have turned and moved a little.
+template <class C>
+void expect_exact_change(Random& random) {
+  auto [c, x0] = example(random, C{});
+  auto x1 = x0;
+  for (std::uint32_t body = 0; body < 2; ++body) {
+    const Vec3 axis = random.vec(), shift = random.vec(0.02);
+    const Quaternion turn = axis_angle((1 / norm(axis)) * axis, random.number(-0.05, 0.05));
+    for (std::uint32_t i = 0; i < 4; ++i)
+      x1[4 * body + i] = x0[4 * body] + shift + rotate(turn, x0[4 * body + i] - x0[4 * body]);
+  }
+  double before[C::rows], after[C::rows], change[C::rows] = {};
+  c.value(x0.data(), 0, before), c.value(x1.data(), 0, after);
+  const MeanGradients<C> means(c, x0.data(), 0, {c, x1.data(), 0});
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 mean[C::rows];
+    means.of_node(i, nullptr, mean);
+    for (int r = 0; r < C::rows; ++r) change[r] += dot(mean[r], x1[c.nodes[i]] - x0[c.nodes[i]]);
+  }
+  for (int r = 0; r < C::rows; ++r) ASSERT_NEAR(change[r], after[r] - before[r], 1e-9) << typeid(C).name();
+}
+
+TEST(Constraints, on_curves_and_surfaces_change_exactly_by_their_mean_gradients) {
+  Random random;
+  for (int round = 0; round < 100; ++round) {
+    expect_exact_change<CurveConstraint>(random), expect_exact_change<StationConstraint>(random);
+    expect_exact_change<SurfaceConstraint>(random), expect_exact_change<SurfacePairConstraint>(random);
+  }
 }
 
 TEST(Span, changes_exactly_by_its_mean_gradient) {
