@@ -105,7 +105,7 @@ void wake(Editor& e, std::uint32_t constraint) {
   if (rests) constraint_changed(e, constraint);
 }
 
-/// Bodies jump where a new stop, rope, rod or surface asks for it.
+/// Bodies jump where a new stop, rope, rod, path, surface or coupling asks for it.
 void note_jump(model::Model& model, std::uint32_t slot) {
   constexpr double far = 1e-6, far_from_surface = 1e-3;  // relative
   const ingredient::Constraint& c = model.constraints[slot];
@@ -120,7 +120,8 @@ void note_jump(model::Model& model, std::uint32_t slot) {
                                  " m apart: the next step moves them ", is_short ? "together" : "apart"));
   }
   using Form = ingredient::ConstraintKindInfo::Form;
-  if ((form == Form::surface || form == Form::surface_pair) &&
+  // Others hold where they are made.
+  if (form != Form::pin && form != Form::distance &&
       ingredient::calc_violation(model, slot).relative > far_from_surface)
     model.notes.push_back(text(kind, " ", slot, " does not hold yet: the next step moves its bodies until it does"));
   for (const JointCoordinate which : joint_coordinates) {

@@ -234,3 +234,24 @@ def test_a_point_that_is_far_outside_of_its_room_says_that_it_moves_there() -> N
     assert system.step(1 / 60).warnings == []
     system.inside(far, iota.Sphere(1))
     assert any(w.endswith("the next step moves its bodies until it does") for w in system.step(1 / 60).warnings)
+
+
+def test_a_bead_that_is_far_from_its_wire_says_that_it_moves_there() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    far, near = system.body().particle((0, 5, 0)), system.body().particle((1, 0, 0))
+    wire = [(0, 0, 0), (1, 0, 0), (2, 0, 0)]
+    system.on_path(near, wire)
+    assert system.step(1 / 60).warnings == []
+    system.on_path(far, wire)
+    assert any(w.endswith("the next step moves its bodies until it does") for w in system.step(1 / 60).warnings)
+
+
+def test_a_coupling_whose_sum_is_another_one_says_that_it_turns_its_bodies() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    boxes = [system.body(shape=iota.Box((1, 1, 1)), position=(0, 2 * k, 0)) for k in range(3)]
+    hinges = [system.revolute(boxes[k], boxes[k + 1], at=(0, 2 * k + 1, 0), axis=(0, 0, 1)) for k in range(2)]
+    gear = system.couple([(hinges[0].angle, 1), (hinges[1].angle, 1)])
+    assert system.step(1 / 60).warnings == []
+    gear.destroy()
+    system.couple([(hinges[0].angle, 1), (hinges[1].angle, 1)], length=-1.0)
+    assert any(w.endswith("the next step moves its bodies until it does") for w in system.step(1 / 60).warnings)
