@@ -45,6 +45,35 @@ TEST(HeldForceError, of_a_field_across_the_velocity_whose_strength_depends_on_th
   EXPECT_LT(told, 20 * off);
 }
 
+/// By the mass of its point, which has none of its own, it was 5000 times too large.
+TEST(HeldForceError, of_bonds_between_attachments_is_that_of_their_bodies) {
+  const auto end = [](double h, bool on_attachments, double& told) {
+    System system({.gravity = {}, .mode = IntegrationMode::accurate});
+    ParticleId ends[2];
+    BodyId first{};
+    for (const int k : {0, 1}) {
+      const double side = k == 0 ? -1 : 1;
+      const BodyId box = system.bodies().create(Box{{0.6, 0.4, 0.2}}, {.mass = 2,
+                                                                       .position = {side, 0, 0},
+                                                                       .velocity = {0, -0.5 * side, 0},
+                                                                       .spin = {0.1, 0.2, 0.3},
+                                                                       .attachments = {{0, 0.3 * side, 0}}});
+      ends[k] = on_attachments ? system.bodies().attachments(box)[0] : system.bodies().particles(box)[0];
+      if (k == 0) first = box;
+    }
+    const LawId law = system.laws().create("energy = 0.5*k*(r - 1)^2", {"held spring", {{"k", 4}}});
+    (void)system.bonds().create(ends[0], ends[1], SharedLaw{law, {}, false});
+    for (int i = 0; i < std::lround(1 / h); ++i) told += h * system.step(h).error;
+    return system.bodies().center_of_mass(first);
+  };
+  for (const bool on_attachments : {true, false}) {
+    double told = 0, of_fine = 0;
+    const double off = norm(end(1.0 / 60, on_attachments, told) - end(1.0 / 960, on_attachments, of_fine));
+    EXPECT_GT(told, off) << on_attachments;
+    EXPECT_LT(told, 300 * off) << on_attachments;
+  }
+}
+
 TEST(HeldForceError, of_a_fall_with_drag_is_that_of_its_place_although_its_velocity_is_exact) {
   constexpr double drag = 0.05, g = 9.81, h = 1.0 / 60;
   System system({.mode = IntegrationMode::accurate});
