@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import random
@@ -53,6 +54,7 @@ def hung(hold: str, mode: Mode, angle: float) -> tuple[iota.System, iota.Particl
     return system, load, [line]
 
 
+@functools.cache
 def pendulum(rate: float, angle: float, time: float) -> tuple[float, float]:
     """Angle and angular velocity of a pendulum of 2 m that becomes longer at a constant rate."""
     h, y = 1e-4, np.array([angle, 0.0])

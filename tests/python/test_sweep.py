@@ -29,22 +29,33 @@ def test_bad_arguments_are_refused_or_harmless(name: str) -> None:
     for argument in arguments:
         if argument in sweep.HANDLES:
             continue
-        scene = sweep.Scene()
-        count = len(sweep.bad_values(scene, arguments[argument]))
-        for number in range(count):
-            scene = sweep.Scene()
-            function, given = sweep.calls(scene)[name]
-            given[argument] = sweep.bad_values(scene, given[argument])[number]
-            told = f"{name}: {argument} = {given[argument]!r:.80}"
-            before = scene.system.state_hash()
-            error = sweep.refused(function, given)
-            if error is not None:
-                assert len(str(error)) >= 10, f"{told}: {error!r}"
-                assert scene.system.state_hash() == before, f"{told} was refused, but something changed: {error}"
-            try:
-                sweep.check(scene)
-            except AssertionError as failed:
-                raise AssertionError(f"{told}, {'refused' if error else 'accepted'}: {failed}") from failed
+        number, count = 0, 1
+        while number < count:
+            number, count = give_until_accepted(name, argument, number)
+
+
+def give_until_accepted(name: str, argument: str, number: int) -> tuple[int, int]:
+    """Gives a fresh scene the bad values from a number on until one is accepted, as a refused one changes nothing. Returns the number of
+    the next one, and how many there are."""
+    scene, refusals, error = sweep.Scene(), [], None
+    function, good = sweep.calls(scene)[name]
+    values = sweep.bad_values(scene, good[argument])
+    before, told = scene.system.state_hash(), f"{name}: {argument}"
+    while number < len(values):
+        told = f"{name}: {argument} = {values[number]!r:.80}"
+        error = sweep.refused(function, {**good, argument: values[number]})
+        number += 1
+        if error is None:
+            break
+        assert len(str(error)) >= 10, f"{told}: {error!r}"
+        assert scene.system.state_hash() == before, f"{told} was refused, but something changed: {error}"
+        refusals.append(told)
+    try:
+        sweep.check(scene)
+    except AssertionError as failed:
+        how = "refused" if error else "accepted"
+        raise AssertionError(f"{told}, {how}, after the refusals {refusals}: {failed}") from failed
+    return number, len(values)
 
 
 def ends(scene: sweep.Scene) -> dict[str, Any]:

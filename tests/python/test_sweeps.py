@@ -188,7 +188,7 @@ def test_a_sweep_is_drawn_over_the_argument_with_the_most_values(
     script = tmp_path / "s.py"
     script.write_text("def run(k, d, seed):\n    return {'y': k * d + seed, 'kind': 'x', 'z': -k}\n")
     words = ["sweep", str(script), "-o", str(tmp_path / "s.csv"), "--processes", "0", "--plot"]
-    varied = ["--vary", "k=1e0..1e3:log:7", "--vary", "d=1,2", "--vary", "seed=1..20"]
+    varied = ["--vary", "k=1e0..1e3:log:4", "--vary", "d=1,2", "--vary", "seed=1..6"]  # no axis, though it has more
     file = tmp_path / "s.svg"
     assert main([*words, str(file), *varied]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(file)
