@@ -15,7 +15,6 @@ import iota
 from iota import studies
 from iota.studies import appendix_e1, appendix_e2, appendix_e3, fireworks, physics_class
 from iota.studies._story import Story
-from iota.world.actions import PAGE_KEYS
 from iota.world.widgets import Plot
 
 
@@ -153,10 +152,11 @@ def test_rockets_climb_burst_at_their_top_and_stand_in_their_tubes_again() -> No
     for _ in range(2):  # what has been carried back to its tube climbs again
         world._state.actions["finale"].hook.function()
         tops, sparks = np.zeros(len(rockets)), 0
-        for _ in range(round(2.9 / world.dt)):
+        for step in range(round(2.9 / world.dt)):
             world.step()
             tops = np.maximum(tops, [rocket.position.y for rocket in rockets])
-            sparks = max(sparks, sum(body.is_spark for body in system.bodies))
+            if step % round(0.1 / world.dt) == 0:  # to count thousands of bodies takes longer than a step
+                sparks = max(sparks, sum(body.is_spark for body in system.bodies))
         climb = fireworks.CLIMB
         assert ((climb - 1.1) ** 2 / 19.62 < tops - fireworks.TUBE).all()
         assert (tops - fireworks.TUBE < (climb + 1.1) ** 2 / 19.62).all()
@@ -246,11 +246,3 @@ def test_a_story_says_that_it_begins_and_a_hand_on_a_page_stops_it(name: str, be
 def test_stories_and_helpers_are_no_studies() -> None:
     assert {"appendix-e1", "appendix-e2", "appendix-e3", "physics-class", "fireworks"} <= set(studies.names())
     assert not any("story" in name for name in studies.names())
-
-
-@pytest.mark.parametrize("name", studies.names())
-def test_studies_leave_the_page_its_keys(name: str) -> None:
-    """But for l, which changes between looks, where there are none, and r where it does the same."""
-    world = studies.module(name).build()
-    taken = {action.key for action in world._state.actions if action.key in PAGE_KEYS}
-    assert taken <= ({"molecule": {"r"}, "cradle": {"l"}, "cradle-contact": {"l"}, "lab": {"l"}}.get(name) or set())

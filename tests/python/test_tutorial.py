@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from built_studies import built
 
 from iota import studies
 from iota.world.actions import PAGE_KEYS
@@ -84,7 +85,7 @@ def studies_of(page: Path) -> list[str]:
 @pytest.mark.parametrize("page", STUDY_PAGES, ids=lambda page: page.stem)
 def test_the_page_on_a_study_has_its_picture_its_keys_and_things_to_try(page: Path) -> None:
     text = page.read_text()
-    actions = [action for name in studies_of(page) for action in studies.module(name).build()._state.actions]
+    actions = [action for name in studies_of(page) for action in built(name)._state.actions]
     keys = {action.key for action in actions if action.key is not None and len(action.key) == 1}
     assert keys <= set(re.findall(r"`([a-z])`", text)) <= keys | set(PAGE_KEYS)
     assert re.search(r"^(Try|What to try|## What to try)", text, re.M)
