@@ -77,9 +77,10 @@ def test_who_finds_an_exit_shut_takes_the_other_one_and_waits_if_there_is_none()
         world.step()
         assert world.system.time < 90
     assert not east.is_open and len(east.passed) == 0 and len(west.passed) == 20
+    assert 0 < west.passed[0] < 10, "sooner than the time in which nobody leaves below"
     world.controls.act("shut", west.hinge.a)
     world.controls.act("anew")
-    for _ in range(60 * 20):
+    for _ in range(60 * 12):
         world.step()
     assert made.gone == 0 and len(west.passed) == 0
     world.controls.act("shut", east.hinge.a)

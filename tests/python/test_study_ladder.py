@@ -43,6 +43,14 @@ class Watched:
                 due = 0.0
                 self.check()
 
+    def settle(self, seconds: float, angle: float) -> None:
+        """Runs until all pairs are within an angle, degrees, for a second: while a ripple runs, one of them is not. At most so long."""
+        end, still = self.system.time + seconds, 0.0
+        while still < 1 and self.system.time < end:
+            self.run(0.1)
+            still = still + 0.1 if max(self.angles) < math.radians(angle) else 0.0
+        assert still >= 1, "a ripple has come to rest half way"
+
     def check(self) -> None:
         pairs = self.ladder.pairs
         locked = [pair for pair in pairs if pair.locked]
@@ -145,9 +153,8 @@ def test_two_ripples_run_and_leave_it_as_it_was() -> None:
         runs = sum(now and not before for before, now in zip([False, *open_pairs], open_pairs, strict=False))
         rippling = max(rippling, runs)
     assert rippling >= 2
-    watched.run(20)
+    watched.settle(20, 45)
     assert [pair.hinge for pair in watched.ladder.pairs] == [0, 3, 0, 3, 0, 3, 0, 3]
-    assert max(watched.angles) < math.radians(45)
 
 
 def test_a_second_ripple_that_catches_up_with_the_first_ends_it() -> None:
@@ -183,9 +190,8 @@ def test_it_is_never_stuck_nor_torn(blocks: int) -> None:
             grip.move(ladder.TOP + random.uniform((-0.3, -0.5, -0.1), (0.3, 0, 0.1)))
             watched.run(0.1)
         grip.destroy()
-    watched.run(25)
+    watched.settle(25, 15)
     assert watched.unconverged < 1e-3 * watched.system.step_count  # a hand can pull too hard for a step
-    assert max(watched.angles) < math.radians(15)  # no ripple has come to rest half way
     assert all(pair.hinge >> 1 == n % 2 for n, pair in enumerate(watched.ladder.pairs))
 
 
