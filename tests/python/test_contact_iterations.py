@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from amount import TRIES_ALL
 from test_study_capstan import build
 
 import iota
@@ -34,7 +35,8 @@ def make_car_on_bumps(seed: int) -> iota.System:
 
 
 def test_cars_on_bumps_take_hardly_a_step_of_a_hundred_iterations() -> None:
-    reports = [system.step(1 / 60) for system in map(make_car_on_bumps, range(4)) for _ in range(240)]
+    seeds = range(4 if TRIES_ALL else 2)
+    reports = [system.step(1 / 60) for system in map(make_car_on_bumps, seeds) for _ in range(240)]
     assert sum(report.unconverged for report in reports) == 0
     iterations = np.array([report.iterations_max for report in reports])
     # With contacts that are hard from the start: eight, and 9 iterations in the mean. Some step in ten thousand still has as many, and

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from amount import TRIES_ALL
 
 import iota
 
@@ -46,7 +47,7 @@ def arm(system: iota.System, ball: iota.Body, stiffness: float) -> None:
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("drive", [spring, motor, servo, arm])
 def test_it_stops_at_a_wall_whatever_its_force_and_the_length_of_the_step(mode: str, drive: object) -> None:
-    for strength in (1e2, 1e3, 1e4, 1e5):
+    for strength in (1e2, 1e3, 1e4, 1e5) if TRIES_ALL else (1e3, 1e5):
         for wall in (0.01, 0.2):
             for rate in (60, 240):
                 system, ball = made(mode, wall)

@@ -10,6 +10,7 @@ import random
 
 import numpy as np
 import pytest
+from amount import TRIES_ALL
 
 import iota
 
@@ -106,7 +107,9 @@ SOLIDS = {
 def test_what_is_put_into_the_middle_or_the_axis_of_another_comes_out(
     one: str, other: str, turn: tuple[str, float], gravity: float
 ) -> None:
-    for aside in ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0)):
+    asides = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
+    number = [*SOLIDS].index(one) + [*SOLIDS].index(other) + "yz".index(turn[0]) + bool(turn[1])
+    for aside in asides if TRIES_ALL else [asides[number % 3]]:
         system = iota.System(gravity=(0, -gravity, 0))
         system.usual_material = iota.Material()
         if gravity:

@@ -24,7 +24,7 @@ from iota.world.pace import Pace
 Runner = Callable[[iota.World], str]
 SECONDS = float(os.environ.get("IOTA_MESSAGE_SECONDS", "0"))
 SEED = int(os.environ.get("IOTA_MESSAGE_SEED", "1"))
-COUNT = 4000 if TRIES_ALL else 200
+COUNT = 4000 if TRIES_ALL else 100
 AT_ONCE = 20  # messages, between two looks at the world
 
 
