@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 import threading
@@ -414,12 +415,12 @@ def test_the_page_and_its_health_are_served(world: iota.World, run_world: Runner
     assert caught.value.code in (400, 403, 404)
 
 
-def test_the_token_is_kept_and_secret(world: iota.World, run_world: Runner, tmp_path: Path) -> None:
+def test_the_token_is_kept_and_secret(world: iota.World, run_world: Runner) -> None:
     first = run_world(world)
     world.stop()
     second = run_world(world)
     assert first.split("token=")[1] == second.split("token=")[1]
-    kept = tmp_path / "state" / "iota" / "token"
+    kept = Path(os.environ["XDG_STATE_HOME"]) / "iota" / "token"
     assert kept.stat().st_mode & 0o777 == 0o600
 
 
