@@ -23,7 +23,7 @@ from page_client import CONSTANTS, SCHEMA, PageClient, encode
 from test_attacks import memory_of
 from websockets.exceptions import ConnectionClosed
 
-SECONDS = 5.0 if TRIES_ALL else 0.5
+SECONDS = 5.0 if TRIES_ALL else 0.3
 MEMORY = 150  # MB, for whatever one machine sends or does not read
 RATE = 120  # steps in a second, of the world below
 SCRIPT = """

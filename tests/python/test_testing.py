@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
+from pages import LEAVE_OUT_DRAWING
 
 import iota
 from iota.film import browser
@@ -16,6 +19,27 @@ pytest.importorskip("playwright")
 testing = pytest.importorskip("iota.testing")
 needs_browser = pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
 Runner = Callable[[iota.World], str]
+
+
+@pytest.fixture(autouse=True)
+def browsers_without_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a visitor does needs no filled pixels, which take software most of two cores; e2e/xr.test.ts looks at them."""
+    open_browser = testing.open_browser
+
+    @contextmanager
+    def open_without_drawing(purpose: str) -> Iterator[Any]:
+        with open_browser(purpose) as browser:
+            new_page = browser.new_page
+
+            def page_without_drawing(**options: Any) -> Any:
+                page = new_page(**options)
+                page.add_init_script(LEAVE_OUT_DRAWING)
+                return page
+
+            browser.new_page = page_without_drawing
+            yield browser
+
+    monkeypatch.setattr(testing, "open_browser", open_without_drawing)
 
 
 @needs_browser
