@@ -634,8 +634,10 @@ def steps_for(goal: str, preset: str) -> list[Step]:
     other_wheels = [wheel_of(version) for version in supported_versions()]
     if goal in ("test", "test-all"):
         steps.insert(2, replace(python_environment("test", "verify", "shapelib", "film", "sweep", "ray"), beside=True))
+        # To pack is to wait for pip and for files; the wheels of other Pythons come after that of this one.
+        steps += [python_environment("wheel"), replace(wheel(), beside=goal == "test")]
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests")]
-        steps += [python_environment("wheel"), wheel(), *(other_wheels if goal == "test-all" else [])]
+        steps += other_wheels if goal == "test-all" else []
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
     elif goal == "films":

@@ -246,31 +246,31 @@ SUITES = [
     Suite("folders", [str(BIN / "python"), "tools/folder_graph.py"], 60),
     Suite(
         "cpp", ["build/iota_tests", "--gtest_output=json:{result}"], 900, read_gtest,
-        about_s=70, shards=min(4, CORES),
+        about_s=90, shards=min(4, CORES),
     ),
     # A few tests are long, so a worker that is done takes over tests of another. At least two workers: many tests wait
     # for a process or a browser, and so do those of the suite beside this one.
     Suite(
         "python", pytest("tests/python", f"--ignore={MACHINES}", f"-n={max(2, OTHER_CORES)}", "--dist=worksteal"), 2400, read_junit,
-        repeats=4, again=nodes_again, about_s=300, cores=OTHER_CORES,
+        repeats=4, again=nodes_again, about_s=500, cores=OTHER_CORES,
     ),
     # After what draws, beside short suites: a busy machine answers Ray too late, and is taken for a dead one.
-    Suite("machines", pytest(MACHINES), 600, read_junit, repeats=2, again=nodes_again, about_s=25, in_turn=True, inputs=placed_by),
+    Suite("machines", pytest(MACHINES), 600, read_junit, repeats=2, again=nodes_again, about_s=55, in_turn=True, inputs=placed_by),
     Suite("page-types", [str(BIN / "npm"), "run", "check"], 300, None, WEB, about_s=10),
     Suite("page", vitest(), 300, read_vitest, WEB, about_s=25),
     Suite(
         "browser", vitest(*BROWSER, *(f"--exclude={name}" for name in PICTURES + PACKAGES)), 2400, read_vitest, WEB,
-        repeats=4, again=files_again, about_s=400, cores=DRAWING_CORES, in_turn=True,
+        repeats=4, again=files_again, about_s=320, cores=DRAWING_CORES, in_turn=True,
     ),
     Suite(
         "pictures", vitest(*BROWSER, *PICTURES), 1200, read_vitest, WEB,
-        repeats=2, again=titles_again, about_s=300, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
+        repeats=2, again=titles_again, about_s=240, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
     Suite(
         "packages", vitest(*BROWSER, *PACKAGES), 600, read_vitest, WEB,
         repeats=1, again=files_again, about_s=30, cores=DRAWING_CORES, in_turn=True, inputs=drawn_by,
     ),
-    Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=10),
+    Suite("packaging", pytest("tests/packaging", f"--ignore={WHEEL}"), 900, read_junit, about_s=38),
     Suite("wheel", pytest(WHEEL), 600, read_junit, about_s=12, inputs=installed_by),
     Suite("lint", ["make", "lint"], 1200, about_s=120, only_with_all=True),
     Suite("docs", ["make", "docs"], 1200, about_s=40, only_with_all=True),
