@@ -15,7 +15,7 @@ namespace {
 
 bool is_single(const model::Model& model, std::uint32_t body) { return model.bodies[body].rank < 2; }
 
-/// Of the forces on a body: what changes within a step, wherever on the body they act, and what changes in that. A force at a point
+/// The change within a step of the forces on a body, wherever they act on it, and the change of that. A force at a point
 /// without a mass of its own moves the body: by the mass of such a point the error seemed 5000 times too large.
 struct Changes {
   Vec3 force, second_force;    ///< N

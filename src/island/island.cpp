@@ -392,7 +392,7 @@ double Island::owed_work(const Model& model) const {
   return work;
 }
 
-// By their bodies, as islands of contacts come together and apart all the time.
+// Articulates share it by their bodies, as islands of contacts come together and apart all the time.
 void Island::set_owed_work(Model& model, double work) const {
   if (!may_owe_work(model)) return;
   double bodies = 0;

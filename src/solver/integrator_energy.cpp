@@ -208,7 +208,7 @@ struct RigidModes {
   }
 };
 
-/// What the rows of the world, and those on points that are nailed, notice of the rigid motion of the other points.
+/// The rigid motions of the other points that the rows of the world, and those on points that are nailed, notice.
 RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> piece_of, const Vec3& center,
                          double length) {
   RigidModes noticed;
@@ -240,7 +240,7 @@ RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> 
 /// By more than a point at rest.
 bool is_held_otherwise(const Holds& holds) { return !holds.are_none() && !holds.pivot(); }
 
-/// Of each node, whether a nail holds it. Valid until the next call.
+/// Tells of each node whether a nail holds it. Valid until the next call.
 std::span<const std::uint32_t> nailed_nodes(const Problem& problem) {
   thread_local std::vector<std::uint32_t> are_nailed;
   are_nailed.assign(problem.size(), 0);
@@ -338,7 +338,7 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
   if (found) {
     rigid = *found;
     rest -= rigid.kinetic_energy();
-    // What swings on an axle has hardly another motion that the energy could come from or go to.
+    // A pendulum on an axle has hardly another motion that the energy could come from or go to.
     if (is_held_otherwise(holds_) && !(std::abs(excess) <= most_given * rest)) rigid = {}, rest = energy_.kinetic;
   }
   if (!(rest > 0 && -excess <= most_given * rest)) return false;

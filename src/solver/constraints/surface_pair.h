@@ -41,7 +41,7 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
     double gap;            // between the surfaces, without skins
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
-  /// Of the gap, by the place t and the turn R of B in A's frame; its pieces are sums over them.
+  /// The derivatives of the gap by the place t and the turn R of B in A's frame. Those by the arms are sums over them.
   struct ByRelative {
     double by_place[3], by_turn[3][3];
   };
