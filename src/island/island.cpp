@@ -404,7 +404,7 @@ void Island::set_owed_work(Model& model, double work) const {
 }
 
 void Island::try_again(Model& model) {
-  set_owed_work(model, problem_.owed_work + paid_work_);
+  if (tried_ == Tried::moved) set_owed_work(model, problem_.owed_work + paid_work_);
   drop_try();
 }
 
