@@ -21,7 +21,8 @@ void Heap::restore_shape(const Problem& problem, std::uint32_t i, std::span<cons
     part.position[k] = body.arms[k], part.mass[k] = body.shares[k] * problem.mass[body.nodes[k]];
   for (const HeapBodies::Coupling& coupling : found_.couplings) {
     const auto& c = problem.mass_couplings[coupling.item];
-    if (coupling.body == i)
+    // Without shared points one of round-off may reach another body.
+    if (coupling.body == i && found_.have(i, c.b))
       part.couple_masses(found_.place_of(i, c.a), found_.place_of(i, c.b), coupling.share * c.mass);
   }
   for (const Length& length : lengths) {

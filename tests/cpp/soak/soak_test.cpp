@@ -39,11 +39,11 @@ TEST(RandomHeaps, stay_whole_and_finite_and_make_no_motion_from_nothing) {
 /// An island that takes its step in parts had a share of the budget by the islands of the step before. By what round-off left of a row
 /// that moves nothing bodies were shot away, and by sweeps that could not close joints between what does not move. Restored
 /// copies went on in another way where static particles held others, heaps had bodies that do not move, or what drives a conflict
-/// jumped.
+/// jumped. The program ended where two points were joined in a heap in which round-off couples the masses of two bodies.
 TEST(RandomHeaps, that_once_failed_do_not_any_more) {
   scenes::HeapTally tally;
   for (const std::uint64_t seed : {700398u, 1000u, 1250u, 2246u, 2332u, 3094u, 3811u, 5447u, 5994u, 6249u, 6311u, 8780u,
-                                   3000073u, 3100797u, 3101407u, 3102321u})
+                                   3000073u, 3100797u, 3101407u, 3102321u, 21392u})
     EXPECT_EQ(scenes::play_heap(seed, tally).value_or(""), "") << seed;
 }
 
