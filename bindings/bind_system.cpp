@@ -144,7 +144,8 @@ void bind_settings(nb::class_<SystemObject>& type) {
           },
           "Multiplications that a step may take to solve the contacts of bodies that nothing else connects, all together\n"
           "and exactly; 0: unlimited. A heap that would take more is solved approximately, contact by contact, in time\n"
-          "that is linear in its size: `StepReport.approximate` counts that. Results are repeatable.")
+          "that is linear in its size, and so is a machine in a step that takes many times more: `StepReport.approximate`\n"
+          "counts that. What a step takes beyond this the next ones have less. Results are repeatable.")
       .def_prop_rw(
           "contacts_share", [](SystemObject& self) { return self.use().budget().contacts_share; },
           [](SystemObject& self, double value) {

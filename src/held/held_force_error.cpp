@@ -78,7 +78,7 @@ double HeldForceError::estimate(const model::Model& model, double h) {
   now_.assign(applied_.size(), {});
   last_.resize(now_.size()), change_before_.resize(now_.size());
   thread_local std::vector<Changes> changes;
-  changes.assign(known_ < 2 ? 0 : model.bodies.slot_count(), {});
+  changes.assign(known_ < 2 || model.pushes.is_empty() ? 0 : model.bodies.slot_count(), {});
   model.pushes.for_each([&](std::uint32_t slot, const ingredient::Push& push) {
     const std::uint32_t first = model.rings[slot].first;
     if (first == model::none) return;
@@ -95,9 +95,8 @@ double HeldForceError::estimate(const model::Model& model, double h) {
     if (known_ >= 2) add_change(model, slot, change, change - change_before, changes);
   });
   double worst = 0;
-  model.bodies.for_each([&](std::uint32_t body, const model::Body&) {
-    if (body < changes.size()) worst = std::max(worst, error_of_body(model, body, changes[body], h));
-  });
+  for (std::uint32_t body = 0; body < changes.size(); ++body)
+    if (model.bodies.is_alive(body)) worst = std::max(worst, error_of_body(model, body, changes[body], h));
   last_.swap(now_);
   ++known_;
   return worst;

@@ -375,12 +375,6 @@ const solver::AdvanceReport& Island::commit(Model& model, double h) {
   return last_;
 }
 
-template <class Visit>
-void Island::for_each_articulate(const Model& model, Visit visit) const {
-  for (const std::uint32_t body : nodes_.bodies)
-    if (const std::uint32_t slot = model.bodies[body].articulate; model.articulates[slot].first == body) visit(slot);
-}
-
 bool Island::may_owe_work(const Model& model) const {
   return problem_.has_used<solver::ContactConstraint>() || articulate(model).owed_work > 0;
 }

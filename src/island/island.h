@@ -76,6 +76,12 @@ class Island {
   /// Updates pulls that were added or removed: see Structure::mark_pull. False if it must be assembled.
   bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
+  /// visit(slot): each articulate of its bodies.
+  template <class Visit>
+  void for_each_articulate(const model::Model& model, Visit visit) const {
+    for (const std::uint32_t body : nodes_.bodies)
+      if (const std::uint32_t slot = model.bodies[body].articulate; model.articulates[slot].first == body) visit(slot);
+  }
 
   /// Number of unknown points: a measure of the work.
   std::size_t size() const { return nodes_.size(); }
@@ -207,9 +213,6 @@ class Island {
   Tried try_prescribed(const model::Model&, double h);
   Tried try_motion(const model::Model&, double h, const Limits&);
   void commit_motion(model::Model&, double h);
-  /// visit(slot): each articulate of its bodies.
-  template <class Visit>
-  void for_each_articulate(const model::Model&, Visit visit) const;
   bool may_owe_work(const model::Model&) const;
   double owed_work(const model::Model&) const;
   void set_owed_work(model::Model&, double) const;

@@ -686,10 +686,7 @@ double Islands::ahead(const Model& model, const Island& island) const {
 const solver::AdvanceReport& Islands::advance_part(Model& model, Island& island, double part, double h,
                                                    Island::Clock::time_point deadline) {
   ahead_.resize(model.articulates.slot_count(), 0);
-  for (const std::uint32_t body : island.bodies()) {
-    double& ahead = ahead_[model.bodies[body].articulate];
-    if (model.articulates[model.bodies[body].articulate].first == body) ahead += part;
-  }
+  island.for_each_articulate(model, [&](std::uint32_t articulate) { ahead_[articulate] += part; });
   return island.advance_part(model, part, {deadline, share_of(island), part / h});
 }
 

@@ -31,7 +31,10 @@ void Structure::mark(std::uint32_t articulate, Mark what, bool wakes) {
   Articulate& a = articulates[articulate];
   ++a.version;
   // Among moving bodies contacts begin and end in each step: what has just had no solution would be tried each time.
-  wakes ? a.try_again() : void(a.standing_gap = 0);
+  if (wakes)
+    a.try_again();
+  else
+    a.standing_gap = 0;
   if (mark_of_.size() <= articulate) mark_of_.resize(articulates.slot_count(), unmarked);
   Mark& marked = mark_of_[articulate];
   if (marked == unmarked) marked_.push_back(articulate);

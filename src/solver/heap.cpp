@@ -62,6 +62,7 @@ bool Heap::find_light_joints(const Problem& problem) const {
     connected.join(a, b);
   });
   ties_.for_each_held([&](std::uint32_t body) { partners.push_back({body, none}); });
+  if (partners.empty()) return false;
   sort_unique(partners);
   const std::vector<double> masses = found_.masses(problem);
   struct Machine {

@@ -142,13 +142,13 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
   make_ready(problem);
   newton_.add_times_to(times_of_thread());
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
-  if (may_sweep_ || is_machine_) {
-    const double burst = settings.contact_burst(heap_->is_tree(), is_machine_);
+  if (contacts_ != Contacts::exact) {
+    const double burst = settings.contact_burst(heap_->is_tree(), contacts_ == Contacts::machine);
     const double left =
         std::clamp(IntegratorSettings::most_owed * burst - problem.owed_work, 0.0, settings.part * burst);
     iterations_left_ = std::min(iterations_left_, most_iterations(left, cost));
   }
-  if (may_sweep_ && !heap_->is_tree() && settings.max_error == 0)
+  if (may_sweep() && !heap_->is_tree() && settings.max_error == 0)
     settings_.max_depth = std::min(settings_.max_depth, IntegratorSettings::heap_depth(settings.scheme));
   const bool is_brief = problem.unsolved_steps >= IntegratorSettings::full_tries && !is_due(problem.unsolved_steps);
   if (is_brief) iterations_left_ = std::min(iterations_left_, IntegratorSettings::brief_iterations);
@@ -181,7 +181,7 @@ AdvanceReport Integrator::advance_within_limits(Problem& problem, double h, cons
     report.cut_short = true;
     report.gap = problem.worst_gap(problem.position.data());
   }
-  if (settings.max_error == 0 && (may_sweep_ || is_machine_)) problem.owed_work += report.iterations * cost;
+  if (settings.max_error == 0 && contacts_ != Contacts::exact) problem.owed_work += report.iterations * cost;
   newton_.add_times_to(nullptr);
   return report;
 }
@@ -223,7 +223,7 @@ void Integrator::look_at(Problem& problem) {
     }
   });
   drives_rows_ = moves_rows || drives;
-  const bool may_meet = problem.has_laws() && (!may_sweep_ || heap_->has_joints());
+  const bool may_meet = problem.has_laws() && (!may_sweep() || heap_->has_joints());
   if ((has_rates || may_meet || moves_rows) && !moves_points && !problem.adds_impulses()) problem.begin_impulses();
   find_holds(problem);
   is_conservative_ = !drives_rows_ && problem.items_of<GripForce>().empty() && !problem.has_pushes();
@@ -250,7 +250,7 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
   if (is_over_) return;
   for (std::size_t i = first; i < attempts.size(); ++i) {
     const Attempt& attempt = attempts[i];
-    if (may_sweep_ && attempt.compliance > exact_rows) break;  // sweeps do better
+    if (may_sweep() && attempt.compliance > exact_rows) break;  // sweeps do better
     const bool turns = attempt.scheme == Scheme::mid_point && may_halve(part, report) &&
                        will_turn_too_far(problem, part.h);  // no need to try
     if (!turns && take(problem, part, attempt, report)) return;
@@ -262,9 +262,9 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
     if (attempt.scheme == Scheme::mid_point) ++report.fallbacks;
   }
   const double rest = (1 - part.from) * step_length_;
-  is_over_ = may_sweep_ || (is_machine_ && is_cut_short_);
+  is_over_ = may_sweep() || (contacts_ == Contacts::machine && is_cut_short_);
   // Sweeps would close the gaps of a conflict at once.
-  if (may_sweep_ || (is_over_ && !keeps_offsets_)) return sweep(problem, {.from = part.from, .h = rest}, report);
+  if (may_sweep() || (is_over_ && !keeps_offsets_)) return sweep(problem, {.from = part.from, .h = rest}, report);
   report.converged = false;
   coast(problem, is_over_ ? rest : part.h, report);
 }
@@ -304,7 +304,7 @@ Integrator::Contacts Integrator::kind_of_contacts(Problem& problem, const Integr
   // Joints within a part of the budget are not left to sweeps. These lost a load that beads of a 4000th of its mass held.
   const double of_machine = heap_->has_light_joints() ? 1 : 1.0 / 8;
   if (!heap_->has_joints() || fewest * cost > of_machine * budget) return Contacts::heap;
-  return heap_->has_light_joints() ? Contacts::exact : Contacts::machine;
+  return heap_->has_light_joints() || settings.max_error > 0 ? Contacts::exact : Contacts::machine;
 }
 
 // Whether so many iterations take more than its share of the budget.
@@ -335,9 +335,8 @@ std::optional<bool> Integrator::project_heap(Problem& problem, const IntegratorS
 // Whether even the fewest iterations of a step would take more, or the closing of overlaps; or the last steps have taken more,
 // so that this one is not tried.
 bool Integrator::is_beyond_budget(Problem& problem, double& cost) {
-  const Contacts kind = kind_of_contacts(problem, settings_, cost);
-  may_sweep_ = kind == Contacts::heap, is_machine_ = kind == Contacts::machine && settings_.max_error == 0;
-  if (!may_sweep_) {
+  contacts_ = kind_of_contacts(problem, settings_, cost);
+  if (!may_sweep()) {
     // A joint that is added to what lies in a heap may prevent that they are closed.
     if (settings_.contact_budget < std::numeric_limits<double>::infinity()) accept_overlaps(problem);
     return false;
@@ -742,7 +741,7 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
   make_guess(problem, stage);
   Stage first = stage;
-  first.begins_softly = !may_sweep_ && !stage.is_projection() && problem.has_used<ContactConstraint>();
+  first.begins_softly = !may_sweep() && !stage.is_projection() && problem.has_used<ContactConstraint>();
   return solve(problem, first, report) || solve_jammed_contacts(problem, stage, report) ||
          solve_softer_contacts(problem, stage, report);
 }
@@ -752,7 +751,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 // sticking. In heaps, which have sweeps, this would only take from their iterations.
 bool Integrator::solve_jammed_contacts(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const std::span<ContactConstraint> contacts = problem.items_of<ContactConstraint>();
-  if (contacts.empty() || may_sweep_ || stage.is_projection() || stage.compliance > exact_rows) return false;
+  if (contacts.empty() || may_sweep() || stage.is_projection() || stage.compliance > exact_rows) return false;
   constexpr int few = 6;  // iterations: where it jams, 2 to 8 do
   problem.set_multipliers(multipliers_saved_);
   make_guess(problem, stage);
@@ -786,7 +785,7 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
   }
   Stage limited = stage;
   limited.iterations_left = iterations_left_;
-  limited.is_heap = may_sweep_ && !heap_->is_tree() && !stage.is_projection();
+  limited.is_heap = may_sweep() && !heap_->is_tree() && !stage.is_projection();
   const bool is_end_point = !stage.is_mid_point() && !stage.is_projection();
   const bool has_contacts = !problem.items_of<ContactConstraint>().empty();
   if (is_end_point && has_contacts && (limited.is_heap || settings_.scheme == Scheme::end_point))

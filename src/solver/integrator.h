@@ -117,6 +117,7 @@ class Integrator {
     heap,     ///< these within the budget; else sweeps
   };
   Contacts kind_of_contacts(Problem&, const IntegratorSettings&, double& cost);
+  bool may_sweep() const { return contacts_ == Contacts::heap; }
   bool is_beyond(Problem&, const IntegratorSettings&, double iterations);
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
@@ -228,8 +229,7 @@ class Integrator {
   bool is_heap_known_ = false;               // since the latest change of structure
   Tetrahedra tetrahedra_;                    // see mirrors_a_solid
   bool knows_tetrahedra_ = false;            // since the latest change of structure
-  bool may_sweep_ = false;                   // in this step, what its equations do not solve within the budget
-  bool is_machine_ = false;                  // in this step: see Contacts
+  Contacts contacts_ = Contacts::exact;      // in this step
   std::optional<double> heap_cost_;          // of a factor
   std::unique_ptr<LocalProjection> local_;   // if it was needed
   std::vector<std::uint32_t> center_;        // of the latest

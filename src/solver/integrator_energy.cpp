@@ -209,14 +209,14 @@ struct RigidModes {
 };
 
 /// The rigid motions of the other points that the rows of the world, and those on points that are nailed, notice.
-RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> piece_of, const Vec3& center,
+RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> are_nailed, const Vec3& center,
                          double length) {
   RigidModes noticed;
   problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
     if (noticed.count == noticed.modes.size()) return;
     const C& c = pool.items[i];
     const auto nodes = pool.nodes_of(c);
-    const auto moves = [&](std::uint32_t node) { return piece_of[node] == 0; };
+    const auto moves = [&](std::uint32_t node) { return are_nailed[node] == 0; };
     if (std::none_of(nodes.begin(), nodes.end(), moves)) return;
     if (c.is_internal() && !holds_direction(c) && std::all_of(nodes.begin(), nodes.end(), moves)) return;
     const Gradients<C> gradients(c, problem.position.data(), 1);
@@ -249,7 +249,8 @@ std::span<const std::uint32_t> nailed_nodes(const Problem& problem) {
   return are_nailed;
 }
 
-/// The rigid motion of the nodes that no nail holds, as if they were free.
+/// The rigid motion of the nodes that no nail holds, as if they were free: unlike rigid_motion_of without the masses that they are
+/// coupled by with nailed ones.
 RigidMotion motion_of_others(const Problem& problem, std::span<const std::uint32_t> are_nailed) {
   RigidMotion motion;
   Vec3 momentum;
@@ -277,11 +278,11 @@ std::optional<RigidMotion> free_rigid_motion(const Problem& problem) {
   if (std::ranges::any_of(problem.items_of<AffineConstraint>(),
                           [](const AffineConstraint& c) { return c.is_nail() && c.is_moving(); }))
     return {};
-  const std::span<const std::uint32_t> piece_of = nailed_nodes(problem);
-  const RigidMotion all = motion_of_others(problem, piece_of);
+  const std::span<const std::uint32_t> are_nailed = nailed_nodes(problem);
+  const RigidMotion all = motion_of_others(problem, are_nailed);
   if (!(all.mass > 0)) return {};
   const double extent = std::sqrt(0.5 * all.inertia.trace() / all.mass), length = extent > 0 ? extent : 1;
-  RigidModes noticed = noticed_modes(problem, piece_of, all.center, length);
+  RigidModes noticed = noticed_modes(problem, are_nailed, all.center, length);
   if (noticed.count == noticed.modes.size()) return {};
   RigidMotion motion = all;
   motion.velocity = motion.turning = {};

@@ -69,8 +69,9 @@ struct IntegratorSettings {
   double contact_burst(bool is_tree, bool is_machine = false) const {
     return (is_machine ? 2 : 1) * (is_tree ? 8 : 4) * std::sqrt(contact_share) * contact_budget;
   }
-  /// Steps may owe so many bursts beyond their shares. Each pays back the share that it has by itself.
+  /// Steps may owe so many bursts beyond what they have by themselves, by which each pays back.
   static constexpr double most_owed = 4;
+  /// Multiplications that a step or a part of it has by itself.
   double contact_allowance() const { return part * contact_share * contact_budget; }
 
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited

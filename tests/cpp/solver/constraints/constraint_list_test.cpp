@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -306,70 +307,67 @@ void check(Random& random) {
 template <class C>
 struct Type {};
 
+/// visit(C{}): each type of constraint.
+template <class Visit>
+void for_each_type(Visit visit) {
+  std::apply([&]<class... C>(Type<C>...) { (visit(C{}), ...); }, ConstraintPools<Type>{});
+}
+
 TEST(Constraints, have_the_gradients_and_hessians_that_finite_differences_say) {
   Random random;
   for (int round = 0; round < 100 && !testing::Test::HasFatalFailure(); ++round)
-    std::apply([&]<class... C>(Type<C>...) { (check<C>(random), ...); }, ConstraintPools<Type>{});
+    for_each_type([&]<class C>(C) { check<C>(random); });
 }
 
 TEST(Constraints, that_call_themselves_internal_do_not_notice_a_translation) {
   Random random;
   for (int round = 0; round < 30; ++round)
-    std::apply(
-        [&]<class... C>(Type<C>...) {
-          const auto one = [&]<class T>(T type) {
-            auto [c, x] = example(random, type);
-            if (!c.is_internal()) return;
-            double before[T::rows], after[T::rows];
-            c.value(x.data(), 0.5, before);
-            const Vec3 shift = random.vec();
-            for (Vec3& p : x) p += shift;
-            c.value(x.data(), 0.5, after);
-            for (int r = 0; r < T::rows; ++r) ASSERT_NEAR(after[r], before[r], 1e-10) << typeid(T).name();
-          };
-          (one(C{}), ...);
-        },
-        ConstraintPools<Type>{});
+    for_each_type([&]<class T>(T type) {
+      auto [c, x] = example(random, type);
+      if (!c.is_internal()) return;
+      double before[T::rows], after[T::rows];
+      c.value(x.data(), 0.5, before);
+      const Vec3 shift = random.vec();
+      for (Vec3& p : x) p += shift;
+      c.value(x.data(), 0.5, after);
+      for (int r = 0; r < T::rows; ++r) ASSERT_NEAR(after[r], before[r], 1e-10) << typeid(T).name();
+    });
 }
 
 TEST(Constraints, clamped_have_no_negative_curvature) {
   Random random;
   for (int round = 0; round < 300; ++round)
-    std::apply(
-        [&]<class... C>(Type<C>...) {
-          const auto one = [&]<class T>(T type) {
-            if constexpr (GeneralConstraint<T> && T::has_curvature) {
-              auto [c, x] = example(random, type);
-              double lambda[T::rows];
-              for (double& l : lambda) l = random.number();
-              Mat3 blocks[T::max_nodes * (T::max_nodes + 1) / 2];
-              c.curvature(x.data(), 0, lambda, true, blocks);
-              Vec3 u[T::max_nodes];
-              for (Vec3& v : u) v = random.vec();
-              double sum = 0;
-              const Mat3* block = blocks;
-              for (int i = 0; i < c.node_count(); ++i)
-                for (int j = i; j < c.node_count(); ++j, ++block) sum += (i == j ? 1 : 2) * dot(u[i], *block * u[j]);
-              ASSERT_GE(sum, -1e-12) << typeid(T).name();
-            }
-          };
-          (one(C{}), ...);
-        },
-        ConstraintPools<Type>{});
+    for_each_type([&]<class T>(T type) {
+      if constexpr (GeneralConstraint<T> && T::has_curvature) {
+        auto [c, x] = example(random, type);
+        double lambda[T::rows];
+        for (double& l : lambda) l = random.number();
+        Mat3 blocks[T::max_nodes * (T::max_nodes + 1) / 2];
+        c.curvature(x.data(), 0, lambda, true, blocks);
+        Vec3 u[T::max_nodes];
+        for (Vec3& v : u) v = random.vec();
+        double sum = 0;
+        const Mat3* block = blocks;
+        for (int i = 0; i < c.node_count(); ++i)
+          for (int j = i; j < c.node_count(); ++j, ++block) sum += (i == j ? 1 : 2) * dot(u[i], *block * u[j]);
+        ASSERT_GE(sum, -1e-12) << typeid(T).name();
+      }
+    });
 }
 
-/// The change of a row's value from x0 to x1 that its mean gradient gives.
+/// The changes of the rows' values from x0 to x1, at this fraction of the step, that their mean gradients give.
 template <class C>
-double change_by_mean_gradient(const C& c, const std::vector<Vec3>& x0, const std::vector<Vec3>& x1) {
+std::array<double, C::rows> changes_by_mean_gradients(const C& c, const std::vector<Vec3>& x0,
+                                                      const std::vector<Vec3>& x1, double fraction = 1) {
   static_assert(DiscreteGradientConstraint<C>);
-  const MeanGradients<C> means(c, x0.data(), 0, {c, x1.data(), 1});
-  double change = 0;
+  const MeanGradients<C> means(c, x0.data(), 0, {c, x1.data(), fraction});
+  std::array<double, C::rows> changes{};
   for (int i = 0; i < c.node_count(); ++i) {
-    Vec3 mean;
-    means.of_node(i, nullptr, &mean);
-    change += dot(mean, x1[c.nodes[i]] - x0[c.nodes[i]]);
+    Vec3 mean[C::rows];
+    means.of_node(i, nullptr, mean);
+    for (int r = 0; r < C::rows; ++r) changes[r] += dot(mean[r], x1[c.nodes[i]] - x0[c.nodes[i]]);
   }
-  return change;
+  return changes;
 }
 
 /// Contacts have a friction that follows what slides, and a Coupling sums up others.
@@ -379,30 +377,25 @@ constexpr bool keeps_angular_momentum = !is_of_contact<C> && !std::is_same_v<C, 
 TEST(Constraints, between_bodies_keep_angular_momentum_over_a_step) {
   Random random;
   for (int round = 0; round < 100; ++round)
-    std::apply(
-        [&]<class... C>(Type<C>...) {
-          const auto one = [&]<class T>(T type) {
-            if constexpr (keeps_angular_momentum<T>) {
-              const auto [c, x0] = example(random, type);
-              if (!c.is_internal() || holds_direction(c)) return;
-              auto x1 = x0;
-              for (Vec3& p : x1) p += random.vec(0.05);
-              const Gradients<T> at_end(c, x1.data(), 0);
-              const MeanGradients<T> means(c, x0.data(), 0, at_end);
-              Vec3 sums[T::rows];
-              double size = 0;
-              for (int i = 0; i < c.node_count(); ++i) {
-                Vec3 end[T::rows], mean[T::rows];
-                at_end.of_node(i, end), means.of_node(i, end, mean);
-                const Vec3 place = 0.5 * (x0[c.nodes[i]] + x1[c.nodes[i]]);
-                for (int r = 0; r < T::rows; ++r) sums[r] += cross(place, mean[r]), size += norm(mean[r]);
-              }
-              for (const Vec3& sum : sums) ASSERT_LT(norm(sum), 1e-12 * (1 + size)) << typeid(T).name();
-            }
-          };
-          (one(C{}), ...);
-        },
-        ConstraintPools<Type>{});
+    for_each_type([&]<class T>(T type) {
+      if constexpr (keeps_angular_momentum<T>) {
+        const auto [c, x0] = example(random, type);
+        if (!c.is_internal() || holds_direction(c)) return;
+        auto x1 = x0;
+        for (Vec3& p : x1) p += random.vec(0.05);
+        const Gradients<T> at_end(c, x1.data(), 0);
+        const MeanGradients<T> means(c, x0.data(), 0, at_end);
+        Vec3 sums[T::rows];
+        double size = 0;
+        for (int i = 0; i < c.node_count(); ++i) {
+          Vec3 end[T::rows], mean[T::rows];
+          at_end.of_node(i, end), means.of_node(i, end, mean);
+          const Vec3 place = 0.5 * (x0[c.nodes[i]] + x1[c.nodes[i]]);
+          for (int r = 0; r < T::rows; ++r) sums[r] += cross(place, mean[r]), size += norm(mean[r]);
+        }
+        for (const Vec3& sum : sums) ASSERT_LT(norm(sum), 1e-12 * (1 + size)) << typeid(T).name();
+      }
+    });
 }
 
 /// Example{c, x} after its two bodies have turned and moved a little.
@@ -416,14 +409,9 @@ void expect_exact_change(Random& random) {
     for (std::uint32_t i = 0; i < 4; ++i)
       x1[4 * body + i] = x0[4 * body] + shift + rotate(turn, x0[4 * body + i] - x0[4 * body]);
   }
-  double before[C::rows], after[C::rows], change[C::rows] = {};
+  double before[C::rows], after[C::rows];
   c.value(x0.data(), 0, before), c.value(x1.data(), 0, after);
-  const MeanGradients<C> means(c, x0.data(), 0, {c, x1.data(), 0});
-  for (int i = 0; i < c.node_count(); ++i) {
-    Vec3 mean[C::rows];
-    means.of_node(i, nullptr, mean);
-    for (int r = 0; r < C::rows; ++r) change[r] += dot(mean[r], x1[c.nodes[i]] - x0[c.nodes[i]]);
-  }
+  const auto change = changes_by_mean_gradients(c, x0, x1, 0);
   for (int r = 0; r < C::rows; ++r) ASSERT_NEAR(change[r], after[r] - before[r], 1e-9) << typeid(C).name();
 }
 
@@ -442,7 +430,7 @@ TEST(Span, changes_exactly_by_its_mean_gradient) {
     const auto x1 = two_bodies(random);
     double before, after;
     c.value(x0.data(), 0, &before), c.value(x1.data(), 1, &after);
-    EXPECT_NEAR(change_by_mean_gradient(c, x0, x1), after - before + c.target - c.target_start, 1e-12);
+    EXPECT_NEAR(changes_by_mean_gradients(c, x0, x1)[0], after - before + c.target - c.target_start, 1e-12);
   }
 }
 
@@ -457,7 +445,7 @@ AngleConstraint angle_of(std::uint32_t node) {
 TEST(Angle, changes_by_its_mean_gradient_and_not_by_a_sine) {
   for (const double turn : {1e-6, 0.01, 0.5, 1.5, -1.0}) {
     const std::vector<Vec3> x0{{2, 0, 0.5}}, x1{{2 * std::cos(turn), 2 * std::sin(turn), 0.5}};
-    EXPECT_NEAR(change_by_mean_gradient(angle_of(0), x0, x1), turn, 1e-8 * std::abs(turn));
+    EXPECT_NEAR(changes_by_mean_gradients(angle_of(0), x0, x1)[0], turn, 1e-8 * std::abs(turn));
   }
 }
 
@@ -473,7 +461,7 @@ TEST(Coupling, of_unlike_turns_and_a_length_passes_all_work_on) {
   double before, after;
   c.value(x0.data(), 0, &before), c.value(x1.data(), 1, &after);
   EXPECT_NEAR(after - before, change, 1e-12);
-  EXPECT_NEAR(change_by_mean_gradient(c, x0, x1), change, 1e-7);
+  EXPECT_NEAR(changes_by_mean_gradients(c, x0, x1)[0], change, 1e-7);
 }
 
 TEST(Angle, counts_turns) {
