@@ -4,6 +4,7 @@
 #include "solver/integrator.h"
 
 #include "solver/pieces.h"
+#include "solver/rigid_modes.h"
 #include "solver/row_masses.h"
 
 #include <algorithm>
@@ -175,88 +176,26 @@ bool Integrator::change_kinetic_energy(Problem& problem, double excess, const st
 
 namespace {
 
-/// A rigid motion, or what a row notices of one.
-struct RigidMode {
-  Vec3 velocity, turning;  ///< of the center; the second in units of a length
-
-  double along(const RigidMode& other) const { return dot(velocity, other.velocity) + dot(turning, other.turning); }
-  void add(double factor, const RigidMode& other) {
-    velocity += factor * other.velocity, turning += factor * other.turning;
-  }
-};
-
-/// Some rigid motions, orthonormal.
-struct RigidModes {
-  static constexpr double independent = 1e-12;  // of the square of a size
-  std::array<RigidMode, 6> modes;
-  std::size_t count = 0;
-
-  /// The part of a mode that they do not have.
-  RigidMode beside(RigidMode mode) const {
-    for (int pass = 0; pass < 2; ++pass)
-      for (std::size_t k = 0; k < count; ++k) mode.add(-mode.along(modes[k]), modes[k]);
-    return mode;
-  }
-  /// `size`: of the mode, squared, with what cancels in it.
-  void add(const RigidMode& mode, double size) {
-    if (count == modes.size()) return;
-    RigidMode own = beside(mode);
-    const double square = own.along(own);
-    if (!(square > independent * size)) return;
-    const double scale = 1 / std::sqrt(square);
-    modes[count++] = {scale * own.velocity, scale * own.turning};
-  }
-};
-
-/// The rigid motions of the other points that the rows of the world, and those on points that are nailed, notice.
-RigidModes noticed_modes(const Problem& problem, std::span<const std::uint32_t> are_nailed, const Vec3& center,
-                         double length) {
-  RigidModes noticed;
-  problem.for_each_acting([&]<class C>(const ConstraintPool<C>& pool, std::size_t i) {
-    if (noticed.count == noticed.modes.size()) return;
-    const C& c = pool.items[i];
-    const auto nodes = pool.nodes_of(c);
-    const auto moves = [&](std::uint32_t node) { return are_nailed[node] == 0; };
-    if (std::none_of(nodes.begin(), nodes.end(), moves)) return;
-    if (c.is_internal() && !holds_direction(c) && std::all_of(nodes.begin(), nodes.end(), moves)) return;
-    const Gradients<C> gradients(c, problem.position.data(), 1);
-    RigidMode modes[C::rows];
-    double sizes[C::rows] = {};
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (!moves(nodes[k])) continue;
-      Vec3 rows[C::rows];
-      gradients.of_node(static_cast<int>(k), rows);
-      const Vec3 arm = (1 / length) * (problem.position[nodes[k]] - center);
-      for (std::size_t r = 0; r < C::rows; ++r) {
-        modes[r].velocity += rows[r], modes[r].turning += cross(arm, rows[r]);
-        sizes[r] += dot(rows[r], rows[r]) * (1 + dot(arm, arm));
-      }
-    }
-    for (std::size_t r = 0; r < C::rows; ++r) noticed.add(modes[r], sizes[r]);
-  });
-  return noticed;
-}
-
 /// By more than a point at rest.
 bool is_held_otherwise(const Holds& holds) { return !holds.are_none() && !holds.pivot(); }
 
-/// Tells of each node whether a nail holds it. Valid until the next call.
-std::span<const std::uint32_t> nailed_nodes(const Problem& problem) {
-  thread_local std::vector<std::uint32_t> are_nailed;
-  are_nailed.assign(problem.size(), 0);
+/// The part of each node: 0, or none of those that nails hold. Valid until the next call.
+std::span<const std::uint32_t> part_without_nails(const Problem& problem) {
+  thread_local std::vector<std::uint32_t> part_of;
+  part_of.assign(problem.size(), 0);
   for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
-    if (c.is_nail()) are_nailed[c.nodes[0]] = 1;
-  return are_nailed;
+    if (c.is_nail()) part_of[c.nodes[0]] = Pieces::none;
+  return part_of;
 }
 
 /// The rigid motion of the nodes that no nail holds, as if they were free: unlike rigid_motion_of without the masses that they are
 /// coupled by with nailed ones.
-RigidMotion motion_of_others(const Problem& problem, std::span<const std::uint32_t> are_nailed) {
+RigidMotion motion_of_others(const Problem& problem, std::span<const std::uint32_t> part_of) {
   RigidMotion motion;
   Vec3 momentum;
   const auto for_each = [&](auto visit) {
     for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
-      if (are_nailed[a] == 0 && are_nailed[b] == 0) visit(mass, a, b);
+      if (part_of[a] == 0 && part_of[b] == 0) visit(mass, a, b);
     });
   };
   for_each([&](double mass, std::uint32_t a, std::uint32_t b) {
@@ -278,21 +217,18 @@ std::optional<RigidMotion> free_rigid_motion(const Problem& problem) {
   if (std::ranges::any_of(problem.items_of<AffineConstraint>(),
                           [](const AffineConstraint& c) { return c.is_nail() && c.is_moving(); }))
     return {};
-  const std::span<const std::uint32_t> are_nailed = nailed_nodes(problem);
-  const RigidMotion all = motion_of_others(problem, are_nailed);
+  const std::span<const std::uint32_t> part_of = part_without_nails(problem);
+  const RigidMotion all = motion_of_others(problem, part_of);
   if (!(all.mass > 0)) return {};
   const double extent = std::sqrt(0.5 * all.inertia.trace() / all.mass), length = extent > 0 ? extent : 1;
-  RigidModes noticed = noticed_modes(problem, are_nailed, all.center, length);
-  if (noticed.count == noticed.modes.size()) return {};
+  RigidModes noticed{.center = all.center, .length = length};
+  add_noticed_modes(problem, part_of, {&noticed, 1});
+  if (noticed.are_all()) return {};
   RigidMotion motion = all;
   motion.velocity = motion.turning = {};
   RigidModes free;  // orthonormal in the norm of the masses
-  const RigidMode units[]{{{1, 0, 0}, {}}, {{0, 1, 0}, {}}, {{0, 0, 1}, {}},
-                          {{}, {1, 0, 0}}, {{}, {0, 1, 0}}, {{}, {0, 0, 1}}};
-  while (noticed.count < noticed.modes.size()) {
-    RigidMode best;
-    for (const RigidMode& unit : units)
-      if (const RigidMode own = noticed.beside(unit); own.along(own) > best.along(best)) best = own;
+  while (!noticed.are_all()) {
+    const RigidMode best = noticed.another();
     if (!(best.along(best) > 0)) return {};  // no numbers
     noticed.add(best, 0);
     RigidMode mode{best.velocity, (1 / length) * best.turning};
@@ -345,10 +281,10 @@ bool Integrator::scale_motion(Problem& problem, double excess, const std::option
   if (!(rest > 0 && -excess <= most_given * rest)) return false;
   const double factor = std::sqrt(std::max(0.0, 1 - excess / rest));
   const bool has_nails = found && is_held_otherwise(holds_);
-  const std::span<const std::uint32_t> are_nailed =
-      has_nails ? nailed_nodes(problem) : std::span<const std::uint32_t>{};
+  const std::span<const std::uint32_t> part_of =
+      has_nails ? part_without_nails(problem) : std::span<const std::uint32_t>{};
   for (std::size_t i = 0; i < problem.size(); ++i)
-    if (!has_nails || are_nailed[i] == 0) scale_beside(rigid, factor, problem, i);
+    if (!has_nails || part_of[i] == 0) scale_beside(rigid, factor, problem, i);
   return excess < rest;
 }
 

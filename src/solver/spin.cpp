@@ -69,7 +69,47 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
       if (contacts.acts(i))
         for (const std::uint32_t node : contacts.nodes_of(contacts.items[i])) all_parts.of(node).touches = true;
   }
-  for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
+  for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot(), part.axle = {};
+}
+
+// After find_parts. In gravity only upright axles: about others it changes the angular momentum. Nothing that moves is an axle.
+void Spin::find_axles(const Problem& problem, Noticed by, Parts& all_parts) {
+  constexpr double upright = 1e-9;
+  constexpr std::uint32_t none = Pieces::none;
+  auto& [parts, connected, nail] = all_parts;
+  held_of_part_.assign(parts.size(), none);
+  std::uint32_t count = 0;
+  for (std::uint32_t k = 0; k < parts.size(); ++k)
+    if (!parts[k].is_kept && !connected.is_nail(k)) held_of_part_[k] = count++;
+  if (count == 0) return;
+  bool moves = false;
+  problem.for_each_acting([&](const auto& pool, std::size_t i) {
+    moves = moves || (!pool.items[i].is_internal() && pool.items[i].is_moving());
+  });
+  if (moves) return;
+  held_of_node_.resize(problem.size());
+  for (std::uint32_t i = 0; i < problem.size(); ++i) held_of_node_[i] = held_of_part_[connected.of[i]];
+  if (connected.are_nails.empty())
+    for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
+      if (c.is_nail()) held_of_node_[c.nodes[0]] = none;
+  noticed_.assign(count, {.length = 0});
+  const auto for_each_held = [&](auto visit) {
+    for (std::uint32_t i = 0; i < problem.size(); ++i)
+      if (held_of_node_[i] != none) visit(problem.position[i], held_of_node_[i]);
+  };
+  for_each_held([&](const Vec3& place, std::uint32_t k) { noticed_[k].center = place; });  // one of them
+  for_each_held([&](const Vec3& place, std::uint32_t k) {
+    noticed_[k].length = std::max(noticed_[k].length, norm(place - noticed_[k].center));
+  });
+  for (RigidModes& noticed : noticed_)
+    if (noticed.length == 0) noticed.length = 1;
+  add_noticed_modes(problem, held_of_node_, noticed_, by);
+  for (std::uint32_t k = 0; k < parts.size(); ++k) {
+    if (held_of_part_[k] == none) continue;
+    const std::optional<Axle> axle = noticed_[held_of_part_[k]].axle();
+    if (!axle || norm(cross(axle->direction, problem.gravity)) > upright * norm(problem.gravity)) continue;
+    parts[k].axle = axle, parts[k].is_kept = true;
+  }
 }
 
 /// Two to four points, each at a fixed distance from each other, and nothing else that holds or turns them.
@@ -132,7 +172,7 @@ bool Spin::find_members(const Problem& problem) {
   }
   bool any = false;
   for (std::size_t k = 0; k < members.size(); ++k) {
-    const bool gets_all = members.size() == pieces_.parts.size() && pieces_.parts[piece_of_[k]].is_kept;
+    const bool gets_all = members.size() == pieces_.parts.size() && pieces_.parts[piece_of_[k]].is_free();
     members[k].is_kept = may_turn_[k] && !gets_all;
     any = any || members[k].is_kept;
   }
@@ -202,6 +242,7 @@ void Spin::find_supports(const Problem& problem) {
 bool Spin::find_clusters(const Problem& problem, const Holds& all) {
   if (!problem.has_used_springs()) return false;
   find_parts(problem, Connection::rows_and_forces, all, clusters_);
+  find_axles(problem, Noticed::by_all_rows, clusters_);
   const auto drop_held = [&](const auto& forces) {
     for (const auto& f : forces)
       if (!f.arm.is_internal()) clusters_.of(f.arm.nodes[0]).is_kept = false;
@@ -215,6 +256,7 @@ bool Spin::find_touching(const Problem& problem, const Holds& all) {
   if (std::none_of(pieces_.parts.begin(), pieces_.parts.end(), [](const Part& piece) { return piece.touches; }))
     return false;
   find_parts(problem, Connection::rows, all, touching_);
+  find_axles(problem, Noticed::by_all_rows, touching_);
   return touching_.parts.size() < pieces_.parts.size();
 }
 
@@ -297,8 +339,8 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
   for (Part& part : parts.parts) {
     part.is_due = part.is_kept && part.mass > 0;
     if (!part.is_due) continue;
-    if (const auto pivot = part.holds.pivot()) {
-      part.center = *pivot;
+    if (const auto point = part.fixed_point()) {
+      part.center = *point;
       part.lost -= cross(part.center, part.unbalanced);
     } else {
       part.center *= 1 / part.mass;
@@ -310,8 +352,8 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
   bool any = false;
   for (Part& part : parts.parts) {
     if (!part.is_due) continue;
-    const double g = dot(problem.gravity, problem.gravity);  // which changes the other components
-    if (part.holds.count > 0 && g > 0) part.lost = (dot(part.lost, problem.gravity) / g) * problem.gravity;
+    if (const auto axis = part.only_about(problem.gravity))
+      part.lost = (dot(part.lost, *axis) / dot(*axis, *axis)) * *axis;
     part.is_due = norm(part.lost) > round_off * h * part.kinetic;
     any = any || part.is_due;
   }
@@ -341,18 +383,19 @@ void Spin::find_velocities(const Problem& problem, Parts& parts) {
   find_motions(problem, parts);
 }
 
-// A part on a single point in gravity turns only about the direction of gravity.
+// A part on a single point in gravity turns only about the direction of gravity, which changes the other components.
 Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
-  const double g = dot(gravity, gravity);
-  if (part.holds.count == 0 || g == 0) return solve_semidefinite(part.inertia, angular, 1e-12);
-  const double inertia = dot(gravity, part.inertia * gravity);
-  return inertia > 0 ? (dot(angular, gravity) / inertia) * gravity : Vec3{};
+  const std::optional<Vec3> axis = part.only_about(gravity);
+  if (!axis) return solve_semidefinite(part.inertia, angular, 1e-12);
+  const double inertia = dot(*axis, part.inertia * *axis);
+  return inertia > 0 ? (dot(angular, *axis) / inertia) * *axis : Vec3{};
 }
 
 bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, const NodeVectors& unbalanced, double h,
                      const Holds& all, double most_gain) {
   begin(problem);
   find_parts(problem, Connection::joints, all, pieces_);
+  find_axles(problem, Noticed::by_joints, pieces_);
   find_rigid_pieces(problem);
   const bool are_pieces_due = find_losses(problem, displacement, unbalanced, h, Supported::no, pieces_);
   const bool are_touching_due =
@@ -399,7 +442,7 @@ double Spin::turn_members(Problem& problem, double most_gain) {
     // A member that hangs on a point swings: see turn_parts.
     part.is_due = part.is_due && supports_[k].count >= 4;
     if (!part.is_due) continue;
-    const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_kept && problem.gravity == Vec3{};
+    const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_free() && problem.gravity == Vec3{};
     Wrench impulse{-part.lost_momentum, is_on_fixed_axle ? -part.lost - part.lost_of_center : -part.lost};
     const Vec3 turn = supports_[k].by_inertia * impulse.torque;
     for (int i = 0; i < supports_[k].count; ++i) {

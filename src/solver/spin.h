@@ -7,6 +7,7 @@
 #include "solver/node_vectors.h"
 #include "solver/pieces.h"
 #include "solver/problem.h"
+#include "solver/rigid_modes.h"
 #include "solver/rigid_motion.h"
 #include "solver/wheels.h"
 
@@ -20,7 +21,7 @@ namespace iota::solver {
 
 /// The angular momentum of the pieces of a problem, and of its clusters: a piece is what rows connect, a cluster what rows and
 /// forces connect. Nothing within them changes their momentum and angular momentum. If outside holds one at a single point,
-/// that is the angular momentum about this point. The members of a piece, which only lengths connect, have their own spin as far
+/// that is the angular momentum about this point; if outside lets one only turn about a line, the one about this line. The members of a piece, which only lengths connect, have their own spin as far
 /// as no other row notices: a wheel on an axle.
 /// Changes by a scheme or a projection are compensated by velocities of a rigid motion, which no row notices.
 class Spin {
@@ -73,7 +74,9 @@ class Spin {
   struct Part : Sums {  // a piece, a cluster or a member
     Holds holds;
     bool touches = false;        ///< by a contact that acts, of pieces
-    bool is_kept = false;        ///< nothing holds it, or a single point at rest
+    bool is_kept = false;        ///< nothing holds it, or a single point at rest, or an axle
+    std::optional<Axle> axle;    ///< about which alone the world lets it turn
+    bool is_turned = false;      ///< by `turn_on`, as a whole
     bool is_rigid = false;       ///< a free body alone, whose motion has no rest
     bool is_due = false;         ///< it has lost something
     Vec3 angular;                ///< about the center
@@ -85,6 +88,13 @@ class Spin {
     Vec3 velocity_change, turn;  ///< m/s, rad/s
     Vec3 chord;                  ///< of the center of mass in the step, m/s
     Vec3 velocity() const { return holds.count > 0 ? Vec3{} : (1 / mass) * momentum; }
+    bool is_free() const { return is_kept && !axle; }
+    std::optional<Vec3> fixed_point() const { return axle ? axle->place : holds.pivot(); }
+    /// The direction about which alone it keeps its angular momentum, of any length.
+    std::optional<Vec3> only_about(const Vec3& gravity) const {
+      if (axle) return axle->direction;
+      return holds.count > 0 && gravity != Vec3{} ? std::optional(gravity) : std::nullopt;
+    }
   };
   struct Parts {
     std::vector<Part> parts;
@@ -105,6 +115,7 @@ class Spin {
   void begin(const Problem&);
   void find_rigid_pieces(const Problem&);
   void find_parts(const Problem&, Connection, const Holds& all, Parts&);
+  void find_axles(const Problem&, Noticed, Parts&);
   bool find_members(const Problem&);
   void find_supports(const Problem&);
   double turn_members(Problem&, double most_gain);
@@ -143,6 +154,9 @@ class Spin {
   std::vector<Count> counts_;  // of each piece
   RoomForPieces room_for_pieces_;
   std::vector<TurningBody> turning_bodies_;
+  // Of find_axles: of each node and each part the index among those that may have an axle.
+  std::vector<std::uint32_t> held_of_node_, held_of_part_;
+  std::vector<RigidModes> noticed_;
 };
 
 }  // namespace iota::solver

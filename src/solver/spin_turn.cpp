@@ -90,12 +90,12 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
   // A piece that turns as one body, about its angular momentum, which stays so.
   constexpr double same = 1e-9;
   for (std::uint32_t k = 0; k < pieces_.parts.size(); ++k) {
-    const Part& piece = pieces_.parts[k];
+    Part& piece = pieces_.parts[k];
+    piece.is_turned = false;
     if (!piece.is_due || piece.touches) continue;  // an edge would turn into what it touches
     const Vec3 spin = turning(piece, piece.angular, problem.gravity);
-    const bool hangs = piece.holds.count > 0 && problem.gravity != Vec3{};
-    if (piece.kinetic - 0.5 * dot(spin, piece.angular) <= same * piece.kinetic)
-      turn_part(pieces_, k, unit(hangs ? problem.gravity : piece.angular));
+    piece.is_turned = piece.kinetic - 0.5 * dot(spin, piece.angular) <= same * piece.kinetic;
+    if (piece.is_turned) turn_part(pieces_, k, unit(piece.only_about(problem.gravity).value_or(piece.angular)));
   }
   // Bodies that turn about an axle at rest, its center of mass on it. It keeps the angular momentum of a free piece only if this is
   // along the axle.
@@ -105,7 +105,9 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
     if (!member.is_due || supports_[k].count != 5) continue;
     const double size = dot(member.turn, member.inertia * member.turn);
     const Vec3 axis = unit(member.turn), angular = member.angular, spin = supports_[k].by_inertia * angular;
-    const bool is_free = pieces_.parts[piece_of_[k]].is_kept;
+    const Part& piece = pieces_.parts[piece_of_[k]];
+    const bool is_free = piece.is_free();
+    if (piece.axle && piece.is_turned) continue;
     if (member.mass * dot(member.velocity_change, member.velocity_change) <= same * same * size &&
         norm(cross(spin, axis)) <= same * norm(spin) &&
         (!is_free || norm(cross(angular, axis)) <= same * norm(angular)))
@@ -114,7 +116,8 @@ void Spin::turn_on(Problem& problem, std::span<const Vec3> chords, double h, Fun
   if (are_wheels_due_)
     wheels_.for_each_turned([&](const std::array<std::uint32_t, 2>& ends, std::span<const std::uint32_t> own) {
       const Vec3 &start = problem.position[ends[0]], &velocity = problem.velocity[ends[0]];
-      if (pieces_.of(ends[0]).is_kept || !(velocity == Vec3{} && problem.velocity[ends[1]] == Vec3{})) return;
+      const Part& piece = pieces_.of(ends[0]);
+      if (piece.is_free() || piece.is_turned || !(velocity == Vec3{} && problem.velocity[ends[1]] == Vec3{})) return;
       const auto nodes = [&](auto visit) {
         for (const std::uint32_t i : own) visit(i);
       };
