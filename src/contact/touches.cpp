@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/touches.h"
 
+#include "contact/apart.h"
 #include "contact/gap.h"
 #include "contact/ring_parts.h"
 #include "geometry/box_tree.h"
@@ -122,14 +123,15 @@ void TouchFinder::find_on_face(const ConvexPart& first, const ConvexPart& second
   clipper_.add_touches(axis, writer, 4);
 }
 
-template <class Visit>
+template <class MayTouch, class Visit>
 void TouchFinder::for_each_near(const Vec3& anchor, const Vec3& spin_of_first, const Vec3& spin_of_second,
-                                double within, Visit visit) {
+                                double within, MayTouch may_touch, Visit visit) {
   for (std::size_t i = 0; i < first_.count; ++i) {
     if (!first_.parts[i].is_met()) continue;
     const geometry::Bounds box = geometry::grown(first_.parts[i].box, within);
     for (std::size_t k = 0; k < second_.count; ++k)
-      if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box)) {
+      if (second_.parts[k].is_met() && geometry::overlap(box, second_.parts[k].box) &&
+          may_touch(first_.parts[i], second_.parts[k])) {
         place(first_.parts[i], spin_of_first, anchor), place(second_.parts[k], spin_of_second, anchor);
         visit(first_.parts[i], second_.parts[k]);
       }
@@ -145,12 +147,17 @@ bool is_nothing(const Outline& outline) { return outline.solids.empty() && outli
 void TouchFinder::find(const Outline& first, const Vec3& spin_of_first, const Outline& second,
                        const Vec3& spin_of_second, double within, std::vector<Touch>& found, const Vec3& way) {
   if (is_nothing(first) || is_nothing(second)) return;
+  const bool are_single = first.solids.size() == 1 && second.solids.size() == 1;
+  if (are_single && are_clearly_apart(first.solids[0], second.solids[0], within)) return;
   const std::size_t before = found.size();
   const Vec3 anchor = anchor_of(second);
   list(first, anchor, first_), list(second, anchor, second_);
   const bool has_meshes = (first_.kinds | second_.kinds) >= Part::mesh;
   if (has_meshes) find_corners(spin_of_first, spin_of_second, within, found);
-  for_each_near(anchor, spin_of_first, spin_of_second, within,
+  const auto may_touch = [&](const Part& one, const Part& other) {
+    return are_single || !one.solid || !other.solid || !are_clearly_apart(*one.solid, *other.solid, within);
+  };
+  for_each_near(anchor, spin_of_first, spin_of_second, within, may_touch,
                 [&](Part& one, Part& other) { find(one, other, anchor, within, way, found); });
   if (has_meshes) {
     find_on_edges(first_, spin_of_first, second_, true, anchor, within, found);
@@ -281,9 +288,11 @@ void TouchFinder::find_on_faces(const Outline& first, const Vec3& spin_of_first,
   const std::size_t before = found.size();
   const Vec3 anchor = anchor_of(second);
   list(first, anchor, first_), list(second, anchor, second_);
-  for_each_near(anchor, spin_of_first, spin_of_second, within, [&](const Part& one, const Part& other) {
-    if (one.kind != Part::ring && other.kind != Part::ring)
-      find_on_face(one.placed, other.placed, normal, anchor, within, found);
+  const auto has_faces = [](const Part& one, const Part& other) {
+    return one.kind != Part::ring && other.kind != Part::ring;
+  };
+  for_each_near(anchor, spin_of_first, spin_of_second, within, has_faces, [&](const Part& one, const Part& other) {
+    find_on_face(one.placed, other.placed, normal, anchor, within, found);
   });
   if (!first.lines.empty() || !second.lines.empty()) drop_duplicates(found, before);
 }

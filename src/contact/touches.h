@@ -81,10 +81,10 @@ class TouchFinder {
   void find(Part& first, Part& second, const Vec3& anchor, double within, const Vec3& way, std::vector<Touch>& found);
   void find_on_face(const ConvexPart& first, const ConvexPart& second, const Vec3& normal, const Vec3& anchor,
                     double within, std::vector<Touch>& found);
-  /// visit(first, second): convex parts and rings whose boxes are near each other.
-  template <class Visit>
+  /// visit(first, second): convex parts and rings whose boxes are near each other, and where may_touch(first, second).
+  template <class MayTouch, class Visit>
   void for_each_near(const Vec3& anchor, const Vec3& spin_of_first, const Vec3& spin_of_second, double within,
-                     Visit visit);
+                     MayTouch may_touch, Visit visit);
 
   Parts first_, second_;
   Clipper clipper_;
