@@ -167,10 +167,11 @@ struct Places {
     // Directions turn with a body of three dimensions, and the axis of a rod with the rod: what depends only on places of
     // both keeps angular momentum.
     const auto set_direction = [&](Arm arm, const Vec3& direction, bool of_q) {
-      const Vec3& from = of_q ? origin : center;
-      const std::array<double, 4> start = sides.of(of_q, from), end = sides.of(of_q, from + direction);
+      const std::array<double, 4> end = sides.of(of_q, (of_q ? origin : center) + direction);
       const std::uint32_t first = of_q ? c.of_p : 0, count = of_q ? c.point_count - c.of_p : c.of_p;
-      for (std::uint32_t i = 0; i < count; ++i) c.weights[arm][first + i] = end[i] - start[i];
+      const auto& start = c.weights[Arm::center];  // those of q are negative
+      for (std::uint32_t i = first; i < first + count; ++i)
+        c.weights[arm][i] = end[i - first] - (of_q ? -start[i] : start[i]);
     };
     const bool with_q = !has_world_plane(c) && q.rank == 4, with_p = !has_world_point(c) && p.rank == 4;
     c.slips_turn = !has_world_plane(c) && (with_q || with_p);
@@ -603,7 +604,10 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
   std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
     if (has_points(model.bodies[body]))
-      model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
+      model.contacts.for_each_of(body, [&](std::uint32_t slot) {
+        const Contact& c = model.contacts[slot];  // both bodies of each are here, or one does not move
+        if (c.p == body || !has_points(model.bodies[c.p])) slots.push_back(slot);
+      });
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
     const Contact& c = model.contacts[slot];

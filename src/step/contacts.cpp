@@ -22,8 +22,9 @@ namespace {
 constexpr double of_way = 1.5;             ///< a body that speeds up goes further than it would
 constexpr std::size_t few_obstacles = 16;  ///< are looked at one by one
 constexpr double touching = 1e-3;          ///< of what passes a sensor
-/// A body whose points have not gone further keeps its contacts. What lies in a heap goes about so far in a step.
-constexpr double standing = 1e-5;
+/// A body whose points have not gone further, of its size, keeps its contacts: they are places of both bodies, and a plane that turns
+/// with one. A body of a heap, whose last step sweeps have solved, may go further: its places are not known any better.
+constexpr double standing = 1e-5, standing_in_heap = 1e-3;
 
 /// A body lies on the outermost ones of many points: the lowest one, and those that are farthest from the ones before.
 void keep_the_outermost(std::vector<contact::Touch>& touches, double size) {
@@ -285,15 +286,24 @@ void ContactFinder::find_pairs(model::Model& model, contact::Outlines& outlines)
     if (model.bodies[body].kind == BodyKind::static_ || !may_touch(model, outlines, body)) return nullptr;
     return &mover_at(model, outlines, body);
   };
+  // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
   for (const std::uint32_t slot : movers_) {
     Mover& mover = mover_at(model, outlines, slot);
-    // The other one may come as fast; then it looks for this one, too, but not as far as both go together.
-    const double own = within(mover, nullptr, mover.steps), more = own > far * mover.reach ? 2 * own : own;
-    const geometry::Bounds box = geometry::grown(box_of(mover), more);
+    const double own = within(mover, nullptr, mover.steps);
+    mover.ahead = own > far * mover.reach ? 2 * own : own;
+  }
+  // A pair is found once, by the one that looks farther.
+  const auto is_plain = [](const Mover& mover) { return mover.ahead >= 0 && mover.jump == 0 && mover.steps == 1; };
+  for (const std::uint32_t slot : movers_) {
+    Mover& mover = mover_at(model, outlines, slot);
+    const geometry::Bounds box = geometry::grown(box_of(mover), mover.ahead);
     const geometry::Bounds box_of_jump = geometry::grown(box, way_of_jump(mover.jump));
     tree.overlapping(box_of_jump, [&](std::uint32_t body) {
       Mover* const other = body == slot ? nullptr : look_at(body);
       if (!other) return;
+      if (is_plain(mover) && is_plain(*other) &&
+          (other->ahead > mover.ahead || (other->ahead == mover.ahead && body < slot)))
+        return;
       const double apart = norm(other->place - mover.place) - mover.reach - other->reach;
       const Pair pair{std::min(body, slot), std::max(body, slot)};
       const bool jumps = mover.jump + other->jump > 0 && is_sensor(model, pair);
@@ -442,24 +452,26 @@ const contact::Outline& ContactFinder::placed(contact::Outlines& outlines, Mover
   return std::exchange(mover.is_placed, true) ? outlines.described(mover.body) : outlines.placed(mover.body);
 }
 
+bool ContactFinder::is_of_sweeps(const model::Model& model, Mover* mover) {
+  if (!mover) return false;
+  if (!mover->of_sweeps) mover->of_sweeps = ingredient::Contacts::is_of_sweeps(model, mover->body);
+  return *mover->of_sweeps;
+}
+
 bool ContactFinder::is_of_sweeps(const model::Model& model, const Meeting& meeting) {
-  const auto is = [&](Mover* mover) {
-    if (!mover) return false;
-    if (!mover->of_sweeps) mover->of_sweeps = ingredient::Contacts::is_of_sweeps(model, mover->body);
-    return *mover->of_sweeps;
-  };
-  return is(meeting.first) || is(meeting.second);
+  return is_of_sweeps(model, meeting.first) || is_of_sweeps(model, meeting.second);
 }
 
 // An edited body has no stand any more.
-bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outlines, std::uint32_t slot) {
+bool ContactFinder::has_moved(model::Model& model, const contact::Outlines& outlines, std::uint32_t slot,
+                              double share) {
   if (all_moved_.size() <= slot) all_moved_.resize(model.bodies.slot_count());
   Moved& moved = all_moved_[slot];
   if (std::exchange(moved.look, look_) == look_) return moved.is;
   const model::Body& body = model.bodies[slot];
   const model::Stand* const before = model.stands.find(slot);
   model::Stand stand{.reach = outlines.reach(slot)};
-  const double most = standing * stand.reach;
+  const double most = share * stand.reach;
   moved.is = !before || before->reach != stand.reach;
   for (std::size_t k = 0; k < std::min<std::size_t>(body.rank, stand.places.size()); ++k) {
     stand.places[k] = model.position(body.basis[k]);
@@ -477,9 +489,12 @@ bool ContactFinder::renew(model::Model& model, const contact::Outlines& outlines
     return model.bodies[body].kind == BodyKind::static_ || model.bodies[body].rank == 4;
   };
   if (!is_solid(pair.first) || !is_solid(pair.second)) return false;
-  const bool has_first_moved = has_moved(model, outlines, pair.first),
-             has_second_moved = has_moved(model, outlines, pair.second);
-  if (has_first_moved || has_second_moved || !(h_ * meeting.speed() <= standing * meeting.size)) return false;
+  const auto share_of = [&](Mover* mover) { return is_of_sweeps(model, mover) ? standing_in_heap : standing; };
+  const double of_first = share_of(meeting.first), of_second = share_of(meeting.second);
+  const bool has_first_moved = has_moved(model, outlines, pair.first, of_first),
+             has_second_moved = has_moved(model, outlines, pair.second, of_second);
+  if (has_first_moved || has_second_moved || !(h_ * meeting.speed() <= std::max(of_first, of_second) * meeting.size))
+    return false;
   return ingredient::Contacts::renew(model, pair.first, pair.second, former, motion_in(model, meeting));
 }
 
@@ -571,11 +586,11 @@ bool ContactFinder::touch(model::Model& model, contact::Outlines& outlines, cons
     if (!of->basis) of->basis.emplace(model, of->body);
     return &*of->basis;
   };
-  ingredient::Contacts::Motion motion = motion_in(model, meeting);
-  motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
   find_touches(model, outlines, pair, meeting);
   keep_the_outermost(found_, size);
   if (found_.empty()) return false;
+  ingredient::Contacts::Motion motion = motion_in(model, meeting);
+  motion.bases[0] = basis(mover), motion.bases[1] = basis(other);
   ingredient::Contacts::take(model, first, second, former, found_, motion);
   return true;
 }

@@ -81,6 +81,7 @@ class ContactFinder {
     bool is_hasty = false;   ///< it takes the step in parts then
     double jump = 0;         ///< speed of a scripted body in this step beside that of the last one: for sensors, m/s
     double steps = 1;        ///< that it may take at once
+    double ahead = -1;       ///< how far beyond its outline others are looked for, m; negative: it does not look
     std::uint64_t look = 0;  ///< in which it was measured
     bool is_placed = false;  ///< its outline is where the body is now; this and the following: where asked for
     std::optional<geometry::Bounds> box;
@@ -116,6 +117,7 @@ class ContactFinder {
     double jump() const { return first->jump + (second ? second->jump : 0); }  ///< see Mover
   };
   const contact::Outline& placed(contact::Outlines&, Mover&);
+  bool is_of_sweeps(const model::Model&, Mover*);
   bool is_of_sweeps(const model::Model&, const Meeting&);
   Meeting meeting_of(const model::Model&, contact::Outlines&, const Pair&);
   /// former: the contacts that they have. False: they do not touch.
@@ -130,7 +132,8 @@ class ContactFinder {
   /// The contacts that they have stay, where neither has moved. False, without a change: they have moved, or have none.
   bool renew(model::Model&, const contact::Outlines&, const Pair&, const Meeting&,
              std::span<const std::uint32_t> former);
-  bool has_moved(model::Model&, const contact::Outlines&, std::uint32_t body);
+  /// share: of the size of the body.
+  bool has_moved(model::Model&, const contact::Outlines&, std::uint32_t body, double share);
   ingredient::Contacts::Motion motion_in(const model::Model&, const Meeting&) const;
   void sense(const model::Model&, contact::Outlines&, const Pair&);
   double within(const Mover&, const Mover* other, double steps = 1) const;

@@ -116,5 +116,47 @@ TEST(StandingContacts, of_a_restored_tower_go_on_alike) {
   EXPECT_EQ(go_on(), first);
 }
 
+/// Bodies that sweeps have solved keep their contacts for a longer way.
+void sweep_all(System& system) { system.set_budget({.contacts = 1}); }
+
+TEST(StandingContacts, of_sweeps_go_along_with_a_body_that_creeps_over_an_edge) {
+  StandingBox scene(0);
+  sweep_all(scene.system);
+  scene.system.bodies().set_pose(scene.box, {2 - 3e-3, 0.1, 0}, {});
+  scene.system.bodies().set_velocity(scene.box, {3e-3, 0, 0});
+  int approximate = 0;
+  for (int i = 0; i < 50; ++i) approximate += scene.system.step(standing_step).approximate;
+  EXPECT_GT(approximate, 25);
+  EXPECT_NEAR(scene.place().x, 2 - 0.5e-3, 1e-4);
+  EXPECT_NEAR(scene.place().y, 0.1, 1e-3);
+  scene.run(300);  // its middle is 14 mm beyond the edge
+  EXPECT_LT(scene.place().y, 0.05);
+}
+
+TEST(StandingContacts, of_a_restored_heap_go_on_alike) {
+  System system({.gravity = {0, -9.81, 0}});
+  sweep_all(system);
+  system.set_usual_material(Material{0.5});
+  const BodyId ground = system.bodies().create_obstacle(HalfSpace{{0, 1, 0}}, {}, {});
+  system.bodies().set_material(ground, Material{0.5});
+  std::vector<BodyId> heap;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 place{0.08 * (i % 3), 0.1 + 0.2 * i, 0.05 * (i % 2)};
+    heap.push_back(i % 2 ? system.bodies().create(Sphere{0.09}, {.position = place})
+                         : system.bodies().create(Box{{0.2, 0.2, 0.2}}, {.position = place}));
+  }
+  for (int i = 0; i < 100; ++i) (void)system.step(standing_step);
+  const Snapshot snapshot = system.snapshot();
+  const auto go_on = [&] {
+    std::vector<Vec3> places;
+    for (int i = 0; i < 60; ++i) (void)system.step(standing_step);
+    for (const BodyId body : heap) places.push_back(system.bodies().center_of_mass(body));
+    return places;
+  };
+  const std::vector<Vec3> first = go_on();
+  system.restore(snapshot);
+  EXPECT_EQ(go_on(), first);
+}
+
 }  // namespace
 }  // namespace iota
