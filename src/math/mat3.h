@@ -46,6 +46,12 @@ struct Mat3 {
   }
 };
 
+/// The transposed matrix times a vector.
+inline Vec3 transposed_times(const Mat3& a, const Vec3& v) {
+  return {a.m[0][0] * v.x + a.m[1][0] * v.y + a.m[2][0] * v.z, a.m[0][1] * v.x + a.m[1][1] * v.y + a.m[2][1] * v.z,
+          a.m[0][2] * v.x + a.m[1][2] * v.y + a.m[2][2] * v.z};
+}
+
 /// Moment of inertia about the origin of a mass that couples the velocities of points at p and q: m (p . q I - q p').
 inline Mat3 coupled_inertia(double mass, const Vec3& p, const Vec3& q) {
   return mass * (Mat3::diagonal(dot(p, q)) + -1.0 * Mat3::outer(q, p));
@@ -87,6 +93,12 @@ inline Vec3 rotate(const Quaternion& q, const Vec3& v) {
   const Vec3 u{q.x, q.y, q.z};
   const Vec3 t = 2 * cross(u, v);
   return v + q.w * t + cross(u, t);
+}
+/// The matrix of a rotation, by a unit quaternion.
+inline Mat3 matrix_of(const Quaternion& q) {
+  const double xx = 2 * q.x * q.x, yy = 2 * q.y * q.y, zz = 2 * q.z * q.z, xy = 2 * q.x * q.y, xz = 2 * q.x * q.z,
+               yz = 2 * q.y * q.z, xw = 2 * q.x * q.w, yw = 2 * q.y * q.w, zw = 2 * q.z * q.w;
+  return {{{1 - yy - zz, xy - zw, xz + yw}, {xy + zw, 1 - xx - zz, yz - xw}, {xz - yw, yz + xw, 1 - xx - yy}}};
 }
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
 /// The rotation about a vector by its length, rad.

@@ -17,11 +17,6 @@ void subtract_product(Mat3& c, const Mat3& a, const Mat3& b) {
     for (int j = 0; j < 3; ++j) c.m[i][j] -= a.m[i][0] * b.m[j][0] + a.m[i][1] * b.m[j][1] + a.m[i][2] * b.m[j][2];
 }
 
-Vec3 transposed_times(const Mat3& a, const Vec3& v) {
-  return {a.m[0][0] * v.x + a.m[1][0] * v.y + a.m[2][0] * v.z, a.m[0][1] * v.x + a.m[1][1] * v.y + a.m[2][1] * v.z,
-          a.m[0][2] * v.x + a.m[1][2] * v.y + a.m[2][2] * v.z};
-}
-
 /// The inverse of a symmetric matrix by sweeping its pivots, but for those that are at most these (Goodnight 1979, A Tutorial on
 /// the SWEEP Operator, doi:10.1080/00031305.1979.10482685): their rows and columns are zero.
 Mat3 inverse_of(Mat3 a, const Vec3& least) {

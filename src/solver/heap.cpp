@@ -210,13 +210,23 @@ void Heap::load_bodies(const Problem& problem, double h) {
 }
 
 void Heap::invert_inertia(Body& body, Motion& motion) {
-  constexpr double thin = 1e-9;
-  const SymmetricEigen eigen = symmetric_eigen(body.inertia);
+  constexpr double thin = 1e-9, even = 1e-12;
+  const auto& m = body.inertia.m;
+  const double mean = body.inertia.trace() / 3, most = even * mean;
+  body.is_even = body.count > 1 && std::abs(m[0][0] - mean) <= most && std::abs(m[1][1] - mean) <= most &&
+                 std::abs(m[2][2] - mean) <= most && std::abs(m[0][1]) <= most && std::abs(m[0][2]) <= most &&
+                 std::abs(m[1][2]) <= most;
   double reach = 0;
   for (std::uint32_t k = 0; k < body.count; ++k) reach = std::max(reach, norm(body.arms[k]));
+  const double least = thin * reach * reach / motion.by_mass;
+  body.is_even = body.is_even && mean > least;
+  if (body.is_even) {
+    body.by_inertia_at_begin = motion.by_inertia = Mat3::diagonal(1 / mean);
+    return;
+  }
+  const SymmetricEigen eigen = symmetric_eigen(body.inertia);
   // Shared points may give a body all its mass at one place: its inertia is round-off then.
-  const double largest =
-      std::max({eigen.values[0], eigen.values[1], eigen.values[2], thin * reach * reach / motion.by_mass});
+  const double largest = std::max({eigen.values[0], eigen.values[1], eigen.values[2], least});
   motion.by_inertia = {};
   for (int k = 0; k < 3; ++k)
     if (body.count > 1 && eigen.values[k] > thin * largest)  // that of a point is round-off
@@ -287,15 +297,8 @@ void Heap::sweep(const Problem& problem, double h, const HeapSoftness& soft, int
 }
 
 void Heap::move(double h) {
-  for (std::size_t i = 0; i < found_.all.size(); ++i) {
-    Body& body = found_.all[i];
-    Motion& motion = motions_[i];
-    if (motion.by_mass == 0) continue;
-    body.moved += h * motion.velocity;
-    const Vec3 angular = body.angular_momentum(motion.spin);
-    const Quaternion half = multiply(turn_by((0.5 * h) * motion.spin), body.turn);
-    body.turn_to(normalized(multiply(turn_by(h * body.spin_of(angular, half)), body.turn)), angular, motion);
-  }
+  for (std::size_t i = 0; i < found_.all.size(); ++i)
+    if (motions_[i].by_mass > 0) found_.all[i].move(h, motions_[i]);
 }
 
 // visit(node, body, motion, arm): each point of what moves by itself, once.

@@ -11,6 +11,15 @@ namespace iota::solver {
 
 namespace {
 
+/// The rotation about a vector by its length, rad: by series where that is short, as in sub-steps.
+Quaternion short_turn(const Vec3& v) {
+  const double square = 0.25 * dot(v, v);  // of half the angle
+  if (!(square < 0.01)) return turn_by(v);
+  const double sine = 0.5 * (1 - square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72))));
+  const double cosine = 1 - square / 2 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56)));
+  return {sine * v.x, sine * v.y, sine * v.z, cosine};
+}
+
 bool are_equations(const ConstraintPool<DistanceConstraint>& pool, std::size_t i) {
   return !pool.has_laws() || *pool.law(i) == RowLaw{};
 }
@@ -18,12 +27,21 @@ bool are_equations(const ConstraintPool<DistanceConstraint>& pool, std::size_t i
 }  // namespace
 
 void HeapBody::turn_to(const Quaternion& to, const Vec3& angular_momentum, HeapMotion& motion) {
-  constexpr Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  turn = to;
-  motion.spin = spin_of(angular_momentum, turn);
-  for (int k = 0; k < 3; ++k) turned.set_column(k, rotate(turn, axes[k]));
-  const Mat3 back = turned.transposed();
-  for (int k = 0; k < 3; ++k) motion.by_inertia.set_column(k, turned * (by_inertia_at_begin * (back * axes[k])));
+  turn = to, turned = matrix_of(turn);
+  if (is_even) return;
+  motion.by_inertia = turned * (by_inertia_at_begin * turned.transposed());
+  motion.spin = motion.by_inertia * angular_momentum;
+}
+
+// The turn is that of the spin in the middle. An even body keeps its spin.
+void HeapBody::move(double h, HeapMotion& motion) {
+  moved += h * motion.velocity;
+  if (is_even) return turn_to(normalized(multiply(short_turn(h * motion.spin), turn)), {}, motion);
+  const Vec3 angular = angular_momentum(motion.spin);
+  const Quaternion half = short_turn((0.5 * h) * motion.spin);
+  const Vec3 spin =
+      rotate(half, turned * (by_inertia_at_begin * transposed_times(turned, rotate(conjugate(half), angular))));
+  turn_to(normalized(multiply(short_turn(h * spin), turn)), angular, motion);
 }
 
 bool HeapBodies::find(const Problem& problem) {

@@ -13,7 +13,7 @@
 namespace iota::solver {
 
 /// All that a sweep needs of a body. Of what is driven, and of the world: zero. Lanes gather it in this order, in fours.
-struct HeapMotion {
+struct alignas(32) HeapMotion {
   Vec3 velocity;       ///< m/s
   double by_mass = 0;  ///< 1/kg
   Vec3 spin;           ///< rad/s
@@ -28,6 +28,7 @@ struct HeapBody {
   std::array<double, most_points> shares{};  ///< of the points' masses
   std::uint32_t count = 0;
   bool is_driven = false;  ///< its points follow targets
+  bool is_even = false;    ///< its inertia is the same in all directions: of a ball, a cube
   // In a step.
   Mat3 inertia, by_inertia_at_begin;   ///< about the center, at the begin
   Vec3 center, moved;                  ///< at the begin; since then, m
@@ -38,12 +39,11 @@ struct HeapBody {
 
   Vec3 arm_now(std::uint32_t k) const { return turned * arms[k]; }
   Vec3 center_now() const { return center + moved; }
-  Vec3 angular_momentum(const Vec3& spin) const { return rotate(turn, inertia * rotate(conjugate(turn), spin)); }
-  Vec3 spin_of(const Vec3& angular_momentum, const Quaternion& turned_by) const {
-    return rotate(turned_by, by_inertia_at_begin * rotate(conjugate(turned_by), angular_momentum));
-  }
+  Vec3 angular_momentum(const Vec3& spin) const { return turned * (inertia * transposed_times(turned, spin)); }
   /// Turns it and its inertia; the spin is that of this angular momentum.
   void turn_to(const Quaternion&, const Vec3& angular_momentum, HeapMotion&);
+  /// Moves and turns it for h seconds by its motion.
+  void move(double h, HeapMotion&);
 };
 
 /// The bodies of a problem. A point that several bodies share belongs to the first of them, the others have a copy of it: its mass

@@ -31,7 +31,7 @@ class HeapPoints {
     const auto [pack, lane] = places_[item];
     if (pack == none) return 0;
     const PackBegin& begin = begins_[pack];
-    return (begin.approach[lane] > least ? 1 + begin.restitution[lane] : 1) * packs_[pack].normal.impulse[lane];
+    return (begin.approach[lane] > least ? 1 + begin.restitution[lane] : 1) * packs_[pack].impulses[0][lane];
   }
   /// Gaps and directions at the places of the bodies, h seconds later.
   void refresh(const HeapBodies&, std::span<const HeapMotion>, double h);
@@ -61,34 +61,31 @@ class HeapPoints {
     std::array<Vec3, 3> ways;        ///< the normal, and two of friction
     std::array<double, 3> forces{};  ///< along them in the step before, N
   };
-  /// One of the three directions in which places resist.
-  struct Line {
-    Vec3Lanes way;
-    Vec3Lanes turn_a, turn_b;  ///< the rate of the way by the spins
-    Vec3Lanes spin_a, spin_b;  ///< what an impulse of 1 N s adds to the spins
-    Lanes drift{};             ///< rate by driven sides, m/s
-    Lanes mass{};              ///< kg
-    Lanes impulse{};           ///< in a sub-step, N s
-  };
-  /// Places that have no free body in common. Lanes without one are at the world. All of a sweep is in it, but for the motions.
+  /// Places that have no free body in common, with three directions in which each resists: the normal, and two of friction. Lanes without
+  /// one are at the world. All of a sweep is in it, but for the motions.
   struct Pack {
-    LaneNumbers a, b;  ///< bodies
+    LaneNumbers a, b;     ///< bodies
+    bool is_even = true;  ///< the inertia of all of them is the same in all directions: see HeapBody
     Lanes by_mass_a{}, by_mass_b{}, friction{}, gap{};
-    Line normal, first, second;
+    Vec3Lanes arm_a, arm_b;  ///< from the centers to the place, now
+    Vec3Lanes drift;         ///< rate by driven sides, m/s
+    std::array<Vec3Lanes, 3> ways;
+    Lanes masses[3]{}, impulses[3]{};  ///< kg; in a sub-step, N s
+    Lanes by_normal[2]{};              ///< what a normal impulse adds to the rates of the two others, 1/kg
   };
   /// The rest of it, which sweeps do not need.
   struct PackBegin {
     int count = 0;
     LaneNumbers rows{};
     Vec3Lanes arm_a, arm_b, gap_a, gap_b;    ///< at the begin
-    Vec3Lanes drift, drifted;                ///< m/s; the way since the begin, m
+    Vec3Lanes drifted;                       ///< the way of driven sides since the begin, m
     Lanes gap{};                             ///< at the begin, m
     Lanes half{};                            ///< 1/2, or 0 if one side does not move
     Lanes restitution{}, approach{};         ///< the latter at the begin, m/s
-    Lanes sum{}, sum_first{}, sum_second{};  ///< impulses in the step, N s
+    Lanes sums[3]{};                         ///< impulses in the step, N s
   };
   /// The place of a body against that at the begin.
-  struct Stand {
+  struct alignas(32) Stand {
     Vec3 moved;
     double turn_w = 1;
     Mat3 turned = Mat3::diagonal(1);
@@ -98,8 +95,9 @@ class HeapPoints {
 
   bool load_point(const Problem&, const HeapBodies&, std::span<const HeapMotion>, std::size_t item, double rate,
                   const Vec3& up, Point&) const;
-  void pack(std::span<const HeapMotion>, double h);
-  void turn_lines(std::span<const HeapMotion>, bool weighs_all);
+  void pack(const HeapBodies&, std::span<const HeapMotion>, double h);
+  void turn(std::span<const HeapMotion>);
+  static void weigh(Pack&, const HeapMotion*, const LaneMask& which);
 
   std::vector<Pack> packs_;
   std::vector<PackBegin> begins_;

@@ -51,7 +51,7 @@ TEST(Lanes, are_chosen_one_by_one) {
 }
 
 TEST(Lanes, are_gathered_from_records_and_scattered_back) {
-  struct Record {
+  struct alignas(32) Record {
     double numbers[8];
   };
   std::vector<Record> records(5);

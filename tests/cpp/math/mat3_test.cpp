@@ -44,6 +44,14 @@ TEST(Mat3, products_with_a_vector_are_what_their_names_say) {
   }
 }
 
+TEST(Mat3, transposed_times_a_vector_and_of_a_turn_are_what_they_say) {
+  const Mat3 a{{{1, 2, 3}, {-4, 5, 6}, {7, 8, -9}}};
+  const Vec3 v{0.3, -2, 5};
+  EXPECT_EQ(transposed_times(a, v), a.transposed() * v);
+  const Quaternion q = normalized({0.3, -0.5, 0.2, 0.7});
+  EXPECT_LT(norm(matrix_of(q) * v - rotate(q, v)), 1e-14);
+}
+
 TEST(Mat3, inertia_of_a_point_gives_the_angular_momentum_of_its_turning) {
   Random random;
   for (int i = 0; i < 20; ++i) {

@@ -75,5 +75,45 @@ TEST(HeapBodies, are_not_found_where_a_driven_body_shares_a_point) {
   EXPECT_FALSE(bodies.find(problem));
 }
 
+/// Turned by many short parts of the time, each about the spin in its middle.
+Quaternion turned_by_short_parts(HeapBody body, HeapMotion motion, double time) {
+  constexpr int parts = 20000;
+  const Vec3 angular = body.angular_momentum(motion.spin);
+  const auto spin_at = [&](const Quaternion& turn) {
+    return rotate(turn, body.by_inertia_at_begin * rotate(conjugate(turn), angular));
+  };
+  Quaternion turn = body.turn;
+  for (int k = 0; k < parts; ++k) {
+    const Quaternion half = multiply(turn_by((0.5 * time / parts) * spin_at(turn)), turn);
+    turn = normalized(multiply(turn_by((time / parts) * spin_at(half)), turn));
+  }
+  return turn;
+}
+
+TEST(HeapBodies, turn_freely_with_their_angular_momentum_in_short_and_long_sub_steps) {
+  const Mat3 uneven{{{2, 0.3, 0}, {0.3, 3, -0.2}, {0, -0.2, 4}}};
+  for (const bool is_even : {true, false})
+    for (const double h : {1e-3, 0.02}) {  // the longer one turns by more than the series is for
+      HeapBody body;
+      HeapMotion motion;
+      body.turned = Mat3::diagonal(1);
+      body.is_even = is_even, body.inertia = is_even ? Mat3::diagonal(2.5) : uneven;
+      for (int k = 0; k < 3; ++k) body.by_inertia_at_begin.set_column(k, solve(body.inertia, unit_vector(k)));
+      motion.by_inertia = body.by_inertia_at_begin, motion.by_mass = 1;
+      motion.velocity = {1, 2, 3}, motion.spin = {20, -4, 9};
+      const Vec3 angular = body.angular_momentum(motion.spin);
+      EXPECT_LT(norm(angular - body.inertia * motion.spin), 1e-12);
+      const Quaternion wanted = turned_by_short_parts(body, motion, 2 * h);
+      for (int k = 0; k < 2; ++k) body.move(h, motion);
+      EXPECT_LT(norm(body.moved - 2 * h * Vec3{1, 2, 3}), 1e-15);
+      EXPECT_LT(norm(body.angular_momentum(motion.spin) - angular), 1e-12 * norm(angular));
+      const Quaternion off = multiply(conjugate(wanted), body.turn);
+      const double most = is_even ? 1e-12 : 50 * h * h;  // of second order
+      EXPECT_LT(2 * norm(Vec3{off.x, off.y, off.z}), most) << is_even << " " << h;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LT(norm(body.turned * unit_vector(k) - rotate(body.turn, unit_vector(k))), 1e-14);
+    }
+}
+
 }  // namespace
 }  // namespace iota::solver
