@@ -604,10 +604,7 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
   std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
     if (has_points(model.bodies[body]))
-      model.contacts.for_each_of(body, [&](std::uint32_t slot) {
-        const Contact& c = model.contacts[slot];  // both bodies of each are here, or one does not move
-        if (c.p == body || !has_points(model.bodies[c.p])) slots.push_back(slot);
-      });
+      model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
     const Contact& c = model.contacts[slot];
