@@ -60,7 +60,7 @@ def play(system: iota.System, things: list[iota.Body], at: random.Random, steps:
     return found
 
 
-@pytest.mark.parametrize(("mode", "seed"), [("energy_keeping", 3), ("energy_keeping", 6), ("robust", 2), ("robust", 6)])
+@pytest.mark.parametrize(("mode", "seed"), [("energy_keeping", 3), ("energy_keeping", 6), ("robust", 2), ("robust", 3)])
 def test_no_step_takes_thousands_of_iterations(mode: Literal["robust", "energy_keeping"], seed: int) -> None:
     """With forty things single steps took 700 to 6200 iterations, up to two seconds."""
     system, things, at = room(40, seed, mode)
