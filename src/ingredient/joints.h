@@ -57,8 +57,15 @@ class Joints : public NoAnswers {
   static void visit_held(const Model&, std::uint32_t particle, Visit);
   /// visit(body): of those to which an exact weld ties a particle's body, `none` for the world.
   static void visit_welded(const Model&, std::uint32_t particle, Visit);
-  /// Whether a joint, surfaces or a coupling hold a particle's body in the world.
-  static bool hold_in_world(const Model&, std::uint32_t particle);
+  /// A place in the world at which a joint holds a body, and the directions in which it lets the body leave it.
+  struct HeldPlace {
+    Vec3 place;
+    std::array<Vec3, 2> ways;  ///< unit vectors
+    std::size_t freedom = 0;   ///< the number of them
+  };
+  /// Of the joints with an origin at a particle, those that hold it: a joint of directions alone does not, nor do one-sided ones,
+  /// distances, couplings and pairs of surfaces.
+  static void visit_held_places(const Model&, std::uint32_t particle, FunctionRef<void(const HeldPlace&)> visit);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);

@@ -2,6 +2,7 @@
 #include "base/sort_unique.h"
 #include "base/text.h"
 #include "ingredient/joint_forms.h"
+#include "ingredient/joint_frames.h"
 #include "ingredient/joints.h"
 #include "ingredient/model.h"
 #include "model/restructure.h"
@@ -163,12 +164,41 @@ void Joints::visit_welded(const Model& model, std::uint32_t particle, Visit visi
   });
 }
 
-bool Joints::hold_in_world(const Model& model, std::uint32_t particle) {
-  bool any = false;
-  for_each_side_at(model, particle, [&](const Constraint& c, int) {
-    any = any || (info(c.kind).form != Form::distance && body_of_side(model, c, 1) == none);
+namespace {
+
+/// The normal of the surface that holds a particle, at its place.
+Vec3 normal_at(const Model& model, const Constraint& c, std::uint32_t slot) {
+  const Vec3 origin = position_of(model, c, b_origin), away = position_of(model, c, a_origin) - origin;
+  std::array<Vec3, 3> axes;
+  for (int i = 0; i < 3; ++i) axes[i] = unit(position_of(model, c, b_axis + i) - origin);
+  const Vec3 slope =
+      model.geometry(slot).surfaces[1]->at({dot(away, axes[0]), dot(away, axes[1]), dot(away, axes[2])}).gradient;
+  return slope.x * axes[0] + slope.y * axes[1] + slope.z * axes[2];
+}
+
+/// It slides along a line, or in the plane normal to it.
+Joints::HeldPlace along(const Vec3& place, const Vec3& line) { return {place, {unit(line)}, 1}; }
+Joints::HeldPlace across(const Vec3& place, const Vec3& normal) {
+  const Vec3 first = any_perpendicular(normal);
+  return {place, {first, unit(cross(normal, first))}, 2};
+}
+
+}  // namespace
+
+void Joints::visit_held_places(const Model& model, std::uint32_t particle, FunctionRef<void(const HeldPlace&)> visit) {
+  model.for_each_constraint_of(particle, [&](std::uint32_t slot, int place) {
+    const Constraint& c = model.constraints[slot];
+    if (place != a_origin || !c.active || body_of_side(model, c, 1) != none) return;
+    const ConstraintKindInfo& kind = info(c.kind);
+    // A guide or plane of the world stays where it is, while the body may have left its origin.
+    if (kind.meet) visit({.place = model.position(particle)});
+    if (kind.line) visit(along(position_of(model, c, b_origin), calc_axis(model, c)));
+    if (kind.plane) visit(across(position_of(model, c, b_origin), calc_axis(model, c)));
+    if (kind.form == Form::path)
+      visit(along(model.position(particle), model.geometry(slot).curve->at(c.coordinate[slide]).d1));
+    if (kind.form == Form::surface && kind.sign == 0)
+      visit(across(model.position(particle), normal_at(model, c, slot)));
   });
-  return any;
 }
 
 bool Joints::ties_to_world(const Model& model, std::uint32_t body) {

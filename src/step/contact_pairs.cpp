@@ -17,6 +17,22 @@ bool may_touch(const model::Model& model, const contact::Outlines& outlines, std
 
 namespace {
 
+/// Whether a place, and those to which a joint lets it go, are within an obstacle or on its surface. A lift of which the guide leaves
+/// the ground falls on it, and so does what moves in an upright plane.
+bool is_held_at(const contact::Outline& obstacle, const ingredient::Joints::HeldPlace& held, double slack,
+                double reach) {
+  constexpr double way = 0.1, aside = 1e-3;  // of the reach
+  const double apart = contact::near(obstacle, held.place).distance;
+  // Each plane through an obstacle leaves it somewhere, while a piston or a bead has a guide through it.
+  if (apart > slack || (held.freedom > 1 && apart < -slack)) return false;
+  for (std::size_t i = 0; i < held.freedom; ++i)
+    for (const double side : {way, -way}) {
+      const Vec3 place = held.place + side * reach * held.ways[i];
+      if (contact::near(obstacle, place).distance > std::max(apart, 0.0) + aside * reach) return false;
+    }
+  return true;
+}
+
 /// Whether a nail or a joint of the world holds a body, or what welds hold at it, within something static: a chain on its beam, a wheel
 /// on the axle that a stand carries.
 bool is_held_within(model::Model& model, contact::Outlines& outlines, JoinedBodies& joined, std::uint32_t body,
@@ -25,12 +41,17 @@ bool is_held_within(model::Model& model, contact::Outlines& outlines, JoinedBodi
   const bool has_joints = ingredient::Joints::ties_any(model);
   bool any = false;
   const auto look_at = [&](std::uint32_t member) {
-    const double slack = std::max(model::radius_of(model, member), of_reach * outlines.reach(member));
+    const double reach = std::max(outlines.reach(member), 0.0);  // 0: it has no outline
+    const double slack = std::max(model::radius_of(model, member), of_reach * reach);
     model.for_each_particle_of(member, [&](std::uint32_t p) {
-      const model::Particle& particle = model.particles[p];
-      if (any || !(model.rings[particle.ring].nailed || (has_joints && ingredient::Joints::hold_in_world(model, p))))
-        return;
-      any = contact::near(outlines.placed(obstacle), model.position(p)).distance <= slack;
+      const auto note = [&](const ingredient::Joints::HeldPlace& held) {
+        // A guide beside a body may run on into the ground below it.
+        const bool is_on_body = held.freedom == 0 || reach == 0 ||
+                                contact::near(outlines.placed(member), model.position(p)).distance <= slack;
+        any = any || (is_on_body && is_held_at(outlines.placed(obstacle), held, slack, reach));
+      };
+      if (!any && model.rings[model.particles[p].ring].nailed) note({.place = model.position(p)});
+      if (!any && has_joints) ingredient::Joints::visit_held_places(model, p, note);
     });
   };
   if (!joined.has_welds(model))

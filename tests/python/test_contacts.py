@@ -276,3 +276,60 @@ def test_what_absorbs_something_that_touches_nothing_still_touches() -> None:
         system.step(1 / 60)
     lowest = 0.05 - 0.01 / 0.31 * 0.06  # by the center of both, which is a little higher
     assert box.position.y > lowest
+
+
+@pytest.mark.parametrize("lift", [0.0, 0.3])
+@pytest.mark.parametrize("ground", ["box", "half-space"])
+@pytest.mark.parametrize(
+    "kind", ["planar", "deep planar", "prismatic", "deep prismatic", "cylindrical", "path", "surface", "inside"]
+)
+def test_what_a_joint_of_the_world_lets_fall_lands_on_the_obstacle_at_its_place(
+    kind: str, ground: str, lift: float
+) -> None:
+    system = iota.System()
+    system.usual_material = iota.Material(friction=0.3)
+    if ground == "box":
+        system.obstacle(iota.Box((20, 1, 20)), position=(0, -0.5, 0))
+    else:
+        system.obstacle(iota.HalfSpace())
+    box = system.body(shape=iota.Box((0.4, 0.4, 0.4)), mass=1, position=(0, 0.2 + lift, 0))
+    at = (0, -0.3 if "deep" in kind else 0, 0)
+    if "planar" in kind:
+        system.planar(box, at=at, axis=(0, 0, 1))
+    elif "prismatic" in kind:
+        system.prismatic(box, at=at, axis=(0, 1, 0))
+    elif kind == "cylindrical":
+        system.cylindrical(box, at=at, axis=(0, 1, 0))
+    elif kind == "path":
+        system.on_path(box.attachment((0, 0, 0)), [(0, -3, 0), (0, 0, 0), (0, 3, 0)])
+    elif kind == "surface":
+        system.on_surface(box.attachment((0, 0, 0)), iota.HalfSpace(), at=(0, 0, 0), orientation=("x", 90))
+    else:
+        system.inside(box.attachment((0, 0, 0)), iota.Sphere(5), at=(0, 0, 0))
+    for _ in range(180):
+        assert system.step(1 / 60).unconverged == 0
+    assert box.position.y == pytest.approx(0.2, abs=1e-4)
+
+
+def test_a_bead_on_a_bar_a_piston_in_a_block_and_a_wheel_on_its_axle_overlap_what_guides_them() -> None:
+    """By the motion that they would have alone."""
+    for kind in ("bead", "piston", "wheel", "drawer"):
+        ways = []
+        for has_obstacle in (False, True):
+            system = iota.System()
+            system.usual_material = iota.Material(friction=0.5)
+            body = system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1)
+            if kind == "wheel":
+                system.revolute(body, at=(0, 0, 0), axis=(0, 0, 1))
+                body.angular_velocity = (0, 0, 3)
+            else:
+                system.prismatic(body, at=(0, 0, 0), axis=(1, 0, 0))
+                body.velocity = (0.5, 0, 0)
+            size = {"bead": (4, 0.05, 0.05), "piston": (2, 0.6, 0.6), "wheel": (0.05, 0.05, 1), "drawer": (3, 0.1, 3)}[
+                kind
+            ]
+            if has_obstacle:
+                system.obstacle(iota.Box(size), position=(0, -0.05 if kind == "drawer" else 0, 0))
+            system.step(1 / 60, 60)
+            ways.append((*body.position, *body.angular_velocity))
+        assert ways[1] == pytest.approx(ways[0], abs=1e-12), kind
