@@ -417,16 +417,16 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, const
           Part& piece = pieces_.of(points.front());
           piece.lost += given, piece.given += given;
         });
-  if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, Rest::gives, pieces_);
+  if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, pieces_);
   // Bodies that collide change the motions of their centers of mass, too, and so lose more together.
   if (are_touching_due) {
     add_given(pieces_, touching_);
-    most_gain -= turn_parts(problem, most_gain, Rest::gives, touching_);
+    most_gain -= turn_parts(problem, most_gain, touching_);
   }
   if (are_clusters_due) {
     add_given(pieces_, clusters_);
     if (are_touching_due) add_given(touching_, clusters_);
-    (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
+    (void)turn_parts(problem, most_gain, clusters_);
   }
   return are_pieces_due || are_touching_due || are_clusters_due || are_members_due_ || are_wheels_due_;
 }
@@ -485,12 +485,10 @@ double Spin::turn_members(Problem& problem, double most_gain) {
 }
 
 /// Returns the kinetic energy that this adds, J.
-double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion, Parts& parts) {
+double Spin::turn_parts(Problem& problem, double most_gain, Parts& parts) {
   find_motions(problem, parts);
   // A part that swings on a nail keeps its motion, with the fall along the chord of the step: its reactions depend on it.
-  const auto gives = [&](const Part& part) {
-    return rest_of_motion != Rest::is_kept && (part.holds.count == 0 || problem.gravity == Vec3{});
-  };
+  const auto gives = [&](const Part& part) { return part.holds.count == 0 || problem.gravity == Vec3{}; };
   double first = 0, second = 0, rest = 0;
   for (Part& part : parts.parts) {
     if (!part.is_due) continue;
@@ -508,12 +506,8 @@ double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion,
     if (!part.is_due) continue;
     const Vec3 place = problem.position[i] - part.center;
     const Vec3 shared = part.velocity() + cross(part.velocity_change, place);
-    problem.velocity[i] = shared +
-                          (part.is_rigid && rest_of_motion == Rest::gives ? 0
-                           : gives(part)                                  ? factor
-                                                                          : 1) *
-                              (problem.velocity[i] - shared) +
-                          share * cross(part.turn, place);
+    const double kept = part.is_rigid ? 0 : gives(part) ? factor : 1;
+    problem.velocity[i] = shared + kept * (problem.velocity[i] - shared) + share * cross(part.turn, place);
   }
   for (Part& part : parts.parts)
     if (part.is_due) part.given += share * (part.inertia * part.turn);

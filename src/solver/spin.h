@@ -37,8 +37,8 @@ class Spin {
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
   /// along the line at the start. Members and wheels get theirs first, then pieces, what touches and clusters the remainder. Velocities are those after
-  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, a piece takes it
-  /// from the rest of its motion, and others do without. `unbalanced`: forces that the solution leaves over at the points, N:
+  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; beyond that, pieces and
+  /// clusters take it from the rest of their motion, and members and wheels do without. `unbalanced`: forces that the solution leaves over at the points, N:
   /// its moment is lost, too. Returns whether velocities have changed.
   bool give_back(Problem&, std::span<const Vec3> displacement, const NodeVectors& unbalanced, double h,
                  const Holds& all, double most_gain);
@@ -130,8 +130,7 @@ class Spin {
   static void add_losses_of_fields(const Problem&, std::span<const Vec3> displacement, double h, Supported, Parts&);
   static void find_motions(const Problem&, Parts&);
   static void find_velocities(const Problem&, Parts&);
-  enum class Rest : std::uint8_t { gives, is_kept };
-  static double turn_parts(Problem&, double most_gain, Rest, Parts&);
+  static double turn_parts(Problem&, double most_gain, Parts&);
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
   void find_pushed(const Problem&);
   static void add_momenta(const Problem&, Parts&);
