@@ -58,8 +58,9 @@ void BondBatch::load(const model::Model& model, double ahead) {
     const ingredient::Bond& bond = model.bonds[bonds[i]];
     const model::Particle &p = model.particles[bond.p], &q = model.particles[bond.q];
     const model::Ring &from = model.rings[p.ring], &to = model.rings[q.ring];
-    rate[i] = to.velocity - from.velocity;
-    const Vec3 d = to.position - from.position + ahead * rate[i];
+    const Vec3 rate_now = to.velocity - from.velocity;
+    const Vec3 d = to.position - from.position + ahead * rate_now;
+    rate[i] = rate_now + ahead * (to.acceleration - from.acceleration);
     r[i] = norm(d);
     direction[i] = (1 / (r[i] + 1e-300)) * d;
     v[i] = dot(direction[i], rate[i]);
@@ -86,8 +87,10 @@ void BondBatch::load_rows(const model::Model& model, double ahead) {
   for (std::size_t i = 0; i < n; ++i) {
     const ingredient::Bond& bond = model.bonds[bonds[i]];
     const model::Ring &p = model.rings[model.particles[bond.p].ring], &q = model.rings[model.particles[bond.q].ring];
-    put(position_p.data(), i, p.position + ahead * p.velocity), put(velocity_p.data(), i, p.velocity);
-    put(position_q.data(), i, q.position + ahead * q.velocity), put(velocity_q.data(), i, q.velocity);
+    put(position_p.data(), i, p.position + ahead * p.velocity);
+    put(position_q.data(), i, q.position + ahead * q.velocity);
+    put(velocity_p.data(), i, p.velocity + ahead * p.acceleration);
+    put(velocity_q.data(), i, q.velocity + ahead * q.acceleration);
     for (std::size_t k = 0; k < count; ++k) parameter_rows[i * count + k] = bond.parameters[k];
   }
 }

@@ -166,9 +166,9 @@ void HeldForces::take_scripts(StepReport& report) {
     try {
       const model::Ring &p = model_.rings[model_.particles[bond.p].ring],
                         &q = model_.rings[model_.particles[bond.q].ring];
-      const Vec3 force =
-          script->second.force({model_.bonds.id(slot), p.position + ahead * p.velocity, q.position + ahead * q.velocity,
-                                p.velocity, q.velocity, model_.time + ahead});
+      const Vec3 force = script->second.force({model_.bonds.id(slot), p.position + ahead * p.velocity,
+                                               q.position + ahead * q.velocity, p.velocity + ahead * p.acceleration,
+                                               q.velocity + ahead * q.acceleration, model_.time + ahead});
       if (laws::is_force(force))
         add_force(slot, force);
       else
