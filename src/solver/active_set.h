@@ -62,15 +62,25 @@ class ActiveSet {
     bool stop_any = false;   ///< a row became an equation
     bool jump_any = false;   ///< a motor or brake reaches its speed at once
   };
+  /// Springs are forces, unless those that vibrate too fast for sub-steps obey their loads: then these are equations, whose values
+  /// are what their loads stretch them by.
+  enum class Springs : std::uint8_t { vibrate, obey_loads };
   /// By positions and velocities, in a step of h seconds: friction and motors slide or have their speed, stops are open or carry.
-  static Sides begin_motion(Problem&, double h);
+  static Sides begin_motion(Problem&, double h, Springs);
+  /// For the springs that obey their loads: notes their multipliers at a time within a sub-step, ...
+  static constexpr double inner_time = 0.8;  ///< of the sub-step
+  static void note_loads(Problem&);
+  /// ... and sets their stretch and its rate at the end of one of h seconds, by the multipliers there.
+  static void stretch_by_loads(Problem&, double h);
+  /// The largest vibration of one of them, by its multiplier, m.
+  static double largest_vibration(const Problem&);
   /// Moves equations whose multipliers are beyond a bound to it; returns whether any.
   static bool release_motion(Problem&);
   /// The part of the sub-step after which a row has left its side, by interpolation; 1: none. A row that does so in
   /// less than `least` of it begins the next sub-step with its new side.
   static double find_change(Problem&, double h, double least);
-  /// The longest step in which springs of rows are no stiff ones, s.
-  static double longest_step(const Problem&);
+  /// The longest sub-step in which springs of rows are not stiff, in a step of h seconds, s. Those that obey their loads do not count.
+  static double longest_step(const Problem&, double h, Springs);
   ///@}
 
  private:

@@ -27,12 +27,22 @@ double mobility_of(const RowMotion<C>& motion, const Problem& problem, const C& 
   return mobility;
 }
 
+/// The time of a radian of a spring's vibration if no other row acted, s.
+double time_of_radian(const RowLaw& law, double mobility) { return std::sqrt(law.compliance / mobility); }
+
+/// Whether sub-steps would follow nothing but the vibration of a spring with both signs, which its dashpot does not make slow.
+bool is_fast(const RowLaw& law, double mobility, double h) {
+  constexpr double part = 1.0 / 16;  // of a step
+  return law.is_compliant() && !law.is_rate && law.lower == -RowLaw::unbounded && law.upper == RowLaw::unbounded &&
+         time_of_radian(law, mobility) < part * h && law.compliance * law.damping < part * h;
+}
+
 /// The direction in which a one-sided row opens.
 int opening(const RowLaw& law) { return law.upper == 0 ? 1 : -1; }
 
 }  // namespace
 
-ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
+ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h, Springs springs) {
   constexpr double at_once = 1e-9;  // of the step: a motor or brake that reaches its speed earlier
   Sides sides;
   bool& can_follow = sides.can_follow;
@@ -47,11 +57,15 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
         const double speed = motion.speed[r] - law.rate;
         const double rest = little(pool.items[k], motion.size[r], law.rate, h);
         const int side_before = state.side;
-        state.start = motion.value[r], state.yield = 0;
+        state.start = motion.value[r], state.stretching = motion.speed[r], state.yield = 0;
         if (law == RowLaw{}) {
           state.side = 0;
-        } else if (law.is_off() || law.is_compliant()) {
+        } else if (law.is_off()) {
           state.side = 1;
+        } else if (law.is_compliant()) {
+          const bool obeys =
+              springs == Springs::obey_loads && is_fast(law, mobility_of(motion, problem, pool.items[k], r), h);
+          state.side = obeys ? 0 : 1;
         } else if (state.next_side != RowStates::as_it_moves) {
           state.side = state.next_side;
         } else if (law.is_rate) {
@@ -72,12 +86,58 @@ ActiveSet::Sides ActiveSet::begin_motion(Problem& problem, double h) {
           pool.multiplier(k)[r] = law.is_rate ? (state.side > 0 ? law.upper : law.lower) : 0;
         state.before = std::abs(speed), state.next_side = RowStates::as_it_moves;
         sides.are_new = sides.are_new || state.side != side_before;
-        sides.stop_any = sides.stop_any || (state.side == 0 && side_before != 0);
+        sides.stop_any = sides.stop_any || (state.side == 0 && side_before != 0 && !law.is_compliant());
       }
     }
   });
   sides.stop_any = sides.stop_any || sides.jump_any;
   return sides;
+}
+
+namespace {
+
+/// visit(item, row, law): of the springs that obey their loads.
+template <class C, class Visit>
+void for_each_obeying(const ConstraintPool<C>& pool, Visit visit) {
+  for (std::size_t k = 0; k < pool.items.size() && pool.has_laws(); ++k)
+    for (int r = 0; r < C::rows; ++r)
+      if (const RowLaw& law = pool.law(k)[r]; law.is_compliant() && pool.is_equation(k, r)) visit(k, r, law);
+}
+
+}  // namespace
+
+void ActiveSet::note_loads(Problem& problem) {
+  problem.for_each_constraint_pool([]<class C>(ConstraintPool<C>& pool) {
+    for_each_obeying(pool, [&](std::size_t k, int r, const RowLaw&) {
+      pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)].within = pool.multiplier(k)[r];
+    });
+  });
+}
+
+// The rate is that of the parabola through three multipliers. With a rate of 0 a pendulum of 1e-6 m/N was 5e-5 m off after 1 s.
+void ActiveSet::stretch_by_loads(Problem& problem, double h) {
+  constexpr double a = inner_time, of_start = (1 - a) / a, of_inner = 1 / (a * (a - 1)), of_end = (2 - a) / (1 - a);
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    for_each_obeying(pool, [&](std::size_t k, int r, const RowLaw& law) {
+      RowStates::Row& state = pool.states.rows_[k * C::rows + static_cast<std::size_t>(r)];
+      const double lambda = pool.multiplier(k)[r];
+      state.start = law.compliance * lambda;
+      state.stretching = law.compliance / h * (of_start * state.before + of_inner * state.within + of_end * lambda);
+    });
+  });
+}
+
+double ActiveSet::largest_vibration(const Problem& problem) {
+  double largest = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for_each_obeying(pool, [&](std::size_t k, int r, const RowLaw& law) {
+      const RowMotion<C> motion(problem, pool.items[k]);
+      const double off = motion.value[r] - law.compliance * pool.multiplier(k)[r];
+      const double radian = time_of_radian(law, mobility_of(motion, problem, pool.items[k], r));
+      largest = std::max(largest, std::hypot(off, radian * motion.speed[r]));
+    });
+  });
+  return largest;
 }
 
 bool ActiveSet::release_motion(Problem& problem) {
@@ -127,7 +187,7 @@ double ActiveSet::find_change(Problem& problem, double h, double least) {
   return part;
 }
 
-double ActiveSet::longest_step(const Problem& problem) {
+double ActiveSet::longest_step(const Problem& problem, double h, Springs springs) {
   constexpr double of_radian = 1, of_decay = 2;
   double longest = std::numeric_limits<double>::infinity();
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -138,8 +198,9 @@ double ActiveSet::longest_step(const Problem& problem) {
       for (int r = 0; r < C::rows; ++r) {
         if (!law[r].is_compliant() || law[r].is_off()) continue;
         const double mobility = mobility_of(motion, problem, pool.items[k], r);
-        longest = std::min(
-            {longest, of_radian / std::sqrt(mobility / law[r].compliance), of_decay / (mobility * law[r].damping)});
+        if (springs == Springs::obey_loads && is_fast(law[r], mobility, h)) continue;
+        longest =
+            std::min({longest, of_radian * time_of_radian(law[r], mobility), of_decay / (mobility * law[r].damping)});
       }
     }
   });

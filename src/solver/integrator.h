@@ -203,6 +203,7 @@ class Integrator {
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   bool is_smooth(Problem&, double h);
   bool begin_motion(Problem&, bool has_accelerations, AdvanceReport&);
+  bool begin_springs(Problem&, double h, AdvanceReport&);
   struct FreeMotion {
     static constexpr std::uint32_t all = UINT32_MAX;
     RigidMotion motion;
@@ -271,7 +272,8 @@ class Integrator {
   std::vector<Piece> pieces_;  // of a disconnected problem; else none
   Pieces connected_;
   RoomForPieces room_for_pieces_;
-  std::vector<FreeMotion> free_motions_;  // of the explicit sub-step at hand
+  std::vector<FreeMotion> free_motions_;                         // of the explicit sub-step at hand
+  ActiveSet::Springs springs_ = ActiveSet::Springs::obey_loads;  // in explicit sub-steps
 
   // The state with which the latest `advance` began; see take_back.
   bool has_advanced_ = false, is_taken_back_ = false;  // since the last change of structure

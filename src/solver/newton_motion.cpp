@@ -22,7 +22,8 @@ void Newton::find_accelerations(Problem& problem, std::span<Vec3> accelerations)
   });
 }
 
-// Relative; what the rows lack goes into the residuals. A row with a hold has moved by its rate for `time` seconds.
+// Relative; what the rows lack goes into the residuals. A row with a hold has moved by its rate for `time` seconds;
+// a spring that obeys its load has the stretch that is set.
 double Newton::find_gaps(const Problem& problem, double time) {
   const std::span<double> residuals = assembly_.residuals();
   std::fill(residuals.begin(), residuals.end(), 0.0);
@@ -35,7 +36,7 @@ double Newton::find_gaps(const Problem& problem, double time) {
       for (int r = 0; r < C::rows; ++r) {
         if (!pool.is_equation(k, r))
           row[r] = 0;
-        else if (pool.has_laws() && pool.law(k)[r].is_rate)
+        else if (pool.has_laws() && (pool.law(k)[r].is_rate || pool.law(k)[r].is_compliant()))
           row[r] -= pool.states.start(k * C::rows + static_cast<std::size_t>(r)) + pool.law(k)[r].rate * time;
         worst.add(std::abs(row[r]) * per_length);
       }

@@ -284,7 +284,9 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
         if (wanted.has_impacts && c.rebound > 0) row[0] = rate_in_the_middle(c, problem.velocity) - c.rebound;
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) {
-          if (pool.law(k)[r].is_rate && !keeps_rate) row[r] -= pool.law(k)[r].rate;
+          const RowLaw& law = pool.law(k)[r];
+          if (law.is_rate && !keeps_rate) row[r] -= law.rate;
+          if (law.is_compliant()) row[r] -= pool.states.stretching(k * C::rows + static_cast<std::size_t>(r));
           if (!pool.is_equation(k, r)) row[r] = 0;
         }
       // To m/s, as rows of angles and directions have no lengths.

@@ -39,7 +39,9 @@ RowEquation equation_of(const ConstraintPool<C>& pool, std::size_t i, int r, dou
   const RowLaw& law = pool.law(i)[r];
   const double start = pool.states.start(i * C::rows + static_cast<std::size_t>(r));
   if (law.is_rate) g -= start + law.rate * stage.h;
-  if (!law.is_compliant()) return {g, pool.states.yield(i * C::rows + static_cast<std::size_t>(r))};
+  // In a projection also a spring is rigid: it obeys its load, see ActiveSet::Springs.
+  if (!law.is_compliant() || stage.is_projection())
+    return {g, pool.states.yield(i * C::rows + static_cast<std::size_t>(r))};
   const double part = stage.is_mid_point() ? 0.5 : 1;
   const double stiffness = 1 / law.compliance, damping = law.damping / stage.h;
   const double total = part * stiffness + damping;

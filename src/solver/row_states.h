@@ -31,6 +31,8 @@ class RowStates {
   double start(std::size_t row) const { return rows_[row].start; }
   /// By how much a rate row yields to a multiplier of 1 while the sides are sought; 0 in every solution.
   double yield(std::size_t row) const { return rows_[row].yield; }
+  /// The rate at which the stretch of a spring that obeys its load changes at the end of an explicit sub-step, m/s.
+  double stretching(std::size_t row) const { return rows_[row].stretching; }
 
  private:
   friend class ActiveSet;
@@ -44,6 +46,8 @@ class RowStates {
     double before =
         0;  // at the start of an explicit sub-step: the speed of a row that slides, the multiplier of an equation
     std::int8_t next_side = as_it_moves;  // of an explicit sub-step
+    double within = 0;                    // the multiplier at `ActiveSet::inner_time` of it
+    double stretching = 0;
   };
   std::vector<Row> rows_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/runge_kutta.h"
 
+#include "solver/active_set.h"
 #include "solver/largest.h"
 #include "solver/row_equation.h"
 
@@ -47,6 +48,10 @@ constexpr double sum_of(const Row& row) {
   return sum;
 }
 
+constexpr int inner_stage = 3;
+static_assert(sum_of(for_velocity[inner_stage]) - ActiveSet::inner_time < 1e-15 &&
+              ActiveSet::inner_time - sum_of(for_velocity[inner_stage]) < 1e-15);
+
 /// Power of the forces that have no energy, W.
 struct Power {
   double external = 0, dissipated = 0;
@@ -76,6 +81,7 @@ Power calc_power(const Problem& problem, double h) {
       for (int r = 0; r < C::rows; ++r) {
         const RowLaw& law = pool.law(k)[r];
         const double lambda = pool.multiplier(k)[r], speed = motion.speed[r];
+        if (law.is_compliant() && pool.is_equation(k, r)) continue;  // it obeys its load
         if (law.is_rate)
           power.external -= lambda * law.rate, power.dissipated += lambda * (speed - law.rate);
         else if (law.is_compliant())  // what it does not store
@@ -116,8 +122,10 @@ bool RungeKutta::step(Newton& newton, Problem& problem, double h, double start) 
     }
     if (stage == stages - 1) break;
     newton.find_accelerations(problem, slopes_[stage]);
+    if (stage == inner_stage && problem.has_laws()) ActiveSet::note_loads(problem);
     add_work(weights[stage]);
   }
+  if (problem.has_laws()) ActiveSet::stretch_by_loads(problem, h);  // those of the last stage, at the end
   return newton.project_state(problem, h);
 }
 

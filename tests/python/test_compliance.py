@@ -139,3 +139,30 @@ def test_a_callback_that_cannot_yield_is_a_clear_error() -> None:
     with pytest.raises(TypeError, match=r"compliance must be m/N or \(m/N, rad"):
         rod.compliance = "soft"
     assert rod.compliance == (0, 0, 0)
+
+
+@pytest.mark.parametrize("compliance", [1e-6, 1e-7, 1e-9])
+def test_a_stiff_joint_costs_accurate_no_sub_steps_and_the_told_error_holds(compliance: float) -> None:
+    """Against explicit steps that follow each vibration."""
+
+    def swing(hz: int, tolerance: float) -> tuple[np.ndarray, float, int]:
+        system = iota.System(mode="accurate")
+        system.tolerance = tolerance
+        anchor = system.body(kind="static").particle((0, 0, 0))
+        bob = system.body().particle((1, 0, 0), mass=1)
+        system.rod(anchor, bob).compliance = compliance
+        told, most = 0.0, 0
+        for _ in range(hz):
+            report = system.step(1 / hz)
+            told, most = told + report.error / hz, max(most, report.substeps_max)
+        assert abs(system.energy.balance) < 1e-12
+        return np.array(bob.position), told, most
+
+    place, told, most = swing(60, 1e-4)
+    assert most < 10
+    assert abs(np.linalg.norm(place) - 1 - compliance * 3 * 9.81 * -place[1]) < 1e-3 * compliance, (
+        "its load stretches it"
+    )
+    if compliance == 1e-6:
+        truth, _, _ = swing(600, 1e-9)
+        assert np.linalg.norm(place - truth) < max(told, 1e-5)
