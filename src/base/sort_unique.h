@@ -12,7 +12,7 @@ namespace iota {
 
 namespace detail {
 
-constexpr std::size_t few_to_sort = 64;      ///< are sorted by comparing them
+constexpr std::size_t few_to_sort = 64;       ///< are sorted by comparing them
 constexpr std::uint32_t sparse_to_sort = 16;  ///< so many numbers of the range for each one of a list, too
 
 /// Marks numbers that lie close to each other in a row of bits, and reads them in order. False, without a change: they are few, or far

@@ -63,7 +63,7 @@ class Joints : public NoAnswers {
     std::array<Vec3, 2> ways;  ///< unit vectors
     std::size_t freedom = 0;   ///< the number of them
   };
-  /// Of the joints with an origin at a particle, those that hold it: a joint of directions alone does not, nor do one-sided ones,
+  /// Visits the joints with an origin at a particle that hold it: a joint of directions alone does not, nor do one-sided ones,
   /// distances, couplings and pairs of surfaces.
   static void visit_held_places(const Model&, std::uint32_t particle, FunctionRef<void(const HeldPlace&)> visit);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);

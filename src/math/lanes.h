@@ -76,8 +76,8 @@ IOTA_ALWAYS_INLINE FourLanes transposed(const FourLanes& rows) {
 /// Which record of an array each lane has.
 using LaneNumbers = std::array<std::uint32_t, lane_count>;
 /// Lanes that lie in a record: the copy of so many bytes would be made in halves.
-using LanesInRecord __attribute__((vector_size(lane_count * sizeof(double)), aligned(lane_count * sizeof(double)),
-                                   may_alias)) = double;
+using LanesInRecord
+    __attribute__((vector_size(lane_count * sizeof(double)), aligned(lane_count * sizeof(double)), may_alias)) = double;
 /// The numbers at 4 k to 4 k + 3 of records that are of numbers alone and aligned as lanes, by lanes.
 template <class Record>
 IOTA_ALWAYS_INLINE FourLanes gather(const Record* records, const LaneNumbers& numbers, int k) {

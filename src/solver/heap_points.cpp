@@ -56,8 +56,7 @@ class HeapPoints::Sides {
   IOTA_ALWAYS_INLINE void give(const Vec3Lanes& impulse) {
     const Vec3Lanes turn_a = cross(pack_.arm_a, impulse), turn_b = cross(pack_.arm_b, impulse);
     add(velocity_a_, pack_.by_mass_a * impulse), add(velocity_b_, lanes_of(0) - pack_.by_mass_b, impulse);
-    if (pack_.is_even)
-      return add(spin_a_, spin_a_[3], turn_a), add(spin_b_, lanes_of(0) - spin_b_[3], turn_b);
+    if (pack_.is_even) return add(spin_a_, spin_a_[3], turn_a), add(spin_b_, lanes_of(0) - spin_b_[3], turn_b);
     add(spin_a_, by_inertia_of(pack_.a, spin_a_) * turn_a);
     add(spin_b_, lanes_of(-1), by_inertia_of(pack_.b, spin_b_) * turn_b);
   }
@@ -268,8 +267,7 @@ IOTA_WIDER void HeapPoints::weigh(Pack& pack, const HeapMotion* motions, const L
     pack.masses[r] = select(which, select(by_mass > 0, 1 / by_mass, lanes_of(0)), pack.masses[r]);
     if (r > 0) continue;
     for (std::size_t k = 0; k < 2; ++k)
-      pack.by_normal[k] =
-          select(which, dot(turns_a[1 + k], spin_a) + dot(turns_b[1 + k], spin_b), pack.by_normal[k]);
+      pack.by_normal[k] = select(which, dot(turns_a[1 + k], spin_a) + dot(turns_b[1 + k], spin_b), pack.by_normal[k]);
   }
 }
 

@@ -77,12 +77,12 @@ class HeapPoints {
   struct PackBegin {
     int count = 0;
     LaneNumbers rows{};
-    Vec3Lanes arm_a, arm_b, gap_a, gap_b;    ///< at the begin
-    Vec3Lanes drifted;                       ///< the way of driven sides since the begin, m
-    Lanes gap{};                             ///< at the begin, m
-    Lanes half{};                            ///< 1/2, or 0 if one side does not move
-    Lanes restitution{}, approach{};         ///< the latter at the begin, m/s
-    Lanes sums[3]{};                         ///< impulses in the step, N s
+    Vec3Lanes arm_a, arm_b, gap_a, gap_b;  ///< at the begin
+    Vec3Lanes drifted;                     ///< the way of driven sides since the begin, m
+    Lanes gap{};                           ///< at the begin, m
+    Lanes half{};                          ///< 1/2, or 0 if one side does not move
+    Lanes restitution{}, approach{};       ///< the latter at the begin, m/s
+    Lanes sums[3]{};                       ///< impulses in the step, N s
   };
   /// The place of a body against that at the begin.
   struct alignas(32) Stand {

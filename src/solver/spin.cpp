@@ -77,36 +77,36 @@ void Spin::find_axles(const Problem& problem, Noticed by, Parts& all_parts) {
   constexpr double upright = 1e-9;
   constexpr std::uint32_t none = Pieces::none;
   auto& [parts, connected, nail] = all_parts;
-  held_of_part_.assign(parts.size(), none);
+  hung_of_part_.assign(parts.size(), none);
   std::uint32_t count = 0;
   for (std::uint32_t k = 0; k < parts.size(); ++k)
-    if (!parts[k].is_kept && !connected.is_nail(k)) held_of_part_[k] = count++;
+    if (!parts[k].is_kept && !connected.is_nail(k)) hung_of_part_[k] = count++;
   if (count == 0) return;
   bool moves = false;
   problem.for_each_acting([&](const auto& pool, std::size_t i) {
     moves = moves || (!pool.items[i].is_internal() && pool.items[i].is_moving());
   });
   if (moves) return;
-  held_of_node_.resize(problem.size());
-  for (std::uint32_t i = 0; i < problem.size(); ++i) held_of_node_[i] = held_of_part_[connected.of[i]];
+  hung_of_node_.resize(problem.size());
+  for (std::uint32_t i = 0; i < problem.size(); ++i) hung_of_node_[i] = hung_of_part_[connected.of[i]];
   if (connected.are_nails.empty())
     for (const AffineConstraint& c : problem.items_of<AffineConstraint>())
-      if (c.is_nail()) held_of_node_[c.nodes[0]] = none;
+      if (c.is_nail()) hung_of_node_[c.nodes[0]] = none;
   noticed_.assign(count, {.length = 0});
-  const auto for_each_held = [&](auto visit) {
+  const auto for_each_hung = [&](auto visit) {
     for (std::uint32_t i = 0; i < problem.size(); ++i)
-      if (held_of_node_[i] != none) visit(problem.position[i], held_of_node_[i]);
+      if (hung_of_node_[i] != none) visit(problem.position[i], hung_of_node_[i]);
   };
-  for_each_held([&](const Vec3& place, std::uint32_t k) { noticed_[k].center = place; });  // one of them
-  for_each_held([&](const Vec3& place, std::uint32_t k) {
+  for_each_hung([&](const Vec3& place, std::uint32_t k) { noticed_[k].center = place; });  // one of them
+  for_each_hung([&](const Vec3& place, std::uint32_t k) {
     noticed_[k].length = std::max(noticed_[k].length, norm(place - noticed_[k].center));
   });
   for (RigidModes& noticed : noticed_)
     if (noticed.length == 0) noticed.length = 1;
-  add_noticed_modes(problem, held_of_node_, noticed_, by);
+  add_noticed_modes(problem, hung_of_node_, noticed_, by);
   for (std::uint32_t k = 0; k < parts.size(); ++k) {
-    if (held_of_part_[k] == none) continue;
-    const std::optional<Axle> axle = noticed_[held_of_part_[k]].axle();
+    if (hung_of_part_[k] == none) continue;
+    const std::optional<Axle> axle = noticed_[hung_of_part_[k]].axle();
     if (!axle || norm(cross(axle->direction, problem.gravity)) > upright * norm(problem.gravity)) continue;
     parts[k].axle = axle, parts[k].is_kept = true;
   }

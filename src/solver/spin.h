@@ -153,8 +153,8 @@ class Spin {
   std::vector<Count> counts_;  // of each piece
   RoomForPieces room_for_pieces_;
   std::vector<TurningBody> turning_bodies_;
-  // Of find_axles: of each node and each part the index among those that may have an axle.
-  std::vector<std::uint32_t> held_of_node_, held_of_part_;
+  // Each node and each part has an index among the parts that may have an axle: see find_axles.
+  std::vector<std::uint32_t> hung_of_node_, hung_of_part_;
   std::vector<RigidModes> noticed_;
 };
 

@@ -16,7 +16,9 @@ def unit(rng: random.Random) -> Array:
     return v / np.linalg.norm(v)
 
 
-def carousel(seed: int, mode: str, upright: bool, links: tuple[str, ...]) -> tuple[iota.System, list[iota.Body], Array, Array]:
+def carousel(
+    seed: int, mode: str, upright: bool, links: tuple[str, ...]
+) -> tuple[iota.System, list[iota.Body], Array, Array]:
     """Boxes joined at random, the first on an axle of the world or on two ball joints, that turn about it; the last one also on its own."""
     rng = random.Random(seed)
     axis = np.array((0.0, 1.0, 0.0)) if upright else unit(rng)
@@ -47,7 +49,9 @@ def carousel(seed: int, mode: str, upright: bool, links: tuple[str, ...]) -> tup
 
 def angular_momentum(bodies: list[iota.Body], at: Array, axis: Array) -> float:
     return sum(
-        float(axis @ (b.mass * np.cross(np.array(b.position) - at, np.array(b.velocity)) + np.array(b.angular_momentum)))
+        float(
+            axis @ (b.mass * np.cross(np.array(b.position) - at, np.array(b.velocity)) + np.array(b.angular_momentum))
+        )
         for b in bodies
     )
 
