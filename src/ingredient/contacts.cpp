@@ -542,7 +542,9 @@ void Contacts::end(Model& model, std::uint32_t body) {
 }
 
 void Contacts::wake(Model& model, std::uint32_t body) {
-  if (model::is_free(model.bodies[body].kind)) model.wake(model.bodies[body].articulate);
+  const BodyKind kind = model.bodies[body].kind;
+  // A flagged static body wakes what sleeps near it, see ContactFinder.
+  if (model::is_free(kind) || kind == BodyKind::static_) model.wake(model.bodies[body].articulate);
   if (model.contacts.size() == 0) return;
   model.contacts.for_each_of(body, [&](std::uint32_t slot) {
     const Contact& c = model.contacts[slot];

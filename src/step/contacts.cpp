@@ -189,6 +189,24 @@ bool is_asleep(const model::Model& model, std::uint32_t slot) {
 
 }  // namespace
 
+// Sleepers look for nothing, and nor do static bodies: a wall that was put into a sleeping box stayed in it.
+void ContactFinder::wake_at_edited_obstacles(model::Model& model, contact::Outlines& outlines) {
+  flagged_.assign(model.flagged().begin(), model.flagged().end());
+  for (const std::uint32_t articulate : flagged_) {
+    if (!model.articulates.is_alive(articulate)) continue;
+    const std::uint32_t obstacle = model.articulates[articulate].first;
+    if (model.bodies[obstacle].kind != BodyKind::static_ || !model.material(obstacle) || !outlines.has(obstacle))
+      continue;
+    const contact::OutlineTree& tree = outlines.refresh(model.step);
+    tree.overlapping(contact::bounds(tree[obstacle]), [&](std::uint32_t body) {
+      const Pair pair{std::min(body, obstacle), std::max(body, obstacle)};
+      if (is_asleep(model, body) && may_touch(model, outlines, body) &&
+          touch_each_other(model, outlines, joined_, pair))
+        model.wake(model.bodies[body].articulate);
+    });
+  }
+}
+
 // A look at each of ten thousand sleepers takes a tenth of a millisecond.
 void ContactFinder::list_candidates(const model::Model& model, const contact::Outlines& outlines,
                                     std::uint64_t awake_version) {
@@ -335,6 +353,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   step_ = h, shortest_ = h / solver::Heap::most_sub_steps;
   pairs_.clear();
   note_changes(model, outlines);
+  wake_at_edited_obstacles(model, outlines);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
   const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;

@@ -101,6 +101,8 @@ class ContactFinder {
   Mover& mover_at(const model::Model&, contact::Outlines&, std::uint32_t body);
   void begin_look(const model::Model&, double h, bool are_placed);
   void note_changes(model::Model&, contact::Outlines&);
+  /// Static bodies that were made, moved or changed since the last step wake what they overlap.
+  void wake_at_edited_obstacles(model::Model&, contact::Outlines&);
   void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
   void list_movers(const model::Model&);
   /// Into pairs_: what the movers may touch.
@@ -190,6 +192,7 @@ class ContactFinder {
   Known known_;
   JoinedBodies joined_;
   std::vector<std::uint32_t> contacts_;                ///< of an island
+  std::vector<std::uint32_t> flagged_;                 ///< see `model::Structure::flagged`
   std::vector<std::uint32_t> obstacles_, candidates_;  ///< the latter: those that may touch, and were awake when listed
   std::array<std::uint64_t, 3> listed_at_{};           ///< versions of islands, edits and outlines
   std::vector<Obstacle> all_obstacles_;                ///< by body slot

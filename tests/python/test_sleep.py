@@ -427,6 +427,68 @@ def test_what_lies_on_a_floor_wakes_in_the_step_in_which_that_changes(change: st
     assert np.abs(fall(0.2) - awake).max() < 1e-6
 
 
+def _moved(make: Callable[..., iota.Body]) -> Callable[[], None]:
+    wall = make(5)
+
+    def move() -> None:
+        wall.position = (0.2, 0.1, 0)
+
+    return move
+
+
+def _shown(make: Callable[..., iota.Body]) -> Callable[[], None]:
+    wall = make(0.2)
+    wall.kind = "inactive"
+
+    def show() -> None:
+        wall.kind = "static"
+
+    return show
+
+
+def _given_a_material(make: Callable[..., iota.Body]) -> Callable[[], None]:
+    wall = make(0.2)
+    wall.material = iota.Material(touches="nothing")
+
+    def give() -> None:
+        wall.material = iota.Material(friction=0.6)
+
+    return give
+
+
+WALLS = {"made": lambda make: lambda: make(0.2), "moved": _moved, "shown": _shown, "of matter": _given_a_material}
+
+
+@pytest.mark.parametrize("kind", ["obstacle", "static"])
+@pytest.mark.parametrize("shape", [iota.Box((0.2, 0.2, 0.2)), iota.Cylinder(0.1, 0.2)])
+@pytest.mark.parametrize("how", WALLS)
+def test_a_wall_that_is_put_into_a_sleeping_body_wakes_it(how: str, shape: iota.Shape, kind: str) -> None:
+    """It slept on within the wall: neither looked for the other."""
+
+    def pushed(rest_after: float) -> np.ndarray:
+        system = iota.System(gravity=(0, -9.81, 0))
+        system.usual_material = iota.Material(friction=0.6)
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        system.obstacle(iota.HalfSpace((0, 1, 0)))
+
+        def make(x: float) -> iota.Body:
+            if kind == "obstacle":
+                return system.obstacle(shape, position=(x, 0.1, 0))
+            return system.body("static", shape=shape, position=(x, 0.1, 0))
+
+        put = WALLS[how](make)
+        box = system.body(shape=iota.Box((0.24, 0.2, 0.2)), density=1000, position=(0, 0.1, 0))
+        system.step(1 / 60, 60)
+        assert box.kind == ("resting" if rest_after else "dynamic")
+        put()
+        system.step(1 / 60, 10)
+        return np.array(box.position)
+
+    awake = pushed(0)
+    assert awake[0] < -0.01
+    assert np.abs(pushed(0.2) - awake).max() < 1e-6
+
+
 @pytest.mark.parametrize("shape", [iota.Box((0.2, 0.2, 0.2)), iota.Sphere(0.1)])
 def test_contacts_begin_when_the_usual_material_lets_them(shape: iota.Shape) -> None:
     """After a usual material that touches nothing, what moves passed through each other."""
