@@ -92,16 +92,13 @@ struct Own {
 const Own& own() {
   static const Own all = [] {
     Own made;
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-      const auto add = [&]<class C>() {
-        Entry entry{name_of<C>(), {}};
-        add_layout<C>(entry.layout);
-        made.index_of.emplace(entry.name, made.entries.size());
-        made.entries.push_back(std::move(entry));
-        made.defaults.push_back(default_bytes<C>());
-      };
-      (add.template operator()<std::variant_alternative_t<i, Command>>(), ...);
-    }(std::make_index_sequence<std::variant_size_v<Command>>{});
+    for_each_command_type([&]<class C>() {
+      Entry entry{name_of<C>(), {}};
+      add_layout<C>(entry.layout);
+      made.index_of.emplace(entry.name, made.entries.size());
+      made.entries.push_back(std::move(entry));
+      made.defaults.push_back(default_bytes<C>());
+    });
     return made;
   }();
   return all;

@@ -17,10 +17,8 @@ struct Model;
 
 namespace iota::edit {
 
-/// Appends a command as recordings have it. A `Command` is not made of it: each file that executes commands would compile
-/// that for all of them.
 template <class C>
-void write(std::vector<std::byte>& bytes, const C& command);
+void write(std::vector<std::byte>& bytes, const C& command);  // commands.h
 
 /// The commands that `Log` gives in pieces. It cuts some by itself, since to ask for them from a script takes longer than
 /// all else that a journal costs a small world. Only `take_cut` may be called on any thread.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/serialize.h"
 #include "edit/attributes.h"
 #include "edit/batches.h"
 #include "edit/bodies.h"
@@ -19,9 +20,13 @@
 #include "edit/separate.h"
 #include "edit/settings.h"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <tuple>
+#include <type_traits>
 #include <utility>
-#include <variant>
+#include <vector>
 
 namespace iota::edit {
 
@@ -37,7 +42,7 @@ inline void apply(Editor& e, const TakeSnapshot&) { e.islands.renew(e.model); }
 
 // One per line, to avoid merge conflicts.
 // clang-format off
-using OfNouns = std::variant<
+using OfNouns = std::tuple<
     Step,
     SetGravity,
     SetMode,
@@ -148,18 +153,18 @@ using OfNouns = std::variant<
 
 namespace detail {
 template <class OfNouns, class Ingredients>
-struct AllCommands;
+struct Joined;
 template <class... C, class... I>
-struct AllCommands<std::variant<C...>, std::tuple<I...>> {
+struct Joined<std::tuple<C...>, std::tuple<I...>> {
   template <class... Own>
-  static std::variant<C..., Own...> join(std::tuple<Own...>*);
+  static std::tuple<C..., Own...> join(std::tuple<Own...>*);
   using type = decltype(join(static_cast<decltype(std::tuple_cat(std::declval<typename I::Commands>()...))*>(nullptr)));
 };
 }  // namespace detail
 
-/// All commands: those above, then those of the ingredients. Recordings name a command by its index in a list that they contain
-/// (command_list.h).
-using Command = detail::AllCommands<OfNouns, ingredient::Ingredients>::type;
+/// The types of all commands: those above, then those of the ingredients. Recordings name a command by its index in a list that they
+/// contain (command_list.h).
+using AllCommands = detail::Joined<OfNouns, ingredient::Ingredients>::type;
 
 /// An ingredient's own command.
 template <class C>
@@ -169,14 +174,63 @@ auto apply(Editor& e, const C& c) {
 }
 
 /// The index of a command in that list.
-template <class C, class Commands = Command>
+template <class C, class Commands = AllCommands>
 inline constexpr std::uint8_t index_of = 0;
 template <class C, class... Commands>
-inline constexpr std::uint8_t index_of<C, std::variant<Commands...>> = [] {
+inline constexpr std::uint8_t index_of<C, std::tuple<Commands...>> = [] {
   std::uint8_t index = 0;
   static_cast<void>(((std::is_same_v<C, Commands> || (++index, false)) || ...));
   return index;
 }();
+
+/// Appends a command as recordings have it.
+template <class C>
+void write(std::vector<std::byte>& bytes, const C& command) {
+  Writer writer(bytes);
+  writer.value(index_of<C>);
+  serialize(writer, command);
+}
+
+namespace detail {
+
+template <class C, class Visit>
+void read_one(Reader& reader, Visit& visit) {
+  C command{};
+  serialize(reader, command);
+  if (reader.ok()) visit(std::as_const(command));
+}
+
+template <class>
+struct Each;
+template <class... C>
+struct Each<std::tuple<C...>> {
+  template <class Visit>
+  static void visit(Visit& visit) {
+    (visit.template operator()<C>(), ...);
+  }
+  /// By index.
+  template <class Visit>
+  static constexpr std::array<void (*)(Reader&, Visit&), sizeof...(C)> readers = {&read_one<C, Visit>...};
+};
+
+}  // namespace detail
+
+/// Calls visit.operator()<C>() for each type of command, in order.
+template <class Visit>
+void for_each_command_type(Visit visit) {
+  detail::Each<AllCommands>::visit(visit);
+}
+
+/// Reads what `write` appended and calls visit(command). The reader fails, and nothing is called, at an index that no command has
+/// and at values that it cannot have. Not a variant that is visited: with a hundred alternatives each use took seconds to compile.
+template <class Visit>
+void read_command(Reader& reader, Visit visit) {
+  constexpr auto& readers = detail::Each<AllCommands>::readers<Visit>;
+  std::uint8_t index = 0;
+  reader.value(index);
+  if (index >= readers.size()) reader.fail();
+  if (reader.ok()) readers[index](reader, visit);
+}
 
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for
 /// users (`queued_as`).

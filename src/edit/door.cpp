@@ -13,17 +13,19 @@ namespace iota::edit {
 
 namespace {
 
-/// Calls visit(number, command) for each command that `write` appended.
-template <class Visit>
-void for_each_command(std::span<const std::byte> bytes, Visit visit) {
+/// Calls read(number, reader), which reads a command, for each that `write` appended.
+template <class Read>
+void read_all(std::span<const std::byte> bytes, Read read) {
   Reader reader(bytes);
   for (std::size_t number = 1; !reader.at_end(); ++number) {
-    Command command;
-    serialize(reader, command);
+    read(number, reader);
     if (!reader.ok())
       throw std::invalid_argument(text("replay: command ", number, " of the recording is cut short or damaged"));
-    visit(number, command);
   }
+}
+
+void require_commands(std::span<const std::byte> bytes) {
+  read_all(bytes, [](std::size_t, Reader& reader) { read_command(reader, [](const auto&) {}); });
 }
 
 }  // namespace
@@ -34,9 +36,7 @@ std::string queued_edits() {
     if constexpr (is_queueable<C>)
       if (std::find(names.begin(), names.end(), C::queued_as) == names.end()) names.push_back(C::queued_as);
   };
-  [&]<std::size_t... i>(std::index_sequence<i...>) {
-    (add.template operator()<std::variant_alternative_t<i, Command>>(), ...);
-  }(std::make_index_sequence<std::variant_size_v<Command>>{});
+  for_each_command_type(add);
   std::sort(names.begin(), names.end());
   std::string list;
   for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
@@ -65,9 +65,9 @@ void Door::apply_queue(StepReport& report) {
     else
       apply(editor_, command);
   };
-  for_each_command(edits, [&](std::size_t, const Command& edit) {
+  read_all(edits, [&](std::size_t, Reader& reader) {
     try {
-      std::visit(apply_one, edit);
+      read_command(reader, apply_one);
     } catch (const std::exception& error) {
       report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
     }
@@ -115,9 +115,9 @@ struct KeepFunctions {
   Editor& editor;
 };
 
-void repeat_one(std::size_t number, const Command& command, const std::function<void(const Command&)>& execute) {
+void repeat_one(std::size_t number, Reader& reader, const ExecuteNext& execute) {
   try {
-    execute(command);
+    execute(reader);
   } catch (const std::logic_error& error) {
     throw std::invalid_argument(text("replay: command ", number, " cannot be applied: ", error.what()));
   }
@@ -125,30 +125,31 @@ void repeat_one(std::size_t number, const Command& command, const std::function<
 
 }  // namespace
 
-std::optional<std::uint64_t> Door::replay(const Recording& recording,
-                                          const std::function<void(const Command&)>& execute) {
-  for_each_command(recording.commands, [](std::size_t, const Command&) {});  // throws before anything changes
+std::optional<std::uint64_t> Door::replay(const Recording& recording, const ExecuteNext& execute) {
+  const std::span<const std::byte> commands = recording.commands;
+  require_commands(commands);  // throws before anything changes
   editor_.restore(recording.start);
   editor_.forget_history();
   const KeepFunctions keep(editor_);
   std::size_t steps = 0;
   std::optional<std::uint64_t> differs;
   const bool is_comparable = has_own_tables(recording.start.bytes);  // hashes are those of tables
-  for_each_command(recording.commands, [&](std::size_t number, const Command& command) {
-    if (differs) return;
-    repeat_one(number, command, execute);
-    if (!is_comparable || !std::holds_alternative<Step>(command)) return;
+  Reader reader(commands);
+  for (std::size_t number = 1; !differs && !reader.at_end(); ++number) {
+    const auto index = std::to_integer<std::uint8_t>(commands[commands.size() - reader.remaining()]);
+    repeat_one(number, reader, execute);
+    if (!is_comparable || index != index_of<Step>) continue;
     if (steps >= recording.hashes.size() || editor_.model.hash() != recording.hashes[steps++])
       differs = editor_.model.step;
-  });
+  }
   log_.break_off();
   return differs;
 }
 
-void Door::repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute) {
-  for_each_command(commands, [](std::size_t, const Command&) {});  // throws before anything changes
+void Door::repeat(std::span<const std::byte> commands, const ExecuteNext& execute) {
+  require_commands(commands);  // throws before anything changes
   const KeepFunctions keep(editor_);
-  for_each_command(commands, [&](std::size_t number, const Command& command) { repeat_one(number, command, execute); });
+  read_all(commands, [&](std::size_t number, Reader& reader) { repeat_one(number, reader, execute); });
 }
 
 }  // namespace iota::edit

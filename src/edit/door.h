@@ -15,6 +15,9 @@ namespace iota::edit {
 template <class C>
 using ResultOf = decltype(apply(std::declval<Editor&>(), std::declval<const C&>()));
 
+/// Reads a command (`read_command`) and executes it.
+using ExecuteNext = std::function<void(Reader&)>;
+
 /// Every command passes through `execute`, from a user's call, a queue or a recording.
 class Door {
  public:
@@ -45,16 +48,16 @@ class Door {
   Recording stop_recording();
   /// Records a completed step.
   void record_step(const Step&);
-  /// Restores the start and calls execute(command) for each command that follows. Returns the number of the first step
+  /// Restores the start and has each command that follows executed. Returns the number of the first step
   /// with another hash, if any. Throws std::invalid_argument for a damaged recording: before any change if bytes are
   /// not a command, else after the last command that could be applied.
-  std::optional<std::uint64_t> replay(const Recording&, const std::function<void(const Command&)>& execute);
+  std::optional<std::uint64_t> replay(const Recording&, const ExecuteNext& execute);
   ///@}
 
   /// @name Logs: see `Log`
   ///@{
   CommandLog& log() { return log_; }
-  void repeat(std::span<const std::byte> commands, const std::function<void(const Command&)>& execute);
+  void repeat(std::span<const std::byte> commands, const ExecuteNext& execute);
   ///@}
 
  private:
@@ -76,13 +79,6 @@ class Door {
   std::optional<Recording> recording_;
   CommandLog log_;
 };
-
-template <class C>
-void write(std::vector<std::byte>& bytes, const C& command) {
-  Writer writer(bytes);
-  writer.value(index_of<C>);
-  serialize(writer, command);
-}
 
 // --- definitions --------------------------------------------------------------------------------------------------------
 

@@ -35,6 +35,9 @@ struct Core {
     }
   }
 
+  /// The command that the reader reads next.
+  void execute_next(Reader&);
+
   /// Slot of an existing object. Throws StaleIdError, which says what became of it.
   template <class IdType>
   std::uint32_t slot(IdType id) const {

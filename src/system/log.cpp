@@ -82,9 +82,7 @@ Snapshot Log::quick_snapshot() { return core_.editor.pack(); }
 
 void Log::repeat(std::span<const std::byte> commands) {
   if (core_.door.is_stepping()) throw std::logic_error("repeat: not while the system steps");
-  core_.door.repeat(commands, [&](const edit::Command& command) {
-    std::visit([&](const auto& c) { (void)core_.execute(c); }, command);
-  });
+  core_.door.repeat(commands, [&](Reader& reader) { core_.execute_next(reader); });
 }
 
 namespace {

@@ -37,7 +37,7 @@ TEST(CommandList, names_each_command_once_and_the_same_for_all_compilers) {
     EXPECT_TRUE(names.insert(name).second) << name;
     EXPECT_EQ(name.find_first_of("{}\"= ,:"), std::string::npos) << name;
   }
-  EXPECT_EQ(names.size(), std::variant_size_v<Command>);
+  EXPECT_EQ(names.size(), std::tuple_size_v<AllCommands>);
   EXPECT_TRUE(names.contains("Step") && names.contains("Destroy<body>"));
 }
 
@@ -46,7 +46,7 @@ TEST(CommandList, commands_with_other_numbers_are_found_by_their_names) {
   list += "Step f8\n";
   std::vector<std::byte> other = some_commands();
   const std::size_t step = sizeof(double) + 1;
-  other.front() = other[other.size() - step] = static_cast<std::byte>(std::variant_size_v<Command> - 1);
+  other.front() = other[other.size() - step] = static_cast<std::byte>(std::tuple_size_v<AllCommands> - 1);
   // All others have moved down by one.
   std::vector<std::byte> moved;
   for (const auto& command : {SetSolver{"exact"}}) write(moved, command);
