@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/contacts.h"
 
+#include "base/prefetch.h"
 #include "base/sort_unique.h"
 #include "base/text.h"
 #include "contact/rims.h"
@@ -600,6 +601,21 @@ void Contacts::visit_tied(const Model& model, std::uint32_t particle, Visit visi
   });
 }
 
+namespace {
+
+/// A contact and its row take 2 kB: more than this many are in no cache that is near, and contacts are in no order. Their memory
+/// is asked for two items ahead.
+constexpr std::size_t many_contacts = 200, contacts_ahead = 2;
+
+void fetch_ahead(const Model& model, const solver::ConstraintPool<solver::ContactConstraint>& rows, std::size_t i) {
+  const std::size_t next = i + contacts_ahead;
+  if (rows.items.size() < many_contacts || next >= rows.items.size()) return;
+  prefetch(rows.items[next]);
+  if (rows.keys[next].owner == rows.keys[i].owner) prefetch(model.contacts[rows.keys[next].slot]);
+}
+
+}  // namespace
+
 void Contacts::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   if (model.contacts.size() == 0) return;
@@ -608,7 +624,13 @@ void Contacts::build(const IslandMap& map, Problem& problem) {
     if (has_points(model.bodies[body]))
       model.contacts.for_each_of(body, [&](std::uint32_t slot) { slots.push_back(slot); });
   sort_unique(slots);
-  for (const std::uint32_t slot : slots) {
+  const auto& rows = problem.pool_of<solver::ContactConstraint>().items;
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const std::uint32_t slot = slots[k];
+    if (slots.size() >= many_contacts && k + contacts_ahead < slots.size()) {
+      prefetch(model.contacts[slots[k + contacts_ahead]]);
+      if (rows.size() + contacts_ahead < rows.capacity()) prefetch(rows.data()[rows.size() + contacts_ahead]);
+    }
     const Contact& c = model.contacts[slot];
     if (c.is_off) continue;
     solver::ContactConstraint row;
@@ -741,6 +763,7 @@ void Contacts::load(const Model& model, const IslandNodes& nodes, double h, Prob
   load_resistance(owner, model, nodes, h, problem);
   auto& rows = problem.pool_of<solver::ContactConstraint>();
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    fetch_ahead(model, rows, i);
     const Contact& c = model.contacts[key.slot];
     solver::ContactConstraint& row = rows.items[i];
     row.weights = c.weights;
@@ -796,6 +819,7 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
   if (!problem.has_used<solver::ContactConstraint>()) return;
   const auto& rows = problem.pool_of<solver::ContactConstraint>();
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    fetch_ahead(model, rows, i);
     const double* const l = rows.multiplier(i);
     const solver::ContactConstraint& row = rows.items[i];
     Contact& c = model.contacts[key.slot];
