@@ -13,6 +13,7 @@ import math
 import sys
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -24,9 +25,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "python")
 from page_client import PageClient
 
 import iota
+from iota.levels import arrivals, catching_up, choice
 from iota.studies import cradle_contact, crowd, museum, shoal, weather
 from iota.types import StepReport
-from iota.world import catching_up, levels
+from iota.world import levels
 
 DT = 1 / 120
 DISTANCE = 10.0  # m
@@ -80,7 +82,7 @@ STIFFENS = ("acrobats", "rope ladders", "chains")
 def set_level(world: iota.World, name: str) -> None:
     for thing in world.levels.things:
         if name == "stiff":
-            thing._set_stiff(True)
+            thing._set_stiff(True, world.scene._visuals)
         else:
             thing._set_stride(STRIDES[name])
 
@@ -335,7 +337,9 @@ def compare(make: Callable[[], tuple[iota.World, float, list[float]]], name: str
     taken = np.full(frames, np.inf)
     others = np.full(frames, np.inf)
     end = b""
-    with mock.patch.object(levels, "time", tape), mock.patch.object(catching_up, "time", tape):
+    with ExitStack() as patches:
+        for module in (levels, choice, arrivals, catching_up):
+            patches.enter_context(mock.patch.object(module, "time", tape))
         for number in range(walks):
             world, limit, times = make()
             steady = kind("chains", STEADY)
@@ -353,7 +357,7 @@ def compare(make: Callable[[], tuple[iota.World, float, list[float]]], name: str
             beyond = learning + np.nonzero(taken[learning:] > MOST * limit)[0]
             print(f"   beyond {MOST} budgets: {len(beyond)} frames", *beyond[:10])
             print("  ", spread(others[learning:] / np.median(others)), "of the usual, chains in full")
-            print(f"   a usual step may take {world.levels._full:.2f} of the budget; {world.levels}", flush=True)
+            print(f"   a usual step may take {world.levels._time.full:.2f} of the budget; {world.levels}", flush=True)
 
 
 def spread(values: np.ndarray) -> str:

@@ -12,10 +12,10 @@ import pytest
 import iota
 from iota import looks
 from iota._core import Places
+from iota.levels import catching_up
+from iota.levels.catching_up import CatchUp, catch_up
+from iota.levels.ties import Ties
 from iota.studies import crowd
-from iota.world import catching_up
-from iota.world.catching_up import CatchUp, catch_up
-from iota.world.ties import Ties
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
 DT = 1 / 120

@@ -8,10 +8,11 @@ import math
 import pytest
 
 import iota
-from iota.world import contact_share
+from iota.levels import contact_share
+from iota.levels.contact_share import LEAST, LONGEST_CALM, ContactShare
+from iota.levels.level import Level
+from iota.levels.managed import Managed
 from iota.world.clients import Client
-from iota.world.contact_share import LEAST, LONGEST_CALM, ContactShare
-from iota.world.levels import Level, Managed
 
 DT = 1 / 120
 

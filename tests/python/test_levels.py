@@ -16,10 +16,13 @@ from page_client import PageClient
 import iota
 from iota import looks
 from iota.builder import Structure
+from iota.levels.arrays import REFUSED
+from iota.levels.level import STANDARD, STIFF, Level
+from iota.levels.managed import Managed
+from iota.levels.things import Things
 from iota.studies import crowd
-from iota.world import levels
 from iota.world.clients import Client, Hold
-from iota.world.levels import OWN_REST, STIFF, Level, Managed
+from iota.world.levels import OWN_REST
 from iota.world.visuals import Visuals
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
@@ -272,14 +275,14 @@ def test_things_are_managed_without_a_look_at_all_others(monkeypatch: pytest.Mon
     """A look at all joints for each thing took a minute for a thousand of them."""
     world = iota.World(iota.System(), ground=None)
     looks = 0
-    jointed = levels.Levels._jointed
+    jointed = Things.jointed
 
-    def counted(self: levels.Levels) -> set[iota.Body]:
+    def counted(self: Things) -> set[iota.Body]:
         nonlocal looks
         looks += 1
         return jointed(self)
 
-    monkeypatch.setattr(levels.Levels, "_jointed", counted)
+    monkeypatch.setattr(Things, "jointed", counted)
     things = []
     for number in range(20):
         door = world.system.body(shape=iota.Box((1, 1, 0.1)), mass=1, position=(0, 0, -5.0 * number))
@@ -408,7 +411,7 @@ def test_stiff_things_keep_momentum_and_gain_no_energy() -> None:
     root.particles[0].release()
     root.articulate.bodies[-1].velocity = (0, 2, 1)
     system.step(0.01)
-    thing = Managed("chain", root, levels.STANDARD, 1.5, root.particles[0])
+    thing = Managed("chain", root, STANDARD, 1.5, root.particles[0])
     energy, momentum, spin = system.energy.kinetic, system.momentum, system.angular_momentum
     places = [list(p.position) for body in thing.bodies for p in body.particles]
     thing._set_stiff(True, Visuals())
@@ -988,7 +991,7 @@ def test_what_touched_may_take_strides_again_when_it_has_parted() -> None:
     system.gravity = (0, 0, 0)
     for k, box in enumerate(boxes):
         box.position = (0, 30, 40 * k)
-    run(world, levels.REFUSED + 10)
+    run(world, REFUSED + 10)
     eye[2], before = FAR, len(world.levels.changes)
     world.levels.budget_ms = LITTLE
     run_until(world, lambda: all(box.stride == 0 for box in boxes))

@@ -17,10 +17,12 @@ from amount import TRIES_ALL
 import iota
 from iota import looks
 from iota.builder import Structure
+from iota.levels import arrivals, choice
+from iota.levels.level import Level
+from iota.levels.managed import Managed
 from iota.studies import crowd
 from iota.world import levels as levels_module
 from iota.world.clients import Client
-from iota.world.levels import Level, Managed
 
 SCENES = int(os.environ.get("IOTA_LEVEL_SCENES", "200" if TRIES_ALL else "10"))
 STEPS, AT_ONCE = 70, 80  # of a scene; scenes in a test
@@ -208,7 +210,8 @@ class Scene:
 
     def run(self) -> None:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(levels_module, "time", self.clock)
+            for module in (levels_module, choice, arrivals):
+                patch.setattr(module, "time", self.clock)
             self.play()
 
     def play(self) -> None:

@@ -13,7 +13,8 @@ import pytest
 import iota
 from iota.builder import Structure
 from iota.frames import turned
-from iota.world.levels import Level, Managed
+from iota.levels.level import Level
+from iota.levels.managed import Managed
 
 PLENTY, LITTLE = 1e4, 1e-6  # ms
 
@@ -362,7 +363,7 @@ def test_a_large_structure_begins_above_the_ground() -> None:
     big = Level("far", share=0.1, quality=0.5, structure=lambda thing: ball_of(0.8, thing.mass))
     for board in boards:
         board.position -= (0, 0.9 / 3, 0)
-    world.levels._things.clear()
+    world.levels._things.all.clear()
     thing = world.levels.manage(boards[0].articulate, levels=["full", big])
     for _ in range(90):
         world.step()

@@ -10,7 +10,8 @@ from functools import cache
 
 import iota
 from iota import looks
-from iota.world.levels import Level, Managed
+from iota.levels.level import Level
+from iota.levels.managed import Managed
 
 from . import cradle_contact
 from ._figure import ALONG, UPRIGHT, Figure, Part

@@ -12,6 +12,8 @@ import numpy as np
 
 import iota
 from iota import looks, studies
+from iota.levels.level import Level
+from iota.levels.managed import Managed
 from iota.studies import (
     bucky,
     cradle_contact,
@@ -25,7 +27,6 @@ from iota.studies import (
     weather,
 )
 from iota.studies._stands import arm, tripod
-from iota.world.levels import Level, Managed
 from iota.world.shown import Paint
 from iota.world.things import Frame
 

@@ -2,6 +2,8 @@
 """`World`: runs a system in real time and shows it on a page, where users act on it."""
 
 from iota.arguments import explain
+from iota.levels.level import Level, LevelChange
+from iota.levels.managed import Managed
 from iota.world.clients import Client
 from iota.world.clock import Clock
 from iota.world.controls import Controls
@@ -10,7 +12,7 @@ from iota.world.drawings import Drawings
 from iota.world.event import Event
 from iota.world.events import Events
 from iota.world.fixtures import Fixtures
-from iota.world.levels import Level, LevelChange, Levels, Managed
+from iota.world.levels import Levels
 from iota.world.pages import Pages
 from iota.world.queries import Queries
 from iota.world.scene import Camera, Scene

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from iota._core import Body, Box, Particle, Places, System, Vec3
 from iota.errors import ForceError
-from iota.world.acting import Force, can_copy_force, copy_forces, forces_on, pushed_places
-from iota.world.fitting import passing_pairs
-from iota.world.stand_ins import put
-from iota.world.ties import Tie, can_be_copied, copy_ties, needed_particles
+from iota.levels.acting import Force, can_copy_force, copy_forces, forces_on, pushed_places
+from iota.levels.fitting import passing_pairs
+from iota.levels.stand_ins import put
+from iota.levels.ties import Tie, can_be_copied, copy_ties, needed_particles
 
 Floats = NDArray[np.float64]
 STEPS, LONGEST = 48, 1 / 20  # of the copy; s: longer ones let thin things pass through each other

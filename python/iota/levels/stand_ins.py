@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from iota._core import Body, Particle, System, Vec3
 from iota.arguments import SHORT
 from iota.frames import one_after_another
-from iota.world.fitting import up_of, way_out, work_of_gravity
+from iota.levels.fitting import up_of, way_out, work_of_gravity
 
 Floats = NDArray[np.float64]
 SAME = 1e-6  # of the mass

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Field, Group, PairForce, Particle, ParticleBatch, Places, System, Vec3
-from iota.world.ties import at_time, can_be_shifted, can_copy_law, copy_of_law
+from iota.levels.ties import at_time, can_be_shifted, can_copy_law, copy_of_law
 
 Force = Field | PairForce
 

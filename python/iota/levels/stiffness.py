@@ -5,13 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from typing import Any
+from typing import Any, Protocol
 
 from iota._core import Body, Group, System
-from iota.world.visuals import Visuals
 
 # Properties of a body: those of the first one count for all that become one.
 OWN = ("name", "color", "material", "damping", "radius")
+
+
+class Clothes(Protocol):
+    """The looks of bodies."""
+
+    def hand_over(self, former: Body, body: Body) -> None:
+        """Gives a body the look of the one that it was."""
 
 
 class Stiffness:
@@ -35,7 +41,7 @@ class Stiffness:
         now, passing = _own_of(root), _passing(root.system, [root])
         return {key for key in OWN if now[key] != self._whole[key]}, passing != self._whole_passing
 
-    def give_back(self, members: Mapping[Body, Body], visuals: Visuals, changed: tuple[set[str], bool]) -> None:
+    def give_back(self, members: Mapping[Body, Body], visuals: Clothes, changed: tuple[set[str], bool]) -> None:
         """members: the bodies that are there again, by those that they were."""
         properties, has_other_passing = changed
         for former, body in members.items():
