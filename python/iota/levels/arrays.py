@@ -20,6 +20,7 @@ PER_SLICE = 200  # things: with more, each is looked at less often
 NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked at again
 HOLD = 30  # steps between two changes of a thing
 REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long; after a hand it is full
+WOKEN = 60  # steps in which a thing is not frozen again that something woke
 HALVED = 120  # steps in which the speed that a thing had counts half
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
 EARLY, LATE = 1.1, 0.9  # of the sight: nearer, it begins to be found; nearer, it is too late
@@ -68,7 +69,8 @@ class Arrays:
         self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
         self.fastest = np.zeros(0)  # m/s: lately
         self.changed = np.zeros(0, dtype=int)
-        self._refused = np.zeros(0, dtype=int)  # until this step
+        self._refused = np.zeros(0, dtype=int)  # strides, until this step
+        self._awake = np.zeros(0, dtype=int)  # may not be frozen until this step
         self.now = 0  # steps in which there was a budget
         self.since = np.zeros(0)  # s: it has been frozen and out of sight; nan: it is not
         self.is_mild = False  # nothing in sight is stopped
@@ -106,13 +108,14 @@ class Arrays:
         since, self.since = self.since, np.full(count, np.nan)
         fastest, self.fastest = self.fastest, np.zeros(count)
         refused, self._refused = self._refused, np.zeros(count, dtype=int)
+        awake, self._awake = self._awake, np.zeros(count, dtype=int)
         for key, former, significance, load, full_load, changed in before:
             row = self._row.get(key, -1)
             if row >= 0:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
                 self.since[row], self._refused[row] = since[former], refused[former]
-                self.fastest[row] = fastest[former]
+                self.fastest[row], self._awake[row] = fastest[former], awake[former]
         self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
         self._roots: list[BodyArray | None] = [None] * self.slices
         self._starts = [np.zeros(0, dtype=int)] * self.slices
@@ -146,6 +149,12 @@ class Arrays:
         """Strides of a thing that something full touches, or that the script edits in each step, save nothing until this step."""
         if (row := self._row.get(thing)) is not None:
             self._refused[row] = until
+
+    def keep_awake(self, thing: Managed) -> None:
+        """It is not frozen for a while: something woke it, or what is solved with it may not be frozen. Each further try would cost as much as
+        this one, in vain."""
+        if (row := self._row.get(thing)) is not None:
+            self._awake[row] = self.now + WOKEN
 
     def find_points_of(self, thing: Managed) -> None:
         """Its bodies have become one, or come apart: its middle may be another particle."""
@@ -272,6 +281,7 @@ class Arrays:
         """The next one that is expected to cost less; the present one if there is none."""
         index = np.arange(self.shares.shape[1])
         is_less = (index > self.level[rows, None]) & (index <= self.lowest[rows, None])
+        is_less &= (self.strides[rows] != 0) | (self._awake[rows] <= self.now)[:, None]
         is_less &= self._shares_of(rows) < 0.9 * self.share_now(rows)[:, None]
         target: NDArray[np.intp] = np.where(is_less.any(axis=1), is_less.argmax(axis=1), self.level[rows])
         return target

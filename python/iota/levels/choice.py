@@ -162,6 +162,8 @@ class Choice:
         indices = {each: frozen_level(each.levels) for each in together.things}
         is_free = all(index is not None and self._arrays.may_have(each, index) for each, index in indices.items())
         if not (together.is_all and is_free):
+            for each in together.things:
+                self._arrays.keep_awake(each)
             return 0.0
         for each in together.touching:
             self._arrays.refuse_strides(each, NEVER)

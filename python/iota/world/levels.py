@@ -607,6 +607,8 @@ class Levels(Part):
             thing = self._things.all[part + slices * int(i)]
             if thing.index and any(root.stride != thing.level.stride for root in thing._roots):
                 self._arrays.refuse_strides(thing, self._arrays.now + REFUSED)
+                if thing.level.stride == 0:
+                    self._arrays.keep_awake(thing)
                 self._change(thing, 0, 1.0, 0.0, "touched")
 
     def _ask(self, row: int, thing: Managed) -> None:
