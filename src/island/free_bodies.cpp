@@ -70,6 +70,8 @@ void FreeBodies::rest(Model& model, std::uint32_t articulate) {
 void FreeBodies::wake(Model& model, std::uint32_t articulate) {
   model::Articulate& a = model.articulates[articulate];
   a.slow_time = 0;
+  const auto loose = std::ranges::lower_bound(loose_, articulate, {}, &Loose::articulate);
+  if (loose != loose_.end() && loose->articulate == articulate) loose->book_epoch = 0;
   if (model.bodies[a.first].kind != BodyKind::resting) return;
   model.bodies[a.first].kind = BodyKind::dynamic;
   is_old_ = true;
@@ -80,14 +82,30 @@ std::size_t FreeBodies::size(const Model& model) {
   return awake_.size() + loose_.size() + still_.size();
 }
 
+std::uint32_t FreeBodies::frozen() const {
+  return static_cast<std::uint32_t>(std::ranges::count_if(loose_, &Loose::is_frozen));
+}
+
+void FreeBodies::add_awake(const Model& model, std::uint64_t epoch, ingredient::Book& book) {
+  for (const FreeParticle& free : awake_) book.add(ingredient::calc_book(model, {&free.body, 1}));
+  for (Loose& loose : loose_) {
+    if (!loose.is_frozen || loose.book_epoch != epoch) {
+      loose.book = ingredient::calc_book(model, {&loose.body, 1});
+      loose.book_epoch = loose.is_frozen ? epoch : 0;
+    }
+    book.add(loose.book);
+  }
+}
+
 bool FreeBodies::Loose::goes_on_by_itself(Model& model, double h) {
   using ingredient::Strides;
+  is_frozen = false;
   if (!Strides::any(model)) return false;
   const auto visit_rings = [&](auto visit) {
     model.for_each_particle_of(body, [&](std::uint32_t p) { visit(model.particles[p].ring); });
   };
   const Strides::Phase phase = Strides::phase(model, h, visit_rings);
-  const bool is_frozen = phase == Strides::Phase::none && Strides::of(model, body) == Strides::frozen;
+  is_frozen = phase == Strides::Phase::none && Strides::of(model, body) == Strides::frozen;
   if (phase != Strides::Phase::within && !is_frozen) return false;
   const std::uint32_t first = model.particles[model.bodies[body].first].ring;
   if (!is_frozen) {

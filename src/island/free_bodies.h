@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "ingredient/model.h"
+#include "ingredient/quantities.h"
 #include "solver/advance_report.h"
 
 #include <span>
@@ -40,11 +41,11 @@ class FreeBodies {
   void for_each_still(Visit visit) const {
     for (const std::uint32_t body : still_) visit(body);
   }
-  template <class Visit>
-  void for_each_awake(Visit visit) const {
-    for (const FreeParticle& free : awake_) visit(free.body);
-    for (const Loose& loose : loose_) visit(loose.body);
-  }
+  /// Number of loose ones that were frozen in the last step.
+  std::uint32_t frozen() const;
+  /// The sums of the others, particles and loose ones, at the end of a step. Those of frozen ones are kept until they are woken or
+  /// `epoch` is another one.
+  void add_awake(const model::Model&, std::uint64_t epoch, ingredient::Book&);
   /// Another number whenever the still ones are others.
   std::uint64_t version() const { return version_; }
   /// Some were woken or put to rest.
@@ -59,6 +60,9 @@ class FreeBodies {
     solver::AdvanceReport report = {};  ///< of the last step
     std::uint32_t solved_steps = 1;     ///< see Island::solved_steps
     double work = 0;
+    bool is_frozen = false;  ///< in the last step
+    ingredient::Book book = {};
+    std::uint64_t book_epoch = 0;  ///< of `book`, see add_awake
 
     /// Takes a step within a stride, or none if it is frozen, without an island.
     bool goes_on_by_itself(model::Model&, double h);

@@ -768,22 +768,26 @@ std::uint32_t Islands::resting(const Model& model) const {
 }
 
 // Body by body takes several times as long as table by table.
-bool Islands::renew_books(const Model& model) {
+bool Islands::renew_books(const Model& model, std::uint32_t frozen) {
   constexpr std::uint32_t share = 4;
   const bool may_be_of_still = model.has_edits == model::edits_of_any;
   if (may_be_of_still) ++book_epoch_, still_book_.reset();
-  const std::uint32_t still = still_bodies_ + free_bodies_.still();
+  const std::uint32_t still = still_bodies_ + free_bodies_.still() + frozen;
   return !may_be_of_still && !order_is_old_ && !awake_is_old_ &&
          still >= model.bodies.size() - model.bodies.size() / share;
 }
 
 ingredient::Energies Islands::energies(const Model& model) {
   (void)awake(model), (void)loose(model);
-  return renew_books(model) ? book(model).energies : ingredient::calc_energies(model);
+  return renew_books(model, 0) ? sum_books(model).energies : ingredient::calc_energies(model);
 }
 
+// A restored system knows which loose ones are frozen from the end of its first step on.
 ingredient::Book Islands::book(const Model& model) {
-  if (!renew_books(model)) return ingredient::calc_book(model);
+  return renew_books(model, free_bodies_.frozen()) ? sum_books(model) : ingredient::calc_book(model);
+}
+
+ingredient::Book Islands::sum_books(const Model& model) {
   if (!still_book_ || book_version_ != free_bodies_.version()) {
     still_book_.emplace();
     for (std::size_t index = 0; index < stills_.size(); ++index) {
@@ -799,7 +803,7 @@ ingredient::Book Islands::book(const Model& model) {
   }
   ingredient::Book book = *still_book_;
   for (const Island* const island : awake_) book.add(ingredient::calc_book(model, island->bodies()));
-  free_bodies_.for_each_awake([&](std::uint32_t body) { book.add(ingredient::calc_book(model, {&body, 1})); });
+  free_bodies_.add_awake(model, book_epoch_, book);
   return book;
 }
 

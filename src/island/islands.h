@@ -209,8 +209,10 @@ class Islands {
   bool replace_in_order();
   void list_in_order();
   void look_whether_still(const model::Model&, std::uint32_t index);
-  /// Forgets what edits may have changed. Whether the books of still islands make a sum shorter.
-  bool renew_books(const model::Model&);
+  /// Forgets what edits may have changed. Whether the books of still islands, and of so many frozen loose bodies, make a sum
+  /// shorter.
+  bool renew_books(const model::Model&, std::uint32_t frozen);
+  ingredient::Book sum_books(const model::Model&);
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 
