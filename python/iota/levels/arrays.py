@@ -247,7 +247,7 @@ class Arrays:
         full = self.full_load[rows]
         self.full_load[rows] = np.where(at_full, np.where(full > 0, full + 0.3 * (load - full), load), full)
         stride = self.stride[rows]
-        # What swings is slow for a moment at each of its ends, and would be frozen there.
+        # A swinging thing is slow for a moment at each of its ends, and would be frozen there.
         kept = np.where(stride == 0, 1.0, 0.5 ** (self.slices / HALVED))
         self.fastest[rows] = fastest = np.maximum(speeds, kept * self.fastest[rows])
         self.touches[rows] = (stride > 1) & takes_each

@@ -46,7 +46,7 @@ class Arrivals:
         return bool(self._coming)
 
     def clear(self) -> None:
-        """What has begun is in vain."""
+        """The work that has begun is in vain."""
         self._coming.clear()
 
     def catch_up(self, thing: Managed) -> None:

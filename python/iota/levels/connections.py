@@ -36,7 +36,7 @@ class Connections:
         self._ties = None
 
     def solved_with(self, thing: Managed) -> Together:
-        """What a contact or a tie leads to, from thing to thing."""
+        """The things that contacts and ties lead to, from thing to thing."""
         found = Together([thing])
         for each in found.things:  # which grow
             others = {contact.other for body in each.bodies for contact in body.contacts}

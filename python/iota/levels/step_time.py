@@ -39,7 +39,7 @@ class StepTime:
             self._price(simulated, work)
 
     def _price(self, simulated: float, work: float) -> None:
-        """What a unit of work adds to a step: by how steps of more work are longer. A step divided by its work would count what frozen things
+        """The time that a unit of work adds to a step, ms, by how steps of more work are longer. A step divided by its work would count what frozen things
         and management take as a part of each: where most is frozen, three times too much, so that things near the viewer stayed frozen although
         there was room for them."""
         if self._work == 0:

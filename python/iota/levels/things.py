@@ -32,7 +32,7 @@ class Things:
         self._by_root = {}
 
     def keep_chosen(self) -> None:
-        """Those of which a script has said something."""
+        """The things of which a script has said something."""
         self.all = [thing for thing in self.all if thing.is_chosen or thing.is_pinned]
         self._by_root = {}
         self._names = {thing.name for thing in self.all}
