@@ -21,7 +21,6 @@ NEAR = 1.25  # of the reach: a viewer may come nearer before a thing is looked a
 HOLD = 30  # steps between two changes of a thing
 REFUSED = 240  # steps: after the engine has ended the strides of a thing, they save nothing for so long; after a hand it is full
 WOKEN = 60  # steps in which a thing is not frozen again that something woke
-HALVED = 120  # steps in which the speed that a thing had counts half
 IDLE = 0.02  # rad/s: so much the picture of a thing at rest may move soon
 EARLY, LATE = 1.1, 0.9  # of the sight: nearer, it begins to be found; nearer, it is too late
 SIGHT = 30.0  # m: from so far, nobody sees whether a frozen thing moves
@@ -67,7 +66,6 @@ class Arrays:
         self._system = system
         self._row: dict[Managed, int] = {}
         self.significance, self.load, self.full_load = np.zeros(0), np.zeros(0), np.zeros(0)
-        self.fastest = np.zeros(0)  # m/s: lately
         self.changed = np.zeros(0, dtype=int)
         self._refused = np.zeros(0, dtype=int)  # strides, until this step
         self._awake = np.zeros(0, dtype=int)  # may not be frozen until this step
@@ -106,7 +104,6 @@ class Arrays:
         self.touches, self.runs = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.changed = np.full(count, -HOLD, dtype=int)
         since, self.since = self.since, np.full(count, np.nan)
-        fastest, self.fastest = self.fastest, np.zeros(count)
         refused, self._refused = self._refused, np.zeros(count, dtype=int)
         awake, self._awake = self._awake, np.zeros(count, dtype=int)
         for key, former, significance, load, full_load, changed in before:
@@ -115,7 +112,7 @@ class Arrays:
                 self.significance[row], self.load[row] = significance[former], load[former]
                 self.full_load[row], self.changed[row] = full_load[former], changed[former]
                 self.since[row], self._refused[row] = since[former], refused[former]
-                self.fastest[row], self._awake[row] = fastest[former], awake[former]
+                self._awake[row] = awake[former]
         self._way = np.zeros(self.slices)  # m: of the viewers, since its things were looked at
         self._roots: list[BodyArray | None] = [None] * self.slices
         self._starts = [np.zeros(0, dtype=int)] * self.slices
@@ -247,9 +244,6 @@ class Arrays:
         full = self.full_load[rows]
         self.full_load[rows] = np.where(at_full, np.where(full > 0, full + 0.3 * (load - full), load), full)
         stride = self.stride[rows]
-        # A swinging thing is slow for a moment at each of its ends, and would be frozen there.
-        kept = np.where(stride == 0, 1.0, 0.5 ** (self.slices / HALVED))
-        self.fastest[rows] = fastest = np.maximum(speeds, kept * self.fastest[rows])
         self.touches[rows] = (stride > 1) & takes_each
         self.runs[rows] = (stride != 1) & takes_each
         if len(eyes):
@@ -257,12 +251,12 @@ class Arrays:
             self.near[rows] = gap <= NEAR * reach
             self.is_far[rows] = gap > EARLY * sight
             self.is_near[rows] = gap < LATE * sight
-            seen = np.minimum(size / distance, math.pi) * (fastest / distance + IDLE)
+            seen = np.minimum(size / distance, math.pi) * (speeds / distance + IDLE)
             if self.is_mild:
                 is_unseen = self.is_far[rows] & (np.maximum(size, speeds) < UNSEEN * distance)
                 self.lowest[rows] = np.where(is_unseen, self._last[rows], self._mildest[rows])
         else:
-            seen = fastest + IDLE
+            seen = speeds + IDLE
             self.near[rows], self.is_far[rows], self.is_near[rows] = False, True, False
         self.significance[rows] = np.where(self._asked[rows], self.significance[rows], seen) if self.own else seen
 

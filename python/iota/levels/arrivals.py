@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What comes into sight, and has done meanwhile what it would have done."""
+"""Things that come into sight, and have done meanwhile what they would have done."""
 
 from __future__ import annotations
 

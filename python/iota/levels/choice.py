@@ -23,14 +23,11 @@ NEVER = 1 << 60  # steps
 AIM, LOW = 0.05, 0.15  # of the budget, below what a usual step may take: aimed at; begin to restore
 URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
-LOOKED_AT = 8  # things for each that may be restored
-EXCHANGE = 2.0  # times what others lose: so much a thing has to gain for it
 SPEND, SPEND_URGENT = (
     0.1,
     0.5,
 )  # of the budget, and of a step: what changes may take before the rest waits for the next step
 
-Floats = NDArray[np.float64]
 Change = Callable[[Managed, int, float, float, str], None]
 
 
@@ -51,7 +48,6 @@ class Choice:
         self._system, self._things, self._connections, self._arrays = system, things, connections, arrays
         self._arrivals, self._time, self._change = arrivals, step_time, change
         self._until = 0.0  # s, of processor time
-        self._exchange_at = 0  # step
 
     def is_urgent(self, budget: float) -> bool:
         """Whether steps take much too long."""
@@ -65,70 +61,25 @@ class Choice:
         waited = arrays.now - arrays.changed
         if self._time.ms > self._time.full * budget:
             hold = HOLD_URGENT if is_urgent else HOLD
+            free = (waited >= hold) & ~arrays.near & ~arrays.pinned & (arrays.level < arrays.lowest)
             self._reduce(
-                np.nonzero((waited >= hold) & self._may_fall())[0],
+                np.nonzero(free)[0],
                 self._time.ms - (self._time.full - AIM) * budget,
                 max(MOST_URGENT if is_urgent else MOST, len(self._things.all) // 40),
             )
         elif self._time.ms < (self._time.full - LOW) * budget:
-            most = max(MOST, len(self._things.all) // 60)
-            self._restore(
-                self._first((waited >= HOLD) & (arrays.level > 0), LOOKED_AT * most),
-                (self._time.full - AIM) * budget - self._time.ms,
-                most,
-            )
-        elif arrays.now >= self._exchange_at:
-            self._exchange_at = arrays.now + HOLD
-            self._exchange(waited >= HOLD, self._time.full * budget)
+            free = (waited >= HOLD) & (arrays.level > 0)
+            self._restore(np.nonzero(free)[0], (self._time.full - AIM) * budget - self._time.ms)
 
-    def _exchange(self, has_waited: NDArray[np.bool_], most: float) -> None:
-        """There is neither need nor room: what gains most for its cost is restored if others, which lose much less, make room for it. most: ms
-        that a step may take."""
-        arrays = self._arrays
-        lower, upper = np.nonzero(has_waited & self._may_fall())[0], self._first(has_waited & (arrays.level > 0), MOST)
-        if not (len(lower) and len(upper)):
-            return
-        _, saved, lost = self._ways_down(lower)
-        _, _, gain, cost = arrays.steps_up(upper, self._time.ms_of_work * arrays.full_load[upper])
-        gain, cost = gain[cost > 0], cost[cost > 0]
-        if not len(cost):
-            return
-        best = int(np.argmax(gain / cost))
-        is_cheap = (saved > 0) & (EXCHANGE * lost * cost[best] < gain[best] * saved)
-        spare = most - self._time.ms
-        if is_cheap.any() and spare + float(saved[is_cheap].sum()) >= cost[best]:
-            self._reduce(lower[is_cheap], float(cost[best]), MOST, "others matter more")
-            self._restore(upper, most - self._time.ms, MOST)
-
-    def _first(self, free: NDArray[np.bool_], count: int) -> NDArray[np.intp]:
-        """So many of the things with the most significance for what they cost in full: to look at all takes longer than to change some."""
-        arrays = self._arrays
-        (rows,) = np.nonzero(free)
-        if len(rows) > count:
-            worth = (arrays.significance[rows] + 1e-12) / (arrays.full_load[rows] + 1e-9)
-            rows = np.sort(rows[np.argpartition(-worth, count)[:count]])
-        return rows
-
-    def _may_fall(self) -> NDArray[np.bool_]:
-        arrays = self._arrays
-        free: NDArray[np.bool_] = ~arrays.near & ~arrays.pinned & (arrays.level < arrays.lowest)
-        return free
-
-    def _ways_down(self, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """The next lower levels that cost less, the ms that each saves, and the significance that it loses."""
-        arrays = self._arrays
-        target = arrays.next_level(rows)
-        here, there = arrays.share_now(rows), arrays.shares[rows, target]
-        saved = self._time.ms_of_work * arrays.full_load[rows] * np.maximum(here - there, 0.0)
-        lost = arrays.significance[rows] * (arrays.qualities[rows, arrays.level[rows]] - arrays.qualities[rows, target])
-        return target, saved, lost
-
-    def _reduce(self, rows: NDArray[np.intp], need: float, most: int, reason: str = "over budget") -> None:
+    def _reduce(self, rows: NDArray[np.intp], need: float, most: int) -> None:
         """The least loss of significance for each saved millisecond first."""
         arrays = self._arrays
         if not len(rows):
             return
-        target, saved, lost = self._ways_down(rows)
+        target = arrays.next_level(rows)
+        here, there = arrays.share_now(rows), arrays.shares[rows, target]
+        saved = self._time.ms_of_work * arrays.full_load[rows] * np.maximum(here - there, 0.0)
+        lost = arrays.significance[rows] * (arrays.qualities[rows, arrays.level[rows]] - arrays.qualities[rows, target])
         worth = (target != arrays.level[rows]) & (saved > 1e-6 * need)
         rows, target, saved, lost = rows[worth], target[worth], saved[worth], lost[worth]
         order = np.argsort((lost + 1e-12) / saved, kind="stable")[:most]
@@ -141,20 +92,20 @@ class Choice:
             if thing in looked_at:
                 continue
             if thing.levels[target[i]].stride == 0:
-                done += self._freeze(thing, significance, looked_at, reason)
+                done += self._freeze(thing, significance, looked_at)
                 continue
             tied = self._connections.tied_to(thing)
             if any(not arrays.is_free(each) for each in tied):
                 continue
-            self._change(thing, int(target[i]), significance, float(saved[i]), reason)
+            self._change(thing, int(target[i]), significance, float(saved[i]), "over budget")
             done += float(saved[i])
             for each in tied:  # of what is solved together the shortest stride counts
                 index = next((k for k, level in enumerate(each.levels) if level.is_like(thing.level)), None)
                 if index is not None and index > each.index:
-                    self._change(each, index, significance, 0.0, reason)
+                    self._change(each, index, significance, 0.0, "over budget")
         self._time.ms -= done
 
-    def _freeze(self, thing: Managed, significance: float, looked_at: set[Managed], reason: str) -> float:
+    def _freeze(self, thing: Managed, significance: float, looked_at: set[Managed]) -> float:
         """Freezes it with all that is solved with it, as one that is not frozen would wake the others; or nothing. Returns the ms that are
         saved."""
         together = self._connections.solved_with(thing)
@@ -171,11 +122,11 @@ class Choice:
         for each, index in indices.items():
             if index is not None and index > each.index:
                 saved = self._time.ms_of_work * self._arrays.saved_at(each, index)
-                self._change(each, index, significance, saved, reason)
+                self._change(each, index, significance, saved, "over budget")
                 sum_saved += saved
         return sum_saved
 
-    def _restore(self, rows: NDArray[np.intp], room: float, most: int) -> None:
+    def _restore(self, rows: NDArray[np.intp], room: float) -> None:
         """The most significance for each millisecond first: many things at strides rather than few in full."""
         arrays = self._arrays
         if not len(rows):
@@ -188,7 +139,7 @@ class Choice:
         for i in order:
             best[int(at[i])] = int(target[i])
         here = arrays.share_now(rows)
-        for i in list(best)[:most]:
+        for i in list(best)[: max(MOST, len(self._things.all) // 60)]:
             row, index = int(rows[i]), best[i]
             if (
                 room < CATCH_UP and arrays.missed(row, self._system.time) > MISSED

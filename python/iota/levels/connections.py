@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What joins things with each other, so that they are solved together."""
+"""The contacts and ties that join things with each other, so that they are solved together."""
 
 from __future__ import annotations
 

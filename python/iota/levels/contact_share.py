@@ -23,9 +23,8 @@ class ContactShare:
         self._calm, self._wait = 0, CALM  # steps
         self._since_rise = LONGEST_CALM
 
-    def look(self, ms: float, limit: float, room: float = ROOM) -> tuple[float, float] | None:
-        """After each step. ms: that it took; limit: that it may take; room: of that, what leaves room for more exact contacts. Returns the share
-        before and after a change."""
+    def look(self, ms: float, limit: float) -> tuple[float, float] | None:
+        """After each step. ms: that it took; limit: that it may take. The share before and after a change."""
         share = self._system.contacts_share
         self._recent.append(ms / limit)
         self._since_rise += 1
@@ -41,7 +40,7 @@ class ContactShare:
             return self._change(share, max(share / 2**halvings, LEAST))
         if share == 1:
             return None
-        self._calm = max(self._calm + (1 if ms < room * limit else -1), 0)
+        self._calm = self._calm + 1 if ms < ROOM * limit else 0
         if self._calm < self._wait:
             return None
         self._calm = self._since_rise = 0

@@ -65,9 +65,7 @@ def refuse_no_function(what: str, value: object) -> None:
 
 
 FULL_LEVEL = Level("full")
-# The lack of a quality, 1 less it, is in proportion to the angles that a viewer sees amiss, see docs/complexity.md. Before, an eighth had 0.85, so that
-# things that are near took strides in full view of those far away, and then stood still beside others at an eighth.
-HALF, QUARTER, EIGHTH = (Level(f"1/{n}", n, quality=q, share=1 / n) for n, q in ((2, 0.998), (4, 0.99), (8, 0.97)))
+HALF, QUARTER, EIGHTH = (Level(f"1/{n}", n, quality=q, share=1 / n) for n, q in ((2, 0.97), (4, 0.92), (8, 0.85)))
 STIFF = Level("stiff", is_stiff=True, quality=0.4, share=0.15)
 FROZEN = Level("frozen", 0, quality=0.05, share=0.0)
 STANDARD = (FULL_LEVEL, HALF, QUARTER, EIGHTH, STIFF, FROZEN)
