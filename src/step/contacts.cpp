@@ -191,8 +191,9 @@ bool is_asleep(const model::Model& model, std::uint32_t slot) {
 
 // Sleepers look for nothing, and nor do static bodies: a wall that was put into a sleeping box stayed in it.
 void ContactFinder::wake_at_edited_obstacles(model::Model& model, contact::Outlines& outlines) {
-  flagged_.assign(model.flagged().begin(), model.flagged().end());
-  for (const std::uint32_t articulate : flagged_) {
+  // By index: what is woken is listed at the end.
+  for (std::size_t i = 0; i < model.flagged().size(); ++i) {
+    const std::uint32_t articulate = model.flagged()[i];
     if (!model.articulates.is_alive(articulate)) continue;
     const std::uint32_t obstacle = model.articulates[articulate].first;
     if (model.bodies[obstacle].kind != BodyKind::static_ || !model.material(obstacle) || !outlines.has(obstacle))

@@ -192,7 +192,6 @@ class ContactFinder {
   Known known_;
   JoinedBodies joined_;
   std::vector<std::uint32_t> contacts_;                ///< of an island
-  std::vector<std::uint32_t> flagged_;                 ///< see `model::Structure::flagged`
   std::vector<std::uint32_t> obstacles_, candidates_;  ///< the latter: those that may touch, and were awake when listed
   std::array<std::uint64_t, 3> listed_at_{};           ///< versions of islands, edits and outlines
   std::vector<Obstacle> all_obstacles_;                ///< by body slot

@@ -23,10 +23,8 @@ NEVER = 1 << 60  # steps
 AIM, LOW = 0.05, 0.15  # of the budget, below what a usual step may take: aimed at; begin to restore
 URGENT = 1.5  # times the budget
 MOST, MOST_URGENT = 16, 128  # changes in a step
-SPEND, SPEND_URGENT = (
-    0.1,
-    0.5,
-)  # of the budget, and of a step: what changes may take before the rest waits for the next step
+# Changes take at most these parts of the budget, and of a step; the rest waits for the next step.
+SPEND, SPEND_URGENT = 0.1, 0.5
 
 Change = Callable[[Managed, int, float, float, str], None]
 
