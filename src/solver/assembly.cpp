@@ -267,6 +267,7 @@ Strain Assembly::strain_released(const Problem& problem, const Stage& stage, con
         const double at_start = before[r] * before[r] / compliance, at_end = after[r] * after[r] / compliance;
         strain.released += (at_start - at_end) / 2;
         strain.of_stored += (std::min(at_start, std::abs(*lambda * before[r])) - at_end) / 2;
+        if constexpr (!ConeConstraint<C>) strain.of_joints += (at_start - at_end) / 2;
       }
     }
   });

@@ -18,6 +18,7 @@ namespace iota::solver {
 struct Strain {
   double released = 0;   ///< by the compliance of this (sub-)step
   double of_stored = 0;  ///< and by what they had stored
+  double of_joints = 0;  ///< of `released`, by all rows but those of contacts
 };
 /// Mean length of the bodies' rods, m; joints and curves have their own lengths. Without rods, of the forces between
 /// points; else 1 m. Sets it for rows of nails and of carried points, which have no other.

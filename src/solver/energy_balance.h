@@ -22,6 +22,7 @@ struct StepEnergy {
   double round_off = 0;
   double slack = 0;      ///< what the tolerance of the solve explains, of energy that is made; with round-off
   double overdrawn = 0;  ///< of the slack: what compliant rows returned beyond what they had stored
+  double recoil = 0;     ///< of the slack: what joints returned beyond a small share of the motion, stored or not
 
   /// The kinetic and the total energy that errors are a share of: how fast a thing flies changes nothing within it.
   double motion() const { return std::max(kinetic_before - flight_before, kinetic - flight); }

@@ -477,7 +477,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   if (!is_mid_point || keeps_offsets_)
     remove_made_energy(problem, energy.total_before);
   else
-    remove_energy_of_gaps(problem);
+    remove_energy_of_gaps(problem, energy.recoil);
   if (!keeps_momenta || (keeps_offsets_ && has_taken_off(energy))) {
     report.external_work = before.external_work, report.dissipated = before.dissipated;
     move_rigidly_instead(problem, part, report);

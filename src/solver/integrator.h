@@ -179,7 +179,7 @@ class Integrator {
   void book_held_forces_that_press(Problem&, const Stage&, AdvanceReport&);
   void give_spin_back(Problem&, const Stage&, double damped, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
-  void remove_energy_of_gaps(Problem&);
+  void remove_energy_of_gaps(Problem&, double recoil);
   bool change_kinetic_energy(Problem& problem, double excess) {
     return change_kinetic_energy(problem, excess, rigid_motion(problem));
   }

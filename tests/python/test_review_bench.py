@@ -39,6 +39,7 @@ FAST = [
     "needle_link",
     "sleeping_bond",
     "far_hinge",
+    "taut_net_makes_no_energy",
     "spin_of_a_point",
     "ignored_arguments",
 ]

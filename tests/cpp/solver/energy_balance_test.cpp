@@ -86,6 +86,11 @@ TEST(EnergyBalance, lets_rows_return_their_stored_energy_and_no_more) {
     EXPECT_NEAR(of_slack_rod.overdrawn - energy_after_tension(tension).overdrawn, stored, 1e-4 * stored);
   }
   EXPECT_EQ(energy_after_tension(1e30).overdrawn, 0);
+  constexpr double share = 0.05;  // of the motion
+  for (const double tension : {0.0, 1.0, 1e30}) {
+    const StepEnergy energy = energy_after_tension(tension);
+    EXPECT_NEAR(energy.recoil, allowed - share * energy.motion(), 1e-5 * allowed) << "stored or not";
+  }
 }
 
 TEST(EnergyBalance, reports_as_made_only_energy_beyond_the_tolerance) {
