@@ -63,7 +63,7 @@ verify: ## build, compare with what is known, renew docs/verification.md (VERIFY
 	@$(PYTHON) tools/build.py verify
 	@$(iota) verify $(VERIFY)
 
-soak: ## build, then for some hours: random scenes, promises of motion, edits by the million, levels of ten thousand scenes, linkages and studies for ten minutes, random messages to each study, a thousand kills of kept worlds, an open page for thirty (SOAK="scenes edits")
+soak: ## build, then for some hours: random scenes, promises of motion, edits by the million, levels and sleep of ten thousand scenes, linkages and studies for ten minutes, random messages to each study, a thousand kills of kept worlds, an open page for thirty (SOAK="scenes edits")
 	@$(PYTHON) tools/build.py soak
 	@.venv/bin/python tools/soak.py $(SOAK)
 

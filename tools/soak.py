@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes their programs.
 
-    tools/soak.py [NAME ...]      scenes heaps promises edits levels verify ladder studies messages kills rooms page; all without a name
+    tools/soak.py [NAME ...]      scenes heaps promises edits levels sleep verify ladder studies messages kills rooms page; all without a name
 
 Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
@@ -23,6 +23,10 @@ RUNS = {
     "levels": [
         *("env", "IOTA_LEVEL_SCENES=10000", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
         str(ROOT / "tests" / "python" / "test_random_levels.py"),
+    ],
+    "sleep": [
+        *("env", "IOTA_SLEEP_SCENES=10000", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
+        str(ROOT / "tests" / "python" / "test_random_sleep.py"),
     ],
     "verify": [str(ROOT / ".venv" / "bin" / "iota"), "verify", "--long"],
     "ladder": [

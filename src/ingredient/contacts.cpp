@@ -849,6 +849,17 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
   });
 }
 
+// What is eased out of an overlap moves, though its velocity tells nothing of it: bodies fell asleep within each other.
+bool Contacts::keeps_awake(const Model& model, const Problem& problem) const {
+  bool is_eased = false;
+  for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t, solver::ItemKey key) {
+    const Contact& c = model.contacts[key.slot];
+    const bool is_fast = -c.depth > easing_time * model.rest_speed && c.is_of_sweeps == 0;
+    is_eased = is_eased || (is_fast && is_on_its_own(model, c.p) && is_on_its_own(model, c.q));
+  });
+  return is_eased;
+}
+
 Vec3 Contact::off(const Vec3& d) const {
   const Vec3 across = d - (form == TouchForm::wires ? bends[0] : 1) * dot(axis, d) * axis;
   return form == TouchForm::wires ? across - bends[1] * dot(first, d) * first : across;

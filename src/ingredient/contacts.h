@@ -138,6 +138,7 @@ class Contacts : public NoAnswers {
   void load(const Model&, const IslandNodes&, double h, Problem&);
   double after_step(Model&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
+  bool keeps_awake(const Model&, const Problem&) const;
   std::string name_of_row(const Model&, solver::ItemKey) const;
 };
 

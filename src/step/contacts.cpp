@@ -208,6 +208,18 @@ void ContactFinder::wake_at_edited_obstacles(model::Model& model, contact::Outli
   }
 }
 
+// What a force throws in this step looks at what is in its way: a sleeping box went through a tower, and nothing else woke.
+void ContactFinder::wake_stirred(model::Model& model, double h) {
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
+    I::visit_stirred(model, h, [&](std::uint32_t ring) {
+      model.for_each_in_ring(ring, [&](std::uint32_t p) {
+        const std::uint32_t body = model.particles[p].body;
+        if (is_asleep(model, body)) model.wake(model.bodies[body].articulate);
+      });
+    });
+  });
+}
+
 // A look at each of ten thousand sleepers takes a tenth of a millisecond.
 void ContactFinder::list_candidates(const model::Model& model, const contact::Outlines& outlines,
                                     std::uint64_t awake_version) {
@@ -355,6 +367,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   pairs_.clear();
   note_changes(model, outlines);
   wake_at_edited_obstacles(model, outlines);
+  wake_stirred(model, h);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
   const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;

@@ -103,6 +103,7 @@ class ContactFinder {
   void note_changes(model::Model&, contact::Outlines&);
   /// Static bodies that were made, moved or changed since the last step wake what they overlap.
   void wake_at_edited_obstacles(model::Model&, contact::Outlines&);
+  void wake_stirred(model::Model&, double h);
   void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
   void list_movers(const model::Model&);
   /// Into pairs_: what the movers may touch.

@@ -489,6 +489,53 @@ def test_a_wall_that_is_put_into_a_sleeping_body_wakes_it(how: str, shape: iota.
     assert np.abs(pushed(0.2) - awake).max() < 1e-6
 
 
+@pytest.mark.parametrize("rate", [60, 240])
+@pytest.mark.parametrize("mode", ["robust", "plausible"])
+def test_what_is_eased_out_of_a_wall_does_not_fall_asleep_within_it(
+    mode: Literal["robust", "plausible"], rate: int
+) -> None:
+    """Its velocity is none in these modes, though it moves: it slept 2 cm deep in the wall."""
+    system = iota.System(gravity=(0, -9.81, 0), mode=mode)
+    system.usual_material = iota.Material(friction=0.6)
+    system.rest_after, system.rest_speed = 0.1, 0.01
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    box = system.body(shape=iota.Box((0.2, 0.2, 0.2)), density=1000, position=(0, 0.1, 0))
+    system.step(1 / rate, rate)
+    assert box.kind == "resting"
+    system.obstacle(iota.Box((0.2, 0.2, 0.2)), position=(0.15, 0.1, 0))  # 5 cm deep
+    system.step(1 / rate, 2 * rate)
+    assert box.kind == "resting"
+    assert box.position.x == pytest.approx(-0.05, abs=1.5e-3)
+
+
+@pytest.mark.parametrize("how", ["a force", "a velocity"])
+@pytest.mark.parametrize("mode", ["plausible", "robust", "energy_keeping", "accurate"])
+def test_what_throws_a_sleeper_lets_it_meet_other_sleepers_in_the_same_step(mode: Any, how: str) -> None:
+    """A force of 1000 times its weight put it through a tower that slept on."""
+
+    def places(rest_after: float) -> np.ndarray:
+        system = iota.System(gravity=(0, -9.81, 0), mode=mode)
+        system.usual_material = iota.Material(friction=0.6)
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        system.obstacle(iota.HalfSpace((0, 1, 0)))
+        bodies = [
+            system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=mass, position=(x, y, 0))
+            for mass, x, y in ((1, 0, 0.1), (5, 1, 0.1), (5, 1, 0.3))
+        ]
+        system.step(1 / 60, 30)
+        assert {each.kind for each in bodies} == {"resting" if rest_after else "dynamic"}
+        if how == "a force":
+            bodies[0].apply_force((100 * 60, 0, 0))
+        else:
+            bodies[0].velocity = (100, 0, 0)
+        system.step(1 / 60, 2)
+        return np.array([each.position for each in bodies])
+
+    never = places(0)
+    assert never[1][0] > 1.01
+    assert np.abs(places(0.1) - never).max() < 0.02  # it was 0.4 m
+
+
 @pytest.mark.parametrize("shape", [iota.Box((0.2, 0.2, 0.2)), iota.Sphere(0.1)])
 def test_contacts_begin_when_the_usual_material_lets_them(shape: iota.Shape) -> None:
     """After a usual material that touches nothing, what moves passed through each other."""
