@@ -849,7 +849,7 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
   });
 }
 
-// What is eased out of an overlap moves, though its velocity tells nothing of it: bodies fell asleep within each other.
+// Bodies that are eased out of an overlap move, though their velocities do not tell it: they fell asleep within each other.
 bool Contacts::keeps_awake(const Model& model, const Problem& problem) const {
   bool is_eased = false;
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t, solver::ItemKey key) {

@@ -15,7 +15,7 @@ constexpr double of_motion = 1e-9;            // of the kinetic energy: what the
 constexpr double most_of_held_forces = 0.05;  // of the kinetic energy: the error of a force that is held over a step
 constexpr double finest = 1e-12;              // of a length: motion below it is round-off, of a body at rest
 constexpr double closings = 1e-9;             // of a length: what round-off moves while gaps are closed
-// Of the kinetic energy: what joints may return of what they store. Chains whose end has 1e8 times their mass need it.
+// Joints may return so much of the kinetic energy of what they store. Chains whose end has 1e8 times their mass need it.
 constexpr double most_of_recoil = 0.05;
 
 /// The energy of motions by this share of a length in a step, J.

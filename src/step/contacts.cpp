@@ -208,7 +208,7 @@ void ContactFinder::wake_at_edited_obstacles(model::Model& model, contact::Outli
   }
 }
 
-// What a force throws in this step looks at what is in its way: a sleeping box went through a tower, and nothing else woke.
+// A body that a force throws in this step looks at what is in its way: a sleeping box went through a tower that slept on.
 void ContactFinder::wake_stirred(model::Model& model, double h) {
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
     I::visit_stirred(model, h, [&](std::uint32_t ring) {
