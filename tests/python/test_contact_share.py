@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from unittest import mock
 
 import pytest
 
@@ -54,6 +55,18 @@ def test_it_falls_by_more_where_steps_take_many_times_too_long() -> None:
     share = ContactShare(system)
     assert [share.look(ms=ms, limit=8.0) for ms in (70.0, 50.0)] == [None, (1, 0.25)], "by the shorter one of both"
     assert [share.look(ms=ms, limit=8.0) for ms in (999.0, 1e9)] == [None, (0.25, LEAST)]
+
+
+@pytest.mark.parametrize("rare", [2, 5, 20])
+def test_it_rises_where_most_steps_have_room(rare: int) -> None:
+    """Levels fill a budget to the share that they have learnt. It never rose again there: half of the budget was never free."""
+    system = touching()
+    share = ContactShare(system)
+    for _ in range(40):
+        share.look(ms=9.0, limit=8.0, room=0.8)
+    for step in range(8 * contact_share.CALM):
+        share.look(ms=7.0 if step % rare == 0 else 6.0, limit=8.0, room=0.8)
+    assert system.contacts_share == (LEAST if rare == 2 else 1)
 
 
 def test_a_single_long_step_changes_nothing() -> None:
@@ -124,6 +137,25 @@ def test_a_world_with_a_budget_lowers_it_tells_so_and_gives_it_back() -> None:
     assert f"contacts {system.contacts_share:g} of their budget" in str(world.levels)
     world.levels.off()
     assert system.contacts_share == 1 and system.budget_contacts == 3e7
+
+
+def test_a_world_with_a_budget_that_its_steps_nearly_fill_raises_it_again() -> None:
+    system = iota.System()
+    world = iota.World(system)
+    wall(system)
+    world.levels.viewers = lambda: [(0, 1, 2)]  # all is within reach, and full
+    world.levels.budget_ms = 1e-6
+    for _ in range(20):
+        world.step()
+    assert system.contacts_share == LEAST
+    with mock.patch.object(world.levels._contacts, "look", wraps=world.levels._contacts.look) as look:
+        world.levels.budget_ms = 1e3
+        world.step()
+        ms, limit, room = look.call_args.args
+    assert ms < limit == 1e3 and room == world.levels._time.full > contact_share.ROOM
+    for _ in range(4 * contact_share.CALM + 20):
+        world.levels._contacts.look(0.6 * limit, limit, room)
+    assert system.contacts_share == 1
 
 
 def test_a_world_that_somebody_sees_has_it_without_a_budget_too() -> None:

@@ -10,7 +10,8 @@ from iota._core import System
 
 LEAST = 1 / 16  # of `System.budget_contacts`
 RECENT, MANY = 16, 2  # steps, and how many of them may not be too long: a single one may be a blow, or another program
-CALM, LONGEST_CALM = 240, 3840  # steps with room before the share rises; up to so many, if it had to fall again soon
+# Steps with room, more than others, before the share rises; up to so many, if it had to fall again soon.
+CALM, LONGEST_CALM = 240, 3840
 ROOM = 0.5  # of the time that a step may take
 
 
@@ -23,8 +24,9 @@ class ContactShare:
         self._calm, self._wait = 0, CALM  # steps
         self._since_rise = LONGEST_CALM
 
-    def look(self, ms: float, limit: float) -> tuple[float, float] | None:
-        """After each step. ms: that it took; limit: that it may take. The share before and after a change."""
+    def look(self, ms: float, limit: float, room: float = ROOM) -> tuple[float, float] | None:
+        """After each step. ms: that it took; limit: that it may take; room: the part of that below which more contacts may be exact.
+        The share before and after a change."""
         share = self._system.contacts_share
         self._recent.append(ms / limit)
         self._since_rise += 1
@@ -40,7 +42,7 @@ class ContactShare:
             return self._change(share, max(share / 2**halvings, LEAST))
         if share == 1:
             return None
-        self._calm = self._calm + 1 if ms < ROOM * limit else 0
+        self._calm = max(self._calm + (1 if ms < room * limit else -1), 0)
         if self._calm < self._wait:
             return None
         self._calm = self._since_rise = 0

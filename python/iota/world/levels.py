@@ -19,7 +19,7 @@ from iota.levels.arrays import HOLD, NEAR, REFUSED, SIGHT, Arrays
 from iota.levels.arrivals import CATCH_UP, Arrivals
 from iota.levels.choice import SPEND, Choice
 from iota.levels.connections import Connections
-from iota.levels.contact_share import ContactShare
+from iota.levels.contact_share import ROOM, ContactShare
 from iota.levels.level import Level, LevelChange, levels_of, refuse_no_function
 from iota.levels.managed import Managed, is_hung
 from iota.levels.step_time import SMOOTH, StepTime
@@ -392,7 +392,8 @@ class Levels(Part):
             self._own_ms += SMOOTH * (1e3 * (planned - began) - self._own_ms)
             self._time.take(1e3 * (ended - began), self._arrays.load.sum(), self._arrays.now)
             if self._budget is not None:  # a function of the script may have ended it
-                self._look_at_contacts(1e3 * (ended - began), self._budget)
+                # Levels fill the budget, so that half of it is never free.
+                self._look_at_contacts(1e3 * (ended - began), self._budget, self._time.full)
 
     def _step_in_full(self, dt: float) -> StepReport:
         """A step of the system without a budget. An undo or a reset to a time with one brings strides, bodies that were one, structures and
@@ -414,8 +415,8 @@ class Levels(Part):
             took = min(time.process_time() - began, time.perf_counter() - at)
             self._look_at_contacts(1e3 * took, self._paced_ms)
 
-    def _look_at_contacts(self, ms: float, limit: float) -> None:
-        change = self._contacts.look(ms, limit)
+    def _look_at_contacts(self, ms: float, limit: float, room: float = ROOM) -> None:
+        change = self._contacts.look(ms, limit, room)
         if change is not None:
             before, after = (f"{share:g} of their budget" for share in change)
             reason = "over budget" if change[1] < change[0] else "room again"
