@@ -35,6 +35,8 @@ class FreeBodies {
   /// Number of resting ones in the last step.
   std::uint32_t resting() const { return resting_; }
 
+  /// False only if it is known that none rests.
+  bool may_rest() const { return is_old_ || resting_ > 0 || !still_.empty(); }
   /// visit(body): of those that rested when the last step began; it did not look at them.
   std::uint32_t still() const { return static_cast<std::uint32_t>(still_.size()); }
   template <class Visit>

@@ -619,11 +619,17 @@ void Islands::refresh_awake(const Model& model) {
   ++awake_version_;
 }
 
+// One that fell asleep in the last step is listed as awake.
+bool Islands::is_awake_old() const {
+  return order_is_old_ || awake_is_old_ || std::ranges::any_of(awake_, &Island::is_still);
+}
+
 std::span<Island* const> Islands::awake(const Model& model) {
-  const auto is_still = [](const Island* island) { return island->is_still(); };
-  if (order_is_old_ || awake_is_old_ || std::any_of(awake_.begin(), awake_.end(), is_still)) refresh_awake(model);
+  if (is_awake_old()) refresh_awake(model);
   return awake_;
 }
+
+bool Islands::may_be_still() const { return is_awake_old() || still_bodies_ > 0 || free_bodies_.may_rest(); }
 
 void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
   for (const std::uint32_t articulate : articulates) {
@@ -649,7 +655,10 @@ void Islands::end_strides_with(Model& model, std::uint32_t body) {
 
 void Islands::wake_stirred(Model& model, double h) {
   const Island* moved = nullptr;  // of the latest nail
+  // Forces wake only what rests, and begin its time before sleep again: to look at each took a twelfth of a step of held bonds.
+  const bool may_sleep = model.rest_after > 0 || may_be_still();
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
+    if (!may_sleep && !std::is_same_v<I, ingredient::Nails>) return;
     I::visit_stirred(model, h, [&](std::uint32_t ring) {
       model.for_each_in_ring(ring, [&](std::uint32_t p) {
         const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;

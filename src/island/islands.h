@@ -92,6 +92,8 @@ class Islands {
   void wake(model::Model&, std::span<const std::uint32_t> articulates);
   /// So are those that ingredients stir in a step of h seconds: forces on their points, moving nails, laws of the time.
   void wake_stirred(model::Model&, double h);
+  /// False only if it is known that nothing rests, or stands still with nothing to solve.
+  bool may_be_still() const;
   /// Before islands step: they agree on strides that have changed, and their rings get tracks.
   void plan_strides(model::Model&);
   struct Work {
@@ -213,6 +215,7 @@ class Islands {
   /// shorter.
   bool renew_books(const model::Model&, std::uint32_t frozen);
   ingredient::Book sum_books(const model::Model&);
+  bool is_awake_old() const;
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 

@@ -357,7 +357,8 @@ void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines)
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
 }
 
-void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
+void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version,
+                         bool may_rest) {
   hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear(), passed_.clear();
   joined_.forget();
   first_look_ = look_ + 1;
@@ -367,7 +368,7 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   pairs_.clear();
   note_changes(model, outlines);
   wake_at_edited_obstacles(model, outlines);
-  wake_stirred(model, h);
+  if (may_rest) wake_stirred(model, h);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
   const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;

@@ -53,7 +53,8 @@ void Stepper::take_held_forces(StepReport& report) {
 // 1b. Bodies with a material and the obstacles near them.
 void Stepper::find_contacts(double h) {
   const Timed timed(times_of_thread(), &StepTimes::analyze);
-  contacts_.find(editor_.model, outlines_, h, editor_.islands.awake_version());
+  const island::Islands& islands = editor_.islands;
+  contacts_.find(editor_.model, outlines_, h, islands.awake_version(), islands.may_be_still());
 }
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
