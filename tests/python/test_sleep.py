@@ -536,6 +536,44 @@ def test_what_throws_a_sleeper_lets_it_meet_other_sleepers_in_the_same_step(mode
     assert np.abs(places(0.1) - never).max() < 0.02  # it was 0.4 m
 
 
+@pytest.mark.parametrize("how", ["restored", "restored by one that had other bodies", "undone"])
+def test_a_sleeper_of_a_former_state_meets_what_a_force_throws_it_at(how: str) -> None:
+    """Whatever the system knew of its own bodies, none of which slept."""
+
+    def build(system: iota.System, rest_after: float) -> list[iota.Body]:
+        system.usual_material = iota.Material(friction=0.6)
+        system.rest_after, system.rest_speed = rest_after, 0.01
+        system.obstacle(iota.HalfSpace((0, 1, 0)))
+        return [
+            system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=mass, position=(x, 0.1, 0))
+            for mass, x in ((1, 0), (5, 1))
+        ]
+
+    system = iota.System(gravity=(0, -9.81, 0))
+    if how == "undone":
+        bodies = build(system, 0.1)
+        system.step(1 / 60, 30)
+        with system.edit():
+            for body in bodies:
+                body.velocity = (0, 3, 0)
+        system.step(1 / 60, 3)
+        assert {body.kind for body in bodies} == {"dynamic"}
+        system.undo()
+    else:
+        other = iota.System(gravity=(0, -9.81, 0))
+        build(other, 0.1)
+        other.step(1 / 60, 30)
+        if "other" in how:
+            build(system, 0)
+            system.step(1 / 60, 3)
+        system.restore(other.snapshot())
+    thrown, hit = (body for body in system.bodies if body.kind in ("dynamic", "resting"))
+    assert thrown.kind == hit.kind == "resting"
+    thrown.apply_force((100 * 60, 0, 0))
+    system.step(1 / 60)
+    assert hit.position.x > 1.003, "in the same step"
+
+
 @pytest.mark.parametrize("shape", [iota.Box((0.2, 0.2, 0.2)), iota.Sphere(0.1)])
 def test_contacts_begin_when_the_usual_material_lets_them(shape: iota.Shape) -> None:
     """After a usual material that touches nothing, what moves passed through each other."""
