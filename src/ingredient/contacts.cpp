@@ -102,6 +102,11 @@ bool is_on_its_own(const Model& model, std::uint32_t body) {
   return !is_held;
 }
 
+/// Whether an overlap of two bodies is eased out.
+bool is_eased(const Model& model, std::uint32_t first, std::uint32_t second) {
+  return is_on_its_own(model, first) && is_on_its_own(model, second);
+}
+
 /// by_motion: in a heap some contact begins or ends in nearly each step, which would keep it awake for ever. How fast it is
 /// tells whether it moves.
 void mark(Model& model, const model::Ends& c, bool by_motion) {
@@ -355,7 +360,7 @@ class Meeting {
   Meeting(Model& model, std::uint32_t first, std::uint32_t second, const Contacts::Motion& motion)
       : model_(model), first_(first), second_(second), motion_(motion) {}
 
-  bool is_eased() const { return is_on_its_own(model_, first_) && is_on_its_own(model_, second_); }
+  bool is_eased() const { return ingredient::is_eased(model_, first_, second_); }
   /// A contact at this gap takes its numbers from the materials, the motion and the step before.
   void renew(Contact& c, double gap) const {
     c.friction = std::sqrt(one_.friction * other_.friction);
@@ -851,13 +856,13 @@ void Contacts::store(Model& model, const IslandNodes&, double h, const Problem& 
 
 // Bodies that are eased out of an overlap move, though their velocities do not tell it: they fell asleep within each other.
 bool Contacts::keeps_awake(const Model& model, const Problem& problem) const {
-  bool is_eased = false;
+  bool any = false;
   for_each_item_of<solver::ContactConstraint>(owner, problem, [&](std::size_t, solver::ItemKey key) {
     const Contact& c = model.contacts[key.slot];
     const bool is_fast = -c.depth > easing_time * model.rest_speed && c.is_of_sweeps == 0;
-    is_eased = is_eased || (is_fast && is_on_its_own(model, c.p) && is_on_its_own(model, c.q));
+    any = any || (is_fast && is_eased(model, c.p, c.q));
   });
-  return is_eased;
+  return any;
 }
 
 Vec3 Contact::off(const Vec3& d) const {

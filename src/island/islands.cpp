@@ -619,17 +619,16 @@ void Islands::refresh_awake(const Model& model) {
   ++awake_version_;
 }
 
-// One that fell asleep in the last step is listed as awake.
-bool Islands::is_awake_old() const {
-  return order_is_old_ || awake_is_old_ || std::ranges::any_of(awake_, &Island::is_still);
-}
-
 std::span<Island* const> Islands::awake(const Model& model) {
-  if (is_awake_old()) refresh_awake(model);
+  const auto is_still = [](const Island* island) { return island->is_still(); };
+  if (order_is_old_ || awake_is_old_ || std::any_of(awake_.begin(), awake_.end(), is_still)) refresh_awake(model);
   return awake_;
 }
 
-bool Islands::may_be_still() const { return is_awake_old() || still_bodies_ > 0 || free_bodies_.may_rest(); }
+bool Islands::may_be_still(const Model& model) const {
+  const bool is_known = knows_all_ && !renew_ && !order_is_old_ && !awake_is_old_ && !model.is_marked();
+  return !is_known || some_became_still_ || still_bodies_ > 0 || free_bodies_.may_rest();
+}
 
 void Islands::wake(Model& model, std::span<const std::uint32_t> articulates) {
   for (const std::uint32_t articulate : articulates) {
@@ -653,22 +652,42 @@ void Islands::end_strides_with(Model& model, std::uint32_t body) {
     if (model.articulates[model.bodies[each].articulate].first == each) ingredient::Strides::disturb(model, each);
 }
 
+namespace {
+
+/// visit(body): of the points that an ingredient I stirs.
+template <class I, class Visit>
+void visit_stirred_by(Model& model, double h, Visit visit) {
+  I::visit_stirred(model, h, [&](std::uint32_t ring) {
+    model.for_each_in_ring(ring, [&](std::uint32_t p) { visit(model.particles[p].body); });
+  });
+}
+
+}  // namespace
+
 void Islands::wake_stirred(Model& model, double h) {
   const Island* moved = nullptr;  // of the latest nail
   // Forces wake only what rests, and begin its time before sleep again: to look at each took a twelfth of a step of held bonds.
-  const bool may_sleep = model.rest_after > 0 || may_be_still();
+  const bool may_sleep = model.rest_after > 0 || may_be_still(model);
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
-    if (!may_sleep && !std::is_same_v<I, ingredient::Nails>) return;
-    I::visit_stirred(model, h, [&](std::uint32_t ring) {
-      model.for_each_in_ring(ring, [&](std::uint32_t p) {
-        const std::uint32_t articulate = model.bodies[model.particles[p].body].articulate;
-        // A free body that is awake hears its force itself.
-        if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
-        // Other than forces, which a stride takes as they are at its begin, this is a motion of its own.
-        if constexpr (std::is_same_v<I, ingredient::Nails>)
-          if (const Island* const island = of_articulate(articulate); !island || std::exchange(moved, island) != island)
-            end_strides_with(model, model.particles[p].body);
-      });
+    constexpr bool moves = std::is_same_v<I, ingredient::Nails>;
+    if (!may_sleep && !moves) return;
+    visit_stirred_by<I>(model, h, [&](std::uint32_t body) {
+      const std::uint32_t articulate = model.bodies[body].articulate;
+      // A free body that is awake hears its force itself.
+      if (of_articulate(articulate) || free_bodies_.is_resting(model, articulate)) wake(model, {&articulate, 1});
+      // Other than forces, which a stride takes as they are at its begin, this is a motion of its own.
+      if constexpr (moves)
+        if (const Island* const island = of_articulate(articulate); !island || std::exchange(moved, island) != island)
+          end_strides_with(model, body);
+    });
+  });
+}
+
+void Islands::flag_stirred_sleepers(Model& model, double h) {
+  if (!may_be_still(model)) return;
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
+    visit_stirred_by<I>(model, h, [&](std::uint32_t body) {
+      if (model.bodies[body].kind == BodyKind::resting) model.wake(model.bodies[body].articulate);
     });
   });
 }

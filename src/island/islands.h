@@ -6,6 +6,7 @@
 #include "island/free_bodies.h"
 #include "island/island.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <mutex>
@@ -84,16 +85,19 @@ class Islands {
     for (const Island* const island : awake_) visit(island->bodies().front(), island->latest());
     for (const FreeBodies::Loose& loose : free_bodies_.loose()) visit(loose.body, loose.report);
   }
-  /// Ends a step that some took in parts.
-  void end_parts() { ahead_.clear(); }
+  /// Ends a step, which some took in parts.
+  void end_step() {
+    ahead_.clear();
+    some_became_still_ = std::ranges::any_of(awake_, &Island::is_still);
+  }
   /// How the last step was for each island and loose body.
   std::vector<IslandReport> reports(const model::Model&);
   /// The islands of these articulates are awake in the next step.
   void wake(model::Model&, std::span<const std::uint32_t> articulates);
   /// So are those that ingredients stir in a step of h seconds: forces on their points, moving nails, laws of the time.
   void wake_stirred(model::Model&, double h);
-  /// False only if it is known that nothing rests, or stands still with nothing to solve.
-  bool may_be_still() const;
+  /// Flags those of them that rest, before contacts are looked for: a body that a force throws looks at what is in its way.
+  void flag_stirred_sleepers(model::Model&, double h);
   /// Before islands step: they agree on strides that have changed, and their rings get tracks.
   void plan_strides(model::Model&);
   struct Work {
@@ -215,7 +219,8 @@ class Islands {
   /// shorter.
   bool renew_books(const model::Model&, std::uint32_t frozen);
   ingredient::Book sum_books(const model::Model&);
-  bool is_awake_old() const;
+  /// False only if it is known that nothing rests, or stands still with nothing to solve: after edits it is not.
+  bool may_be_still(const model::Model&) const;
   void refresh_awake(const model::Model&);
   double share_of(const Island&) const;
 
@@ -287,6 +292,7 @@ class Islands {
   std::uint64_t awake_version_ = 0;
   std::uint64_t epoch_ = 1;  // another one after each change of structure
   bool knows_all_ = false, order_is_old_ = true, awake_is_old_ = true;
+  bool some_became_still_ = false;  // in the last step, and are still listed as awake
 };
 
 }  // namespace iota::island

@@ -208,18 +208,6 @@ void ContactFinder::wake_at_edited_obstacles(model::Model& model, contact::Outli
   }
 }
 
-// A body that a force throws in this step looks at what is in its way: a sleeping box went through a tower that slept on.
-void ContactFinder::wake_stirred(model::Model& model, double h) {
-  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() {
-    I::visit_stirred(model, h, [&](std::uint32_t ring) {
-      model.for_each_in_ring(ring, [&](std::uint32_t p) {
-        const std::uint32_t body = model.particles[p].body;
-        if (is_asleep(model, body)) model.wake(model.bodies[body].articulate);
-      });
-    });
-  });
-}
-
 // A look at each of ten thousand sleepers takes a tenth of a millisecond.
 void ContactFinder::list_candidates(const model::Model& model, const contact::Outlines& outlines,
                                     std::uint64_t awake_version) {
@@ -357,8 +345,7 @@ void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines)
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
 }
 
-void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version,
-                         bool may_rest) {
+void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
   hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear(), passed_.clear();
   joined_.forget();
   first_look_ = look_ + 1;
@@ -368,7 +355,6 @@ void ContactFinder::find(model::Model& model, contact::Outlines& outlines, doubl
   pairs_.clear();
   note_changes(model, outlines);
   wake_at_edited_obstacles(model, outlines);
-  if (may_rest) wake_stirred(model, h);
   list_candidates(model, outlines, awake_version);
   list_movers(model);
   const bool has_many = is_any_extended_ || obstacles_.size() > few_obstacles;

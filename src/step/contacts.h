@@ -32,9 +32,9 @@ struct Sensed {
 /// material.
 class ContactFinder {
  public:
-  /// For a step of h seconds. awake_version: of the islands; may_rest: whether one of their bodies may. Costs nothing while nothing has a material, and next to nothing while all
-  /// is asleep or frozen.
-  void find(model::Model&, contact::Outlines&, double h, std::uint64_t awake_version, bool may_rest);
+  /// For a step of h seconds. awake_version: of the islands. Costs nothing while nothing has a material, and next to nothing
+  /// while all is asleep or frozen.
+  void find(model::Model&, contact::Outlines&, double h, std::uint64_t awake_version);
   /// The bodies that may touch and were neither asleep nor within a stride when the step began.
   const std::vector<std::uint32_t>& movers() const { return movers_; }
   /// Articulates of bodies that meet others so fast on their way that their islands take the step in parts.
@@ -103,7 +103,6 @@ class ContactFinder {
   void note_changes(model::Model&, contact::Outlines&);
   /// Static bodies that were made, moved or changed since the last step wake what they overlap.
   void wake_at_edited_obstacles(model::Model&, contact::Outlines&);
-  void wake_stirred(model::Model&, double h);
   void list_candidates(const model::Model&, const contact::Outlines&, std::uint64_t awake_version);
   void list_movers(const model::Model&);
   /// Into pairs_: what the movers may touch.

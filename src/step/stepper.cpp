@@ -53,8 +53,8 @@ void Stepper::take_held_forces(StepReport& report) {
 // 1b. Bodies with a material and the obstacles near them.
 void Stepper::find_contacts(double h) {
   const Timed timed(times_of_thread(), &StepTimes::analyze);
-  const island::Islands& islands = editor_.islands;
-  contacts_.find(editor_.model, outlines_, h, islands.awake_version(), islands.may_be_still());
+  editor_.islands.flag_stirred_sleepers(editor_.model, h);
+  contacts_.find(editor_.model, outlines_, h, editor_.islands.awake_version());
 }
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
@@ -248,7 +248,7 @@ void Stepper::advance_islands(StepReport& report) {
   tell_cut_short(islands, report);
   islands.for_each_advanced([&](std::uint32_t, const solver::AdvanceReport& r) { add(r, report); });
   add(islands.free_bodies().advance(model, report.dt, editor_.parallel), report);
-  islands.end_parts();
+  islands.end_step();
   report.resting = islands.resting(model);
   if (spin_lost_ > 0)
     report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost_,

@@ -413,9 +413,9 @@ class Levels(Part):
             return self._system.step(dt)
         finally:  # other programs hold up the one clock, several threads the other
             took = min(time.process_time() - began, time.perf_counter() - at)
-            self._look_at_contacts(1e3 * took, self._paced_ms)
+            self._look_at_contacts(1e3 * took, self._paced_ms, ROOM)
 
-    def _look_at_contacts(self, ms: float, limit: float, room: float = ROOM) -> None:
+    def _look_at_contacts(self, ms: float, limit: float, room: float) -> None:
         change = self._contacts.look(ms, limit, room)
         if change is not None:
             before, after = (f"{share:g} of their budget" for share in change)
