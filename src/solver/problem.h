@@ -289,7 +289,7 @@ struct Problem {
   }
   bool has_used_springs() const { return has_used<SpringForce>() || has_used<RadialForce>(); }
   bool has_used_forces() const { return used_ >> constraint_types != 0; }
-  bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
+  bool has_used_constraints() const { return used_constraints() != 0; }
   /// The key of an item in a constraint pool, by the pool's place among those that the folds visit.
   ItemKey key_of(std::size_t pool, std::size_t item) const {
     ItemKey key;
@@ -303,11 +303,11 @@ struct Problem {
   ///@{
   template <class Visit>
   void for_each_constraint_pool(Visit visit) {
-    visit_used(constraints_, used_, visit);
+    visit_used(constraints_, used_constraints(), visit);
   }
   template <class Visit>
   void for_each_constraint_pool(Visit visit) const {
-    visit_used(constraints_, used_, visit);
+    visit_used(constraints_, used_constraints(), visit);
   }
   template <class Visit>
   void for_each_force_pool(Visit visit) {
@@ -505,6 +505,7 @@ struct Problem {
     if (!find(std::type_identity<ConstraintPools<ConstraintPool>>{})) find(std::type_identity<ForcePools<ForcePool>>{});
     return index;
   }
+  std::uint32_t used_constraints() const { return used_ & ((std::uint32_t{1} << constraint_types) - 1); }
   template <class Pools, class Visit>
   static void visit_used(Pools& pools, std::uint32_t used, Visit& visit) {
     [&]<std::size_t... i>(std::index_sequence<i...>) {

@@ -77,6 +77,7 @@ void Spin::find_axles(const Problem& problem, Noticed by, Parts& all_parts) {
   constexpr double upright = 1e-9;
   constexpr std::uint32_t none = Pieces::none;
   auto& [parts, connected, nail] = all_parts;
+  if (std::ranges::all_of(parts, &Part::is_kept)) return;
   hung_of_part_.assign(parts.size(), none);
   std::uint32_t count = 0;
   for (std::uint32_t k = 0; k < parts.size(); ++k)
