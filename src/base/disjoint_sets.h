@@ -24,6 +24,8 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
+  /// One of the same set; of a root itself.
+  std::uint32_t parent(std::uint32_t i) const { return parent_[i]; }
   /// The root of the second one's set becomes that of both.
   void join(std::uint32_t a, std::uint32_t b) { set_parent(root(a), root(b)); }
   /// The same of two roots.

@@ -14,6 +14,9 @@ static_assert(std::endian::native == std::endian::little, "sealed bytes are in t
 
 namespace {
 
+constexpr std::size_t size_of_head = sizeof Seal::mark + sizeof(std::uint64_t),
+                      size_of_checksum = sizeof(std::uint64_t);
+
 // By words of eight bytes, the last one filled up with zeros; byte by byte it took a third of a save. Each step maps the
 // state one to one, so any change of a single word changes the result; the shift spreads the top bits, which a product
 // would not.
@@ -39,13 +42,24 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::vector<std::byte> seal(const Seal& seal, std::span<const std::byte> content) {
-  std::vector<std::byte> bytes;
-  bytes.reserve(sizeof seal.mark + content.size() + 16);
-  Writer writer(bytes);
-  writer.value(seal.mark), writer.value(static_cast<std::uint64_t>(content.size()));
+  std::vector<std::byte> bytes = begin_seal(seal, content.size());
   bytes.insert(bytes.end(), content.begin(), content.end());
-  writer.value(checksum(bytes));
+  end_seal(bytes);
   return bytes;
+}
+
+std::vector<std::byte> begin_seal(const Seal& seal, std::size_t expected_content) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(size_of_head + expected_content + size_of_checksum);
+  Writer writer(bytes);
+  writer.value(seal.mark), writer.value(std::uint64_t{0});
+  return bytes;
+}
+
+void end_seal(std::vector<std::byte>& bytes) {
+  const std::uint64_t size = bytes.size() - size_of_head;
+  std::memcpy(bytes.data() + sizeof Seal::mark, &size, sizeof size);
+  Writer(bytes).value(checksum(bytes));
 }
 
 std::span<const std::byte> unseal(const Seal& seal, std::span<const std::byte> bytes) {
@@ -56,7 +70,7 @@ std::span<const std::byte> unseal(const Seal& seal, std::span<const std::byte> b
   if (mark != seal.mark) refuse(seal, "it does not start as one of this version of Iota");
   if (!reader.ok() || reader.remaining() < sizeof expected || size != reader.remaining() - sizeof expected)
     refuse(seal, "its length is wrong, it may have been cut short");
-  const auto content = bytes.subspan(sizeof mark + sizeof size, size);
+  const auto content = bytes.subspan(size_of_head, size);
   Reader(bytes.last(sizeof expected)).value(expected);
   if (checksum(bytes.first(bytes.size() - sizeof expected)) != expected) refuse(seal, "its checksum is wrong");
   return content;

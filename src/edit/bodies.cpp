@@ -296,14 +296,16 @@ void apply(Editor& e, const SetMaterial& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
   require_material(c.value);
-  const std::optional<Material> before = model.material(body) ? std::optional(*model.material(body)) : std::nullopt;
+  const Material* const old = model.material(body);
+  const bool had_one = old != nullptr;
+  const Material before = old ? *old : Material{};
   if (c.touches)
     model.materials.make(body) = c.value;
   else
     model.materials.erase(body);
   const Material* const now = model.material(body);
   if (!c.touches || !now ||
-      (before && (before->touches != now->touches || before->surface_velocity != now->surface_velocity)))
+      (had_one && (before.touches != now->touches || before.surface_velocity != now->surface_velocity)))
     ingredient::Contacts::end(model, body);  // it wakes what lies there
   ingredient::Contacts::wake(model, body);
   model.changed_outlines.note(body);

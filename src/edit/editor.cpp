@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 namespace iota::edit {
 
@@ -53,13 +54,13 @@ std::span<const std::byte> tables_of(std::span<const std::byte> bytes, std::vect
   return room = in_own_schema(schema, tables);
 }
 
-/// The bytes before the tables in a snapshot.
-std::vector<std::byte> head_with(std::string_view schema) {
-  std::vector<std::byte> content;
-  Writer writer(content);
+/// The bytes before the tables in a snapshot. expected: size of the tables.
+std::vector<std::byte> begin_with(std::string_view schema, std::size_t expected) {
+  std::vector<std::byte> bytes = begin_seal(snapshot_seal, 2 * sizeof(std::uint64_t) + schema.size() + expected);
+  Writer writer(bytes);
   writer.value(hash_of_own_schema());
   writer.vector(std::vector<char>(schema.begin(), schema.end()));
-  return content;
+  return bytes;
 }
 
 }  // namespace
@@ -76,22 +77,29 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
+// Into room of the size of the last one and some more: lists that grow while they are filled are copied, and memory that the
+// heap gives back comes as new pages, which took an eighth of the time in which 5 000 links become one body.
 Snapshot Editor::pack(Origin origin) {
   const std::string_view schema = origin == Origin::anywhere ? own_schema_text() : std::string_view();
-  std::vector<std::byte> content = head_with(schema);
-  const std::size_t head = content.size();
-  Writer writer(content);
+  std::vector<std::byte> bytes = begin_with(schema, size_of_tables_ + size_of_tables_ / 32);
+  const std::size_t head = bytes.size();
+  Writer writer(bytes);
   model.archive(writer);
+  size_of_tables_ = bytes.size() - head;
   static const SchemaGaps gaps(own_schema());
-  gaps.clear(std::span(content).subspan(head));
-  return {seal(snapshot_seal, content)};
+  gaps.clear(std::span(bytes).subspan(head));
+  end_seal(bytes);
+  if (bytes.capacity() > bytes.size() + bytes.size() / 16) bytes.shrink_to_fit();
+  return {std::move(bytes)};
 }
 
 Snapshot Editor::own_state(const Snapshot& state, std::string_view schema) {
-  std::vector<std::byte> room, content = head_with({});
+  std::vector<std::byte> room;
   const auto tables = tables_of(state.bytes, room, schema);
-  content.insert(content.end(), tables.begin(), tables.end());
-  Snapshot own{seal(snapshot_seal, content)};
+  std::vector<std::byte> bytes = begin_with({}, tables.size());
+  bytes.insert(bytes.end(), tables.begin(), tables.end());
+  end_seal(bytes);
+  Snapshot own{std::move(bytes)};
   (void)unpack(own, Origin::anywhere);
   return own;
 }

@@ -94,6 +94,7 @@ struct Editor {
 
  private:
   std::uint64_t keys_saved_below_ = 0;  // of functions in the latest snapshot
+  std::size_t size_of_tables_ = 0;      // of the latest snapshot, in bytes
 };
 
 }  // namespace iota::edit

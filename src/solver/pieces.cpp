@@ -40,42 +40,41 @@ bool find_nails(const Problem& problem, std::vector<std::uint32_t>& nail_of) {
 std::uint32_t find_pieces(const Problem& problem, Connection connection, Pieces& pieces, RoomForPieces& room,
                           Nails nails) {
   constexpr std::uint32_t none = Pieces::none, several = none - 1;
-  DisjointSets& connected = room.connected;
+  auto& [connected, hung, hanging] = room;
   connected.reset(problem.size());
   const auto join = [&](std::uint32_t a, std::uint32_t b) {  // the lowest of a piece is its leader
     const std::uint32_t p = connected.root(a), q = connected.root(b);
     connected.set_parent(std::max(p, q), std::min(p, q));
   };
   const bool end_at_nails = connection != Connection::lengths && find_nails(problem, pieces.nail_of);
-  const auto is_nail = [&](std::uint32_t node) { return end_at_nails && pieces.nail_of[node] != none; };
+  hung.clear();
   for_each_connected(problem, connection, [&](std::span<const std::uint32_t> nodes) {
+    if (!end_at_nails) {
+      for (std::size_t k = 1; k < nodes.size(); ++k) join(nodes[k - 1], nodes[k]);
+      return;
+    }
     std::uint32_t nail = none, other = none;  // the last ones
     for (const std::uint32_t node : nodes) {
-      std::uint32_t& last = is_nail(node) ? nail : other;
+      std::uint32_t& last = pieces.nail_of[node] != none ? nail : other;
       if (last != none) join(last, node);
       last = node;
     }
+    if (nail != none && other != none) hung.emplace_back(nail, other);
   });
-  auto& hanging = room.hanging;
   hanging.assign(end_at_nails ? problem.size() : 0, none);
-  if (end_at_nails)
-    for_each_connected(problem, connection, [&](std::span<const std::uint32_t> nodes) {
-      for (const std::uint32_t nail : nodes)
-        for (const std::uint32_t node : nodes)
-          if (is_nail(nail) && !is_nail(node)) {
-            const std::uint32_t leader = connected.root(node);
-            std::uint32_t& found = hanging[connected.root(nail)];
-            found = found == none || found == leader ? leader : several;
-          }
-    });
+  for (const auto& [nail, node] : hung) {
+    const std::uint32_t leader = connected.root(node);
+    std::uint32_t& found = hanging[connected.root(nail)];
+    found = found == none || found == leader ? leader : several;
+  }
   if (nails == Nails::with_what_hangs_on_them)
     for (std::uint32_t node = 0; node < hanging.size(); ++node)
       if (hanging[node] < several) join(node, hanging[node]);
   std::uint32_t count = 0;
   pieces.of.resize(problem.size()), pieces.are_nails.clear();
   for (std::uint32_t node = 0; node < problem.size(); ++node) {
-    const std::uint32_t leader = connected.root(node);
-    pieces.of[node] = leader == node ? count++ : pieces.of[leader];
+    const std::uint32_t before = connected.parent(node);  // a lower one of the same piece, but for its leader
+    pieces.of[node] = before == node ? count++ : pieces.of[before];
   }
   for (std::uint32_t node = 0; node < hanging.size(); ++node)
     if (hanging[node] == several || (hanging[node] != none && nails == Nails::apart))

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace iota::solver {
@@ -47,7 +48,8 @@ struct Pieces {
 /// The caller keeps this room, as rows that act may change in each step.
 struct RoomForPieces {
   DisjointSets connected;
-  std::vector<std::uint32_t> hanging;  // on the leader of nails that are connected
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hung;  // a nail and another node, of each connection with both
+  std::vector<std::uint32_t> hanging;                         // on the leader of nails that are connected
 };
 
 enum class Nails : std::uint8_t { with_what_hangs_on_them, apart };
