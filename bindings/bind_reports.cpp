@@ -163,7 +163,8 @@ void bind_step_report(nb::module_& module) {
       .def_ro(
           "error", &StepReport::error,
           "Of mode 'accurate': the largest estimate of the local error of an island, in mean lengths of its links per\n"
-          "second; at most `System.tolerance`, unless sub-steps became too short or fell back.")
+          "second; at most `System.tolerance`. Infinite, that is unknown, if contacts were solved one by one, or sub-steps\n"
+          "became too short or fell back.")
       .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
       .def_ro("energy", &StepReport::energy)
       .def_ro("articulates", &StepReport::articulates)

@@ -117,7 +117,8 @@ struct IslandReport {
   bool approximate = false;  ///< contacts were solved one by one: see StepBudget::contacts
   double gap = 0;            ///< largest violation of a constraint at the end, m
   /// Estimated local error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt,
-  /// without what the motion makes of earlier ones. Only of mode accurate; without sub-steps that fell back to the robust scheme.
+  /// without what the motion makes of earlier ones. Only of mode accurate. Infinite, that is unknown, if a part of the step has no
+  /// estimate: contacts were solved approximately, or sub-steps became too short or fell back to the robust scheme.
   double error = 0;
   double lost = 0, made = 0;  ///< energy, by the integration scheme, J
 };

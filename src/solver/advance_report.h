@@ -18,7 +18,8 @@ struct [[nodiscard]] AdvanceReport {
   double external_work = 0;     ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;        ///< work of dampers, friction, dashpots and impacts, J
   double lost = 0, made = 0;    ///< by the scheme, J: what a (sub-)step leaves unexplained
-  double error = 0;             ///< estimated, of positions, in mean lengths of links a second; in accurate mode
+  double error = 0;             ///< estimated, of positions, in mean lengths of links a second; of mode accurate;
+                                ///< infinite: unknown
   double closing_energy = 0;    ///< by moving violated constraints together before the step, J
   double spin_lost = 0;         ///< angular momentum that the points cannot carry after that, kg m^2/s
 };

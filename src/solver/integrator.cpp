@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -266,7 +267,13 @@ void Integrator::advance_part(Problem& problem, const Part& part, std::size_t fi
   // Sweeps would close the gaps of a conflict at once.
   if (may_sweep() || (is_over_ && !keeps_offsets_)) return sweep(problem, {.from = part.from, .h = rest}, report);
   report.converged = false;
+  note_unknown_error(report);
   coast(problem, is_over_ ? rest : part.h, report);
+}
+
+// It counted as none: sweeps left 6 mm where 1e-6 of a length was told.
+void Integrator::note_unknown_error(AdvanceReport& report) const {
+  if (settings_.max_error > 0) report.error = std::numeric_limits<double>::infinity();
 }
 
 namespace {
@@ -407,6 +414,7 @@ void Integrator::sweep(Problem& problem, const Part& part, AdvanceReport& report
   // Impacts and friction are not told apart from what the sub-steps lose.
   report.dissipated += std::exchange(energy_.missing, std::min(0.0, energy_.missing)) - energy_.missing;
   energy_.close(problem, reference_length(), part.h, report);
+  note_unknown_error(report);
   report.is_approximate = true;
   report.gap = std::max(report.gap, swept.depth);
   ++report.substeps;
@@ -452,6 +460,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
     forget_bounces(problem);
     return false;
   }
+  if (!is_mid_point || trial.is_finest) note_unknown_error(report);
   if (problem.has_laws()) find_holds(problem);
   // The mean gradient of an angle does not turn with the body: a free screw lost 4e-3 of its angular momentum in a second,
   // free gears 1e-5.

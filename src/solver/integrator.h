@@ -121,6 +121,8 @@ class Integrator {
   bool is_beyond(Problem&, const IntegratorSettings&, double iterations);
   bool is_beyond_budget(Problem&, double& cost);
   void sweep(Problem&, const Part&, AdvanceReport&);
+  /// In mode accurate: a part of the step has no estimate.
+  void note_unknown_error(AdvanceReport&) const;
   void damp(Problem&, double time, AdvanceReport&);
   void stay(Problem&, double h, bool is_alone);
   void look_at(Problem&);

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -164,3 +166,37 @@ def test_islands_report_cost_and_quality_of_each() -> None:
     assert report.unconverged == 1
     assert lone.body not in good.bodies + bad.bodies, "free particles are in no island"
     assert "not converged" in repr(bad)
+
+
+def tower(budget_contacts: float) -> tuple[iota.System, list[iota.Body]]:
+    """Ten cubes of 0.2 m that fall 1 cm onto each other, in mode accurate."""
+    system = iota.System(mode="accurate", gravity=(0, -9.81, 0))
+    system.usual_material, system.budget_contacts = iota.Material(), budget_contacts
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    cube = iota.Box((0.2, 0.2, 0.2))
+    return system, [system.body(shape=cube, density=1000, position=(0.01 * k, 0.1 + 0.21 * k, 0)) for k in range(10)]
+
+
+def test_no_error_is_told_of_contacts_that_are_solved_one_by_one() -> None:
+    exact, _ = tower(0)
+    swept, cubes = tower(1)
+    deepest, approximate = 0.0, 0
+    for _ in range(60):
+        exact.step(1 / 60)
+        report = swept.step(1 / 60)
+        approximate += report.approximate > 0
+        assert np.isinf(report.error) == (report.approximate > 0)
+        assert all(np.isinf(island.error) == island.approximate for island in swept.islands())
+        heights = [cube.position[1] for cube in cubes]
+        deepest = max(deepest, *(0.2 - (above - below) for below, above in itertools.pairwise(heights)))
+    assert approximate > 50 and deepest > 1e-4  # from outside: it is far from exact
+    assert exact.step(1 / 60).error <= exact.tolerance
+
+
+def test_an_error_is_told_again_when_an_impact_is_over() -> None:
+    system = iota.System(mode="accurate", gravity=(0, -9.81, 0))
+    system.usual_material = iota.Material(restitution=0.8)
+    system.obstacle(iota.HalfSpace((0, 1, 0)))
+    system.body(shape=iota.Sphere(0.1), density=1000, position=(0, 0.5, 0))
+    errors = [system.step(1 / 60).error for _ in range(60)]
+    assert np.isfinite(errors).sum() > 40 and max(e for e in errors if np.isfinite(e)) <= system.tolerance
