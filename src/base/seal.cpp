@@ -48,9 +48,9 @@ std::vector<std::byte> seal(const Seal& seal, std::span<const std::byte> content
   return bytes;
 }
 
-std::vector<std::byte> begin_seal(const Seal& seal, std::size_t expected_content) {
+std::vector<std::byte> begin_seal(const Seal& seal, std::size_t expected) {
   std::vector<std::byte> bytes;
-  bytes.reserve(size_of_head + expected_content + size_of_checksum);
+  bytes.reserve(size_of_head + expected + size_of_checksum);
   Writer writer(bytes);
   writer.value(seal.mark), writer.value(std::uint64_t{0});
   return bytes;

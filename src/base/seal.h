@@ -18,8 +18,9 @@ struct Seal {
 
 /// The mark, the length of the content, the content, and a checksum of these (64 bits); in the machine's byte order.
 std::vector<std::byte> seal(const Seal&, std::span<const std::byte> content);
-/// The same without a copy: the content is added to the bytes of the first, and the second ends them.
-std::vector<std::byte> begin_seal(const Seal&, std::size_t expected_content = 0);
+/// The same without a copy: the content is added to the bytes of the first, and the second ends them. expected: size of the
+/// content, for which there is room.
+std::vector<std::byte> begin_seal(const Seal&, std::size_t expected);
 void end_seal(std::vector<std::byte>&);
 
 /// The content. Throws std::invalid_argument for bytes that are not from `seal`, are truncated or damaged.

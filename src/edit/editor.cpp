@@ -77,8 +77,7 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model.mark_velocities(model.bodies[model.particles[particle].body].articulate);
 }
 
-// Into room of the size of the last one and some more: lists that grow while they are filled are copied, and memory that the
-// heap gives back comes as new pages, which took an eighth of the time in which 5 000 links become one body.
+// Into room of the size of the last one and some more: a list that grows while it is filled is copied.
 Snapshot Editor::pack(Origin origin) {
   const std::string_view schema = origin == Origin::anywhere ? own_schema_text() : std::string_view();
   std::vector<std::byte> bytes = begin_with(schema, size_of_tables_ + size_of_tables_ / 32);

@@ -77,12 +77,13 @@ void Spin::find_axles(const Problem& problem, Noticed by, Parts& all_parts) {
   constexpr double upright = 1e-9;
   constexpr std::uint32_t none = Pieces::none;
   auto& [parts, connected, nail] = all_parts;
-  if (std::ranges::all_of(parts, &Part::is_kept)) return;
-  hung_of_part_.assign(parts.size(), none);
+  const auto may_have_one = [&](std::uint32_t k) { return !parts[k].is_kept && !connected.is_nail(k); };
   std::uint32_t count = 0;
-  for (std::uint32_t k = 0; k < parts.size(); ++k)
-    if (!parts[k].is_kept && !connected.is_nail(k)) hung_of_part_[k] = count++;
+  for (std::uint32_t k = 0; k < parts.size(); ++k) count += may_have_one(k);
   if (count == 0) return;
+  hung_of_part_.assign(parts.size(), none), count = 0;
+  for (std::uint32_t k = 0; k < parts.size(); ++k)
+    if (may_have_one(k)) hung_of_part_[k] = count++;
   bool moves = false;
   problem.for_each_acting([&](const auto& pool, std::size_t i) {
     moves = moves || (!pool.items[i].is_internal() && pool.items[i].is_moving());
