@@ -26,75 +26,73 @@ struct GjkSimplex {
   std::size_t count = 0;
 };
 
-Vec3 take_corner(GjkSimplex& s) {
-  s.count = 1, s.share[0] = 1;
-  return s.corners[0].place;
-}
+/// The corners of a simplex that the point nearest to the origin needs, by their numbers, and that point. A corner takes 80 bytes: they
+/// stay where they are.
+struct GjkNearest {
+  std::array<std::uint8_t, 4> corners{};
+  std::size_t count = 0;
+  std::array<double, 4> share{};
+  Vec3 point;
+};
 
-/// The corners that the point nearest to the origin needs, and that point.
-Vec3 reduce_segment(GjkSimplex& s) {
-  const Vec3 a = s.corners[0].place, along = s.corners[1].place - a;
+GjkNearest nearest_of_corner(const GjkSimplex& s, std::uint8_t i) { return {{i}, 1, {1}, s.corners[i].place}; }
+
+GjkNearest nearest_of_segment(const GjkSimplex& s, std::uint8_t i, std::uint8_t j) {
+  const Vec3& a = s.corners[i].place;
+  const Vec3 along = s.corners[j].place - a;
   const double squared = dot(along, along), share = squared > 0 ? -dot(a, along) / squared : 0;
-  if (share > 0 && share < 1) {
-    s.share[0] = 1 - share, s.share[1] = share;
-    return a + share * along;
-  }
-  if (share >= 1) s.corners[0] = s.corners[1];
-  return take_corner(s);
+  if (share > 0 && share < 1) return {{i, j}, 2, {1 - share, share}, a + share * along};
+  return nearest_of_corner(s, share >= 1 ? j : i);
 }
 
-Vec3 reduce_triangle(GjkSimplex& s) {
-  const Vec3 a = s.corners[0].place, b = s.corners[1].place, c = s.corners[2].place;
+GjkNearest nearest_of_triangle(const GjkSimplex& s, std::uint8_t i, std::uint8_t j, std::uint8_t k) {
+  const Vec3 &a = s.corners[i].place, &b = s.corners[j].place, &c = s.corners[k].place;
   const Vec3 normal = cross(b - a, c - a);
   const double squared = dot(normal, normal);
   const double of_c = dot(cross(b - a, normal), a), of_a = dot(cross(c - b, normal), b),
                of_b = dot(cross(a - c, normal), c);
   if (of_a >= 0 && of_b >= 0 && of_c >= 0 && squared > 0) {
     const double sum = of_a + of_b + of_c;
-    if (sum > 0) {
-      s.share = {of_a / sum, of_b / sum, of_c / sum, 0};
-      return dot(a, normal) / squared * normal;
-    }
+    if (sum > 0) return {{i, j, k}, 3, {of_a / sum, of_b / sum, of_c / sum}, dot(a, normal) / squared * normal};
   }
-  GjkSimplex best;
-  Vec3 nearest;
+  GjkNearest best;
   double least = std::numeric_limits<double>::infinity();
-  constexpr std::size_t sides[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+  const std::uint8_t sides[3][2] = {{i, j}, {j, k}, {k, i}};
   for (const auto& side : sides) {
-    GjkSimplex part;
-    part.corners[0] = s.corners[side[0]], part.corners[1] = s.corners[side[1]], part.count = 2;
-    const Vec3 point = reduce_segment(part);
-    if (const double apart = dot(point, point); apart < least) least = apart, nearest = point, best = part;
+    const GjkNearest part = nearest_of_segment(s, side[0], side[1]);
+    if (const double apart = dot(part.point, part.point); apart < least) least = apart, best = part;
   }
-  s = best;
-  return nearest;
+  return best;
 }
 
-/// Zero if the origin is inside.
-Vec3 reduce_tetrahedron(GjkSimplex& s) {
-  constexpr std::size_t faces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
-  GjkSimplex best;
-  Vec3 nearest;
+/// All four, and zero, if the origin is inside.
+GjkNearest nearest_of_tetrahedron(const GjkSimplex& s) {
+  constexpr std::uint8_t faces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
+  GjkNearest best{{0, 1, 2, 3}, 4, s.share, {}};
   double least = std::numeric_limits<double>::infinity();
   for (const auto& face : faces) {
-    const Vec3 a = s.corners[face[0]].place, b = s.corners[face[1]].place, c = s.corners[face[2]].place;
+    const Vec3 &a = s.corners[face[0]].place, &b = s.corners[face[1]].place, &c = s.corners[face[2]].place;
     const Vec3 normal = cross(b - a, c - a);
     // A flat one has no inside: then all its sides count.
     if (dot(normal, s.corners[face[3]].place - a) * -dot(normal, a) > 0) continue;
-    GjkSimplex part;
-    for (std::size_t k = 0; k < 3; ++k) part.corners[k] = s.corners[face[k]];
-    part.count = 3;
-    const Vec3 point = reduce_triangle(part);
-    if (const double apart = dot(point, point); apart < least) least = apart, nearest = point, best = part;
+    const GjkNearest part = nearest_of_triangle(s, face[0], face[1], face[2]);
+    if (const double apart = dot(part.point, part.point); apart < least) least = apart, best = part;
   }
-  if (best.count > 0) s = best;
-  return nearest;
+  return best;
 }
 
-Vec3 reduce(GjkSimplex& s) {
-  if (s.count == 1) return take_corner(s);
-  if (s.count == 2) return reduce_segment(s);
-  return s.count == 3 ? reduce_triangle(s) : reduce_tetrahedron(s);
+GjkNearest nearest_of(const GjkSimplex& s) {
+  if (s.count == 1) return nearest_of_corner(s, 0);
+  if (s.count == 2) return nearest_of_segment(s, 0, 1);
+  return s.count == 3 ? nearest_of_triangle(s, 0, 1, 2) : nearest_of_tetrahedron(s);
+}
+
+/// Keeps the corners that the nearest point needs.
+void reduce(GjkSimplex& s, const GjkNearest& to) {
+  // A corner that is kept may lie where an earlier one goes: of a triangle the third and the first.
+  const std::array<GjkCorner, 4> before = s.corners;
+  for (std::size_t k = 0; k < to.count; ++k) s.corners[k] = before[to.corners[k]];
+  s.count = to.count, s.share = to.share;
 }
 
 bool has(const GjkSimplex& s, const GjkCorner& corner) {
@@ -112,8 +110,8 @@ Closest closest(SupportOf first, SupportOf second, const Vec3& start, double exa
   };
   GjkSimplex simplex;
   simplex.corners[0] = support(dot(start, start) > 0 ? -1.0 * start : Vec3{1, 0, 0});
-  simplex.count = 1;
-  Vec3 nearest = reduce(simplex);
+  simplex.count = 1, simplex.share[0] = 1;
+  Vec3 nearest = simplex.corners[0].place;
   double extent = dot(nearest, nearest), apart = 0;  // squared; along the best plane between the sets
   bool is_inside = false;
   for (int step = 0; step < most_gjk_steps; ++step) {
@@ -125,13 +123,15 @@ Closest closest(SupportOf first, SupportOf second, const Vec3& start, double exa
     const double along = dot(nearest, farther.place);
     apart = std::max(apart, along / std::sqrt(squared));
     if (squared - along <= exactness * squared || has(simplex, farther)) break;
-    GjkSimplex next = simplex;
-    next.corners[next.count++] = farther;
-    const Vec3 point = reduce(next);
+    simplex.corners[simplex.count++] = farther;
+    const GjkNearest next = nearest_of(simplex);
     // With a plane between the sets the origin is not inside: round-off.
     is_inside = next.count == 4 && !(apart > surely_apart * std::sqrt(extent));
-    if (!is_inside && (next.count == 4 || dot(point, point) >= squared)) break;
-    simplex = next, nearest = point;
+    if (!is_inside && (next.count == 4 || dot(next.point, next.point) >= squared)) {
+      --simplex.count;
+      break;
+    }
+    reduce(simplex, next), nearest = next.point;
     if (is_inside) break;
   }
   Closest result;
