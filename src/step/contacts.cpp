@@ -345,11 +345,15 @@ void ContactFinder::list_pairs(model::Model& model, contact::Outlines& outlines)
   std::erase_if(pairs_, [&](const Pair& pair) { return !touch_each_other(model, outlines, joined_, pair); });
 }
 
+bool ContactFinder::may_find_any(const model::Model& model) {
+  return !model.materials.is_empty() || model.has_usual_material || model.contacts.size() > 0;
+}
+
 void ContactFinder::find(model::Model& model, contact::Outlines& outlines, double h, std::uint64_t awake_version) {
   hasty_.clear(), sensed_.clear(), passing_.clear(), thrown_.clear(), passed_.clear();
   joined_.forget();
   first_look_ = look_ + 1;
-  if (model.materials.is_empty() && !model.has_usual_material && model.contacts.size() == 0) return;
+  if (!may_find_any(model)) return;
   outlines.describe();
   step_ = h, shortest_ = h / solver::Heap::most_sub_steps;
   pairs_.clear();

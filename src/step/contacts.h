@@ -32,6 +32,8 @@ struct Sensed {
 /// material.
 class ContactFinder {
  public:
+  /// Whether something has a material, or had one in the last step.
+  static bool may_find_any(const model::Model&);
   /// For a step of h seconds. awake_version: of the islands. Costs nothing while nothing has a material, and next to nothing
   /// while all is asleep or frozen.
   void find(model::Model&, contact::Outlines&, double h, std::uint64_t awake_version);

@@ -53,7 +53,7 @@ void Stepper::take_held_forces(StepReport& report) {
 // 1b. Bodies with a material and the obstacles near them.
 void Stepper::find_contacts(double h) {
   const Timed timed(times_of_thread(), &StepTimes::analyze);
-  editor_.islands.flag_stirred_sleepers(editor_.model, h);
+  if (ContactFinder::may_find_any(editor_.model)) editor_.islands.flag_stirred_sleepers(editor_.model, h);
   contacts_.find(editor_.model, outlines_, h, editor_.islands.awake_version());
 }
 
